@@ -1,0 +1,45 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "swarm_core/base/result.hpp"
+#include "swarm_core/blackbox/record.hpp"
+
+namespace swarm::blackbox {
+
+/// `blackbox/robot-00042.bbox` inside a run directory.
+std::filesystem::path file_of(const std::filesystem::path& run_dir, RobotId robot);
+
+/// Appends records. Layout: magic "SWBBOX1\n", then records of (u8 kind, u8 zero, u16 size,
+/// u32 CRC-32 of the payload, payload), little-endian. Every record is one write(2), so a killed
+/// process loses at most the record it was writing. A failing disk never stops the robot: the record
+/// is dropped and counted.
+class Writer {
+ public:
+  static Result<Writer> open(const std::filesystem::path& file);
+  Writer(Writer&& other) noexcept;
+  Writer& operator=(Writer&& other) noexcept;
+  ~Writer();
+
+  void append(const Record& record);
+  std::uint64_t dropped() const { return dropped_; }
+
+ private:
+  explicit Writer(int fd) : fd_(fd) {}
+  int fd_ = -1;
+  std::uint64_t dropped_ = 0;
+  std::vector<unsigned char> buffer_;
+};
+
+struct File {
+  std::vector<Record> records;
+  std::uint64_t damaged = 0;  ///< records whose checksum or size is wrong; reading goes on if it can
+  bool truncated = false;     ///< the last record is incomplete (the process was killed)
+};
+
+Result<File> read_file(const std::filesystem::path& file);
+
+}  // namespace swarm::blackbox

@@ -1,0 +1,23 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "swarm_core/base/result.hpp"
+#include "swarm_core/mission/mission.hpp"
+
+namespace swarm {
+
+/// Share u of a robot in a stratified draw, in [0, 1): robot i of n owns the stratum [i/n, (i+1)/n)
+/// of a permuted order, so that over all robots every cumulated weight is met within one robot.
+/// The same for every caller that knows (robot, robots); no communication.
+double stratified_share(std::uint32_t robot, std::uint32_t robots);
+
+/// Where the simulated robots stand at the start [m]: robot i in the start component its stratified
+/// share falls into, a sample of that Gaussian inside the bounds, the 99 % ellipse, and clear of
+/// obstacles and earlier robots by robots.placement_gap_m. Deterministic in (mission, seed).
+/// Fails when a component is too crowded to place its robots.
+Result<std::vector<Vec2>> place_robots(const Mission& mission, std::uint64_t seed);
+
+}  // namespace swarm

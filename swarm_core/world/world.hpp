@@ -1,0 +1,77 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <variant>
+#include <vector>
+
+#include "swarm_core/base/linalg.hpp"
+#include "swarm_core/base/result.hpp"
+#include "swarm_core/world/polygon.hpp"
+
+namespace swarm {
+
+struct Circle {
+  Vec2 center_m;
+  double radius_m = 0.0;
+};
+
+/// An obstacle as the mission file gives it.
+using Obstacle = std::variant<Polygon, Circle>;
+
+/// Axis-aligned box.
+struct Box {
+  Vec2 min_m;
+  Vec2 max_m;
+  bool contains(const Vec2& p) const {
+    return (p.array() >= min_m.array()).all() && (p.array() <= max_m.array()).all();
+  }
+  /// Distance from a point to the box, 0 inside [m].
+  double distance_m(const Vec2& p) const;
+};
+
+/// Signed distance to an obstacle, positive outside [m], and its gradient: a unit vector that points
+/// from the obstacle towards free space. At a corner's medial axis any of the valid gradients.
+struct SignedDistance {
+  double distance_m = 0.0;
+  Vec2 gradient = Vec2::Zero();
+};
+
+/// A convex obstacle: what the CVaR test and the safety filter see.
+struct ConvexObstacle {
+  std::vector<Vec2> vertices_m;  ///< counter-clockwise; empty for a circle
+  Circle circle;                 ///< used when `vertices_m` is empty
+  Box box;
+  SignedDistance signed_distance(const Vec2& point_m) const;
+};
+
+/// The static map: a rectangle with obstacles, which may touch and overlap.
+class World {
+ public:
+  /// Refuses an empty or non-finite rectangle.
+  static Result<World> make(Box bounds_m, std::vector<Obstacle> obstacles);
+
+  const Box& bounds_m() const { return bounds_m_; }
+  const std::vector<Obstacle>& obstacles() const { return obstacles_; }
+
+  /// The obstacles, non-convex ones decomposed into convex parts.
+  const std::vector<ConvexObstacle>& convex_obstacles() const { return convex_obstacles_; }
+
+  /// Signed distance to the nearest obstacle: exact outside and, where obstacles do not overlap,
+  /// inside; ≥ the true penetration where they do. +∞ distance in a world without obstacles.
+  /// O(edges), obstacles farther than the best so far are skipped by their box.
+  SignedDistance signed_distance(const Vec2& point_m) const;
+  double distance_m(const Vec2& point_m) const { return signed_distance(point_m).distance_m; }
+
+  /// Whether every point of the segment is at least `clearance_m` from every obstacle. Exact up to
+  /// 1 mm (sphere tracing).
+  bool segment_is_free(const Vec2& from_m, const Vec2& to_m, double clearance_m) const;
+
+ private:
+  Box bounds_m_;
+  std::vector<Obstacle> obstacles_;
+  std::vector<ConvexObstacle> convex_obstacles_;
+  std::vector<Box> boxes_;  // of obstacles_
+};
+
+}  // namespace swarm

@@ -1,0 +1,26 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <compare>
+#include <cstdint>
+#include <vector>
+
+#include "swarm_core/base/linalg.hpp"
+
+namespace swarm::link {
+
+/// A square of the spatial grid that robot states are sorted into: [x, x+1) × [y, y+1) cell sizes.
+struct Cell {
+  std::int32_t x = 0;
+  std::int32_t y = 0;
+  auto operator<=>(const Cell&) const = default;
+};
+
+/// The cell a point lies in. Far or non-finite coordinates are clamped to ±10⁶ cells.
+Cell cell_of(const Vec2& point_m, double cell_size_m);
+
+/// All cells that the disc touches, in order.
+std::vector<Cell> cells_touching(const Vec2& center_m, double radius_m, double cell_size_m);
+
+}  // namespace swarm::link

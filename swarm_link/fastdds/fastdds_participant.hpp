@@ -1,0 +1,45 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "swarm_core/base/result.hpp"
+#include "swarm_link/port.hpp"
+
+/// The Fast DDS back. This header is vendor-free; the vendor's headers stay inside this folder.
+namespace swarm::link {
+
+/// Where a run's discovery server listens (loopback unless told otherwise).
+struct DiscoveryAddress {
+  std::string host = "127.0.0.1";
+  std::uint16_t port = 0;
+};
+
+struct FastDdsOptions {
+  std::string name;                     ///< participant name, seen in DDS tools
+  std::uint32_t domain = 0;
+  std::uint32_t index = 0;              ///< unique per domain; decides the first ports tried
+  DiscoveryAddress discovery;           ///< the server this participant is a client of
+  std::uint32_t ownership_strength = 0; ///< of exclusive writers: a stand-by planner has less
+  bool receive_at_tick = true;          ///< no receive thread on data ports; see Participant::receive
+  int receive_buffer_bytes = 4 << 20;
+};
+
+/// Hosts the discovery server of a run; lives in the launcher's process. Bound to loopback.
+class DiscoveryServer {
+ public:
+  virtual ~DiscoveryServer() = default;
+  virtual DiscoveryAddress address() const = 0;
+};
+
+/// Starts a server on a free port (`port` 0) or the given one.
+Result<std::unique_ptr<DiscoveryServer>> make_discovery_server(std::uint32_t domain,
+                                                               std::uint16_t port);
+
+/// Joins a run as a client of its discovery server; UDP on loopback only, no shared memory.
+Result<std::unique_ptr<Participant>> make_fastdds_participant(const FastDdsOptions& options);
+
+}  // namespace swarm::link

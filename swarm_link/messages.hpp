@@ -1,0 +1,132 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+/// What travels on the bus, as plain structs without any vendor's types: field for field the structs
+/// of idl/swarm.idl, which documents them. Numbers here may be anything a peer sent; they become
+/// domain objects only through swarm_link/validation.hpp.
+namespace swarm::link {
+
+inline constexpr std::uint16_t kSchemaVersion = 1;
+inline constexpr std::size_t kMaxCellStates = 256;
+
+/// Event::source of whoever is not a robot.
+inline constexpr std::uint32_t kPlannerSource = 0xFFFF'FFFF;
+inline constexpr std::uint32_t kLauncherSource = 0xFFFF'FFFE;
+
+enum class MissionPhase : std::uint8_t { kReady = 0, kRunning = 1, kPaused = 2, kStopped = 3 };
+
+enum class RobotMode : std::uint8_t {
+  kWaiting = 0,  ///< no plan yet, or the mission has not started: holds with avoidance on
+  kMoving = 1,
+  kHolding = 2,  ///< planner silent or mission paused: holds with avoidance on
+  kArrived = 3,
+  kStopped = 4,  ///< emergency stop, latched: zero velocity
+  kFaulty = 5,   ///< refuses to move (for example a second robot claims its id)
+};
+
+enum class CommandKind : std::uint8_t { kStart = 0, kPause = 1, kResume = 2, kStop = 3 };
+
+enum class Severity : std::uint8_t { kInfo = 0, kWarning = 1, kError = 2 };
+
+struct PlanNodeMessage {
+  double mean_x_m = 0, mean_y_m = 0;
+  double covariance_xx_m2 = 0, covariance_xy_m2 = 0, covariance_yy_m2 = 0;
+  double time_s = 0, mass = 0;
+  bool operator==(const PlanNodeMessage&) const = default;
+};
+
+struct PlanLegMessage {
+  std::uint32_t from_node = 0, to_node = 0;
+  double mass = 0;
+  bool operator==(const PlanLegMessage&) const = default;
+};
+
+struct PlanMessage {
+  std::uint16_t schema_version = kSchemaVersion;
+  std::uint32_t version = 0;
+  std::uint64_t epoch = 0;
+  std::int64_t t0_utc_ns = 0;
+  std::vector<PlanNodeMessage> nodes;
+  std::vector<PlanLegMessage> legs;
+  bool operator==(const PlanMessage&) const = default;
+};
+
+struct HeartbeatMessage {
+  std::uint16_t schema_version = kSchemaVersion;
+  MissionPhase phase = MissionPhase::kReady;
+  std::uint32_t version = 0;
+  std::uint64_t epoch = 0;
+  std::uint64_t sequence_number = 0;
+  std::int64_t stamp_utc_ns = 0;
+  double mission_time_s = 0;
+  bool operator==(const HeartbeatMessage&) const = default;
+};
+
+struct RobotStateMessage {
+  std::uint32_t robot_id = 0;
+  std::uint32_t sequence_number = 0;
+  std::int64_t stamp_utc_ns = 0;
+  double x_m = 0, y_m = 0, vx_mps = 0, vy_mps = 0;
+  RobotMode mode = RobotMode::kWaiting;
+  bool operator==(const RobotStateMessage&) const = default;
+};
+
+struct CellStatesMessage {
+  std::uint16_t schema_version = kSchemaVersion;
+  std::int32_t cell_x = 0, cell_y = 0;
+  std::vector<RobotStateMessage> states;
+  bool operator==(const CellStatesMessage&) const = default;
+};
+
+struct CommandMessage {
+  std::uint16_t schema_version = kSchemaVersion;
+  CommandKind kind = CommandKind::kStart;
+  std::uint64_t command_id = 0;
+  std::int64_t stamp_utc_ns = 0;
+  bool operator==(const CommandMessage&) const = default;
+};
+
+struct HistogramBinMessage {
+  std::uint16_t bin = 0;
+  std::uint32_t count = 0;
+  bool operator==(const HistogramBinMessage&) const = default;
+};
+
+struct StatusMessage {
+  std::uint32_t robot_id = 0;
+  std::uint16_t schema_version = kSchemaVersion;
+  RobotMode mode = RobotMode::kWaiting;
+  bool arrived = false;
+  bool settled = false;
+  std::uint32_t process_id = 0;
+  std::uint32_t plan_version = 0;
+  std::uint64_t plan_epoch = 0;
+  std::int64_t stamp_utc_ns = 0;
+  double x_m = 0, y_m = 0;
+  double remaining_m = 0;
+  double nearest_gap_m = 0;
+  std::uint32_t neighbours_heard = 0;
+  std::uint32_t ticks = 0, late_ticks = 0;
+  std::uint32_t states_sent = 0, states_received = 0;
+  std::vector<std::uint32_t> refused;          ///< by RefusalReason
+  std::vector<HistogramBinMessage> state_age;  ///< bins of a swarm::Histogram
+  bool operator==(const StatusMessage&) const = default;
+};
+
+struct EventMessage {
+  std::uint16_t schema_version = kSchemaVersion;
+  Severity severity = Severity::kInfo;
+  std::uint32_t source = 0;
+  std::int64_t stamp_utc_ns = 0;
+  std::string code;  ///< stable, machine-readable, kebab-case; at most 64 characters
+  std::string text;  ///< for people; at most 512 characters
+  bool operator==(const EventMessage&) const = default;
+};
+
+}  // namespace swarm::link

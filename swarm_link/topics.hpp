@@ -1,0 +1,67 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <string>
+
+#include "swarm_link/cell.hpp"
+#include "swarm_link/messages.hpp"
+
+/// Every topic of the system with its QoS. The vendors translate a Qos in one function each.
+namespace swarm::link {
+
+enum class Reliability { kBestEffort, kReliable };
+enum class Durability { kVolatile, kTransientLocal };
+enum class Ownership { kShared, kExclusive };
+
+struct Qos {
+  Reliability reliability = Reliability::kReliable;
+  Durability durability = Durability::kVolatile;
+  int depth = 1;  ///< keep-last, per instance
+  Ownership ownership = Ownership::kShared;
+  bool large = false;  ///< samples may exceed one datagram (64 KiB): fragmented, sent asynchronously
+  bool operator==(const Qos&) const = default;
+};
+
+/// A topic of message type M.
+template <class M>
+struct Topic {
+  std::string name;
+  Qos qos;
+};
+
+inline Topic<CommandMessage> command_topic() {
+  return {"swarm/command",
+          {.reliability = Reliability::kReliable,
+           .durability = Durability::kTransientLocal,
+           .depth = 32}};
+}
+
+inline Topic<PlanMessage> plan_topic() {
+  return {"swarm/plan",
+          {.reliability = Reliability::kReliable,
+           .durability = Durability::kTransientLocal,
+           .depth = 1,
+           .ownership = Ownership::kExclusive,
+           .large = true}};
+}
+
+inline Topic<HeartbeatMessage> heartbeat_topic() {
+  return {"swarm/heartbeat", {.reliability = Reliability::kBestEffort, .depth = 1}};
+}
+
+inline Topic<CellStatesMessage> cell_topic(Cell cell) {
+  return {"swarm/cell/" + std::to_string(cell.x) + "_" + std::to_string(cell.y),
+          {.reliability = Reliability::kBestEffort, .depth = 64}};
+}
+
+inline Topic<StatusMessage> status_topic() {
+  return {"swarm/status", {.reliability = Reliability::kReliable, .depth = 1}};
+}
+
+inline Topic<EventMessage> event_topic() {
+  return {"swarm/event", {.reliability = Reliability::kReliable, .depth = 64}};
+}
+
+}  // namespace swarm::link
