@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "swarm_core/mission/phase.hpp"
+
 /// What travels on the bus, as plain structs without any vendor's types: field for field the structs
 /// of idl/swarm.idl, which documents them. Numbers here may be anything a peer sent; they become
 /// domain objects only through swarm_link/validation.hpp.
@@ -19,18 +21,9 @@ inline constexpr std::size_t kMaxCellStates = 256;
 inline constexpr std::uint32_t kPlannerSource = 0xFFFF'FFFF;
 inline constexpr std::uint32_t kLauncherSource = 0xFFFF'FFFE;
 
-enum class MissionPhase : std::uint8_t { kReady = 0, kRunning = 1, kPaused = 2, kStopped = 3 };
-
-enum class RobotMode : std::uint8_t {
-  kWaiting = 0,  ///< no plan yet, or the mission has not started: holds with avoidance on
-  kMoving = 1,
-  kHolding = 2,  ///< planner silent or mission paused: holds with avoidance on
-  kArrived = 3,
-  kStopped = 4,  ///< emergency stop, latched: zero velocity
-  kFaulty = 5,   ///< refuses to move (for example a second robot claims its id)
-};
-
-enum class CommandKind : std::uint8_t { kStart = 0, kPause = 1, kResume = 2, kStop = 3 };
+using swarm::CommandKind;
+using swarm::MissionPhase;
+using swarm::RobotMode;
 
 enum class Severity : std::uint8_t { kInfo = 0, kWarning = 1, kError = 2 };
 
