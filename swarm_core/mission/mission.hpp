@@ -19,7 +19,7 @@ struct RobotsSpec {
   std::uint32_t count = 100;
   double radius_m = 0.2;
   double speed_max_mps = 1.5;
-  double placement_gap_m = 0.5;  ///< least surface gap between robots, and to obstacles, at the start
+  double placement_gap_m = 0.7;  ///< least surface gap between robots, and to obstacles, at the start
 };
 
 struct PlannerSpec {

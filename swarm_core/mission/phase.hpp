@@ -23,31 +23,44 @@ enum class RobotMode : std::uint8_t {
 
 constexpr std::string_view to_string(MissionPhase phase) {
   switch (phase) {
-    case MissionPhase::kReady: return "ready";
-    case MissionPhase::kRunning: return "running";
-    case MissionPhase::kPaused: return "paused";
-    case MissionPhase::kStopped: return "stopped";
+    case MissionPhase::kReady:
+      return "ready";
+    case MissionPhase::kRunning:
+      return "running";
+    case MissionPhase::kPaused:
+      return "paused";
+    case MissionPhase::kStopped:
+      return "stopped";
   }
   return "unknown";
 }
 
 constexpr std::string_view to_string(CommandKind kind) {
   switch (kind) {
-    case CommandKind::kStart: return "start";
-    case CommandKind::kPause: return "pause";
-    case CommandKind::kResume: return "resume";
-    case CommandKind::kStop: return "stop";
+    case CommandKind::kStart:
+      return "start";
+    case CommandKind::kPause:
+      return "pause";
+    case CommandKind::kResume:
+      return "resume";
+    case CommandKind::kStop:
+      return "stop";
   }
   return "unknown";
 }
 
 constexpr std::string_view to_string(RobotMode mode) {
   switch (mode) {
-    case RobotMode::kWaiting: return "waiting";
-    case RobotMode::kMoving: return "moving";
-    case RobotMode::kHolding: return "holding";
-    case RobotMode::kArrived: return "arrived";
-    case RobotMode::kStopped: return "stopped";
+    case RobotMode::kWaiting:
+      return "waiting";
+    case RobotMode::kMoving:
+      return "moving";
+    case RobotMode::kHolding:
+      return "holding";
+    case RobotMode::kArrived:
+      return "arrived";
+    case RobotMode::kStopped:
+      return "stopped";
   }
   return "unknown";
 }
@@ -63,7 +76,8 @@ constexpr MissionPhase phase_after(MissionPhase phase, CommandKind kind) {
       return phase == MissionPhase::kRunning ? MissionPhase::kPaused : phase;
     case CommandKind::kResume:
       return phase == MissionPhase::kPaused ? MissionPhase::kRunning : phase;
-    case CommandKind::kStop: break;
+    case CommandKind::kStop:
+      break;
   }
   return phase;
 }

@@ -1,0 +1,40 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "robot_agent/control/polyline.hpp"
+
+#include <algorithm>
+
+#include "swarm_core/base/assert.hpp"
+
+namespace swarm::agent {
+
+Polyline::Polyline(const std::vector<Vec2>& vertices_m) {
+  SWARM_ASSERT(!vertices_m.empty());
+  for (const Vec2& v : vertices_m) {
+    const double step = vertices_.empty() ? 0.0 : (v - vertices_.back()).norm();
+    if (!vertices_.empty() && step < 1e-6) continue;
+    arc_.push_back(vertices_.empty() ? 0.0 : arc_.back() + step);
+    vertices_.push_back(v);
+  }
+}
+
+std::size_t Polyline::segment_of(double s_m) const {
+  const auto after = std::upper_bound(arc_.begin() + 1, arc_.end() - 1, s_m);
+  return static_cast<std::size_t>(after - arc_.begin()) - 1;
+}
+
+Vec2 Polyline::at(double s_m) const {
+  if (vertices_.size() == 1) return vertices_.front();
+  const double s = std::clamp(s_m, 0.0, length_m());
+  const std::size_t i = segment_of(s);
+  const double t = (s - arc_[i]) / (arc_[i + 1] - arc_[i]);
+  return (1.0 - t) * vertices_[i] + t * vertices_[i + 1];
+}
+
+Vec2 Polyline::tangent_at(double s_m) const {
+  if (vertices_.size() == 1) return Vec2::Zero();
+  const std::size_t i = segment_of(std::clamp(s_m, 0.0, length_m()));
+  return (vertices_[i + 1] - vertices_[i]) / (arc_[i + 1] - arc_[i]);
+}
+
+}  // namespace swarm::agent

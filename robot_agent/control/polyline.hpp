@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "swarm_core/base/linalg.hpp"
+
+namespace swarm::agent {
+
+/// A path of straight segments, addressed by its arc length s ∈ [0, length] [m].
+class Polyline {
+ public:
+  Polyline() = default;
+  /// Repeated vertices are merged. \pre at least one vertex
+  explicit Polyline(const std::vector<Vec2>& vertices_m);
+
+  bool empty() const { return vertices_.empty(); }
+  double length_m() const { return arc_.empty() ? 0.0 : arc_.back(); }
+  const std::vector<Vec2>& vertices_m() const { return vertices_; }
+
+  Vec2 at(double s_m) const;
+  Vec2 tangent_at(double s_m) const;  ///< unit; zero for a path of one point
+
+ private:
+  std::size_t segment_of(double s_m) const;
+  std::vector<Vec2> vertices_;
+  std::vector<double> arc_;  // arc length at each vertex
+};
+
+}  // namespace swarm::agent

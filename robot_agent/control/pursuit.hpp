@@ -1,0 +1,47 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "robot_agent/control/polyline.hpp"
+#include "swarm_core/world/world.hpp"
+
+namespace swarm::agent {
+
+struct PursuitOptions {
+  double look_ahead_m = 12.0;
+  double radius_m = 0.2;
+  double passed_m = 0.7;  ///< a point of the way this near counts as passed
+};
+
+/// Follows a way at the robot's own pace: progress s moves on when the robot has passed the point
+/// at s, and the aim is the farthest of s + L, s + L/2, s + L/4 … that is in line of sight. If even
+/// s is hidden (the robot was pushed around a corner), the aim falls back along the way to the last
+/// point it sees.
+class Pursuit {
+ public:
+  Pursuit() = default;
+  Pursuit(Polyline path, const PursuitOptions& options);
+
+  struct Aim {
+    Vec2 point_m = Vec2::Zero();
+    double left_m = 0.0;  ///< of the way, from the aim's side of the robot to the end
+    bool visible = false;
+  };
+
+  /// Moves progress on and picks the aim. No allocation.
+  Aim update(const Vec2& position_m, const World& world);
+
+  double progress_m() const { return s_m_; }
+  double remaining_m() const { return path_.length_m() - s_m_; }
+  Vec2 end_m() const { return path_.at(path_.length_m()); }
+
+ private:
+  void advance(const Vec2& position_m);
+
+  Polyline path_;
+  PursuitOptions options_;
+  double s_m_ = 0.0;
+  double aim_s_m_ = 0.0;  // of the last visible aim
+};
+
+}  // namespace swarm::agent

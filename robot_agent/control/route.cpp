@@ -1,0 +1,147 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "robot_agent/control/route.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "swarm_core/base/assert.hpp"
+#include "swarm_core/gmm/wasserstein.hpp"
+
+namespace swarm::agent {
+namespace {
+
+/// Takes the entry whose stretch of the cumulated masses holds `share`, and rescales `share` to it.
+template <class MassOf>
+std::size_t draw(std::size_t count, MassOf mass_of, double& share) {
+  double total = 0.0;
+  for (std::size_t i = 0; i < count; ++i) total += mass_of(i);
+  double target = share * total;
+  std::size_t chosen = 0;
+  while (chosen + 1 < count && target >= mass_of(chosen)) target -= mass_of(chosen++);
+  share = std::clamp(target / mass_of(chosen), 0.0, std::nextafter(1.0, 0.0));
+  return chosen;
+}
+
+Vec2 clamp_offset(const Gaussian& g, const Vec2& offset, double offset_max) {
+  const double d = std::sqrt(g.mahalanobis_squared(g.mean_m() + offset));
+  return d > offset_max ? Vec2(offset * (offset_max / d)) : offset;
+}
+
+/// A Gaussian on the way with the robot's offset in it.
+struct Station {
+  Gaussian gaussian;
+  Vec2 offset_m;
+};
+
+/// Follows the flow from a node to a sink, drawing a leg at every split.
+std::uint32_t follow(const FlowPlan& plan, std::uint32_t node, double share,
+                     std::vector<Station>& stations) {
+  for (;;) {
+    const auto out = plan.legs_out(node);
+    if (out.empty()) return node;
+    const std::size_t pick = draw(
+        out.size(), [&](std::size_t i) { return plan.legs()[out[i]].mass; }, share);
+    const std::uint32_t next = plan.legs()[out[pick]].to;
+    const Gaussian& to = plan.nodes()[next].gaussian;
+    const Station& last = stations.back();
+    stations.push_back({to, transport_map(last.gaussian, to) * last.offset_m});
+    node = next;
+  }
+}
+
+/// How far each station's offset may stay: 1 as planned, 0 on the mean.
+std::vector<Vec2> free_vertices(const std::vector<Station>& stations, const World& world,
+                                const RouteOptions& options) {
+  const Box inside{world.bounds_m().min_m.array() + options.radius_m,
+                   world.bounds_m().max_m.array() - options.radius_m};
+  const auto vertex = [&](std::size_t i, double scale) -> Vec2 {
+    const Vec2 p = stations[i].gaussian.mean_m() + scale * stations[i].offset_m;
+    return p.cwiseMax(inside.min_m).cwiseMin(inside.max_m);
+  };
+  std::vector<double> scale(stations.size(), 1.0);
+  for (std::size_t i = 0; i < stations.size(); ++i) {
+    const double clearance = options.radius_m + options.vertex_clearance_m;
+    if (world.distance_m(vertex(i, 1.0)) >= clearance) continue;
+    double low = 0.0;
+    double high = 1.0;
+    for (int step = 0; step < 5; ++step) {
+      const double mid = 0.5 * (low + high);
+      (world.distance_m(vertex(i, mid)) >= clearance ? low : high) = mid;
+    }
+    scale[i] = low;
+  }
+  const double clearance = options.radius_m + options.leg_clearance_m;
+  for (int pass = 0; pass < 8; ++pass) {
+    bool all_free = true;
+    for (std::size_t i = 0; i + 1 < stations.size(); ++i) {
+      if (world.segment_is_free(vertex(i, scale[i]), vertex(i + 1, scale[i + 1]), clearance))
+        continue;
+      all_free = false;
+      const double shrink = pass < 6 ? 0.6 : 0.0;
+      scale[i] *= shrink;
+      scale[i + 1] *= shrink;
+    }
+    if (all_free) break;
+  }
+  std::vector<Vec2> vertices;
+  vertices.reserve(stations.size());
+  for (std::size_t i = 0; i < stations.size(); ++i) vertices.push_back(vertex(i, scale[i]));
+  return vertices;
+}
+
+Route finish(const FlowPlan& plan, std::uint32_t node, double share, std::vector<Station> stations,
+             const World& world, const RouteOptions& options) {
+  const std::uint32_t last = follow(plan, node, share, stations);
+  const auto sink = std::find(plan.sinks().begin(), plan.sinks().end(), last);
+  SWARM_ASSERT(sink != plan.sinks().end());
+  return {.path = Polyline(free_vertices(stations, world, options)),
+          .sink = static_cast<std::uint32_t>(sink - plan.sinks().begin()),
+          .goal = plan.nodes()[last].gaussian};
+}
+
+}  // namespace
+
+Route route_from_start(const FlowPlan& plan, double share, const Vec2& position_m,
+                       const World& world, const RouteOptions& options) {
+  const auto& sources = plan.sources();
+  const std::size_t pick = draw(
+      sources.size(), [&](std::size_t i) { return plan.nodes()[sources[i]].mass; }, share);
+  const Gaussian& g = plan.nodes()[sources[pick]].gaussian;
+  const Vec2 offset = clamp_offset(g, position_m - g.mean_m(), options.offset_max);
+  return finish(plan, sources[pick], share, {{g, offset}}, world, options);
+}
+
+Route route_from_here(const FlowPlan& plan, double share, const Vec2& position_m,
+                      const World& world, const RouteOptions& options) {
+  constexpr int kPointsPerLeg = 16;
+  double best = std::numeric_limits<double>::infinity();
+  bool best_visible = false;
+  std::uint32_t best_leg = 0;
+  Gaussian here;
+  for (std::uint32_t l = 0; l < plan.legs().size(); ++l) {
+    const PlanLeg& leg = plan.legs()[l];
+    const Geodesic geodesic(plan.nodes()[leg.from].gaussian, plan.nodes()[leg.to].gaussian);
+    for (int i = 0; i <= kPointsPerLeg; ++i) {
+      const Gaussian g = geodesic.at(static_cast<double>(i) / kPointsPerLeg);
+      const double d = g.mahalanobis_squared(position_m);
+      if (best_visible && d >= best) continue;
+      const bool visible = world.segment_is_free(position_m, g.mean_m(), options.radius_m);
+      if ((visible && !best_visible) || (visible == best_visible && d < best)) {
+        best = d;
+        best_visible = visible;
+        best_leg = l;
+        here = g;
+      }
+    }
+  }
+  const std::uint32_t next = plan.legs()[best_leg].to;
+  const Gaussian& to = plan.nodes()[next].gaussian;
+  const Vec2 offset = clamp_offset(here, position_m - here.mean_m(), options.offset_max);
+  return finish(plan, next, share, {{here, offset}, {to, transport_map(here, to) * offset}}, world,
+                options);
+}
+
+}  // namespace swarm::agent

@@ -1,0 +1,29 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "swarm_core/base/linalg.hpp"
+#include "swarm_core/base/time.hpp"
+
+namespace swarm::agent {
+
+struct Measurement {
+  Vec2 position_m = Vec2::Zero();
+  /// When the robot came to rest because its last command ran out, if it did: a late control loop.
+  bool command_expired = false;
+  SteadyTime expired_at;
+};
+
+/// A robot's body: what a simulated robot and a real one's driver have in common.
+///
+/// Contract: a command is a velocity in the world frame, valid for a limited time; a body whose
+/// command ran out stops by itself (the watchdog every mobile base has). The safety layer's promise
+/// rests on it. Calls come from one thread and must not block.
+class Driver {
+ public:
+  virtual ~Driver() = default;
+  virtual Measurement measure(SteadyTime now) = 0;
+  virtual void command(SteadyTime now, const Vec2& velocity_mps, Duration valid_for) = 0;
+};
+
+}  // namespace swarm::agent

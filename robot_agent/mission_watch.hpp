@@ -1,0 +1,42 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+#include "swarm_core/base/time.hpp"
+#include "swarm_core/mission/phase.hpp"
+
+namespace swarm::agent {
+
+/// What a process knows of the mission: its phase, moved by commands, and whether the planner
+/// lives.
+///
+///   ready ──start──▶ running ◀──resume/pause──▶ paused        any ──stop──▶ stopped (for good)
+///
+/// Commands carry growing ids; one that was seen, or is older than one obeyed, changes nothing,
+/// except that a stop is always obeyed.
+class MissionWatch {
+ public:
+  explicit MissionWatch(Duration planner_silence) : planner_silence_(planner_silence) {}
+
+  enum class Outcome { kObeyed, kDuplicate, kStale };
+  Outcome on_command(CommandKind kind, std::uint64_t command_id);
+
+  void on_heartbeat(SteadyTime now) {
+    heard_ = true;
+    heard_at_ = now;
+  }
+
+  MissionPhase phase() const { return phase_; }
+  bool planner_alive(SteadyTime now) const { return heard_ && now - heard_at_ <= planner_silence_; }
+
+ private:
+  Duration planner_silence_;
+  MissionPhase phase_ = MissionPhase::kReady;
+  std::uint64_t last_command_ = 0;
+  bool heard_ = false;
+  SteadyTime heard_at_;
+};
+
+}  // namespace swarm::agent

@@ -1,0 +1,62 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "swarm_core/base/ids.hpp"
+#include "swarm_core/base/linalg.hpp"
+#include "swarm_core/base/time.hpp"
+
+namespace swarm::agent {
+
+/// What another robot said of itself, already checked at the edge.
+struct NeighbourReport {
+  RobotId robot;
+  std::uint32_t sequence = 0;
+  SteadyTime as_of;  ///< when it was true, on our steady clock
+  Vec2 position_m = Vec2::Zero();
+  Vec2 velocity_mps = Vec2::Zero();
+};
+
+/// What we believe of a neighbour now.
+struct Neighbour {
+  RobotId robot;
+  Vec2 position_m = Vec2::Zero();  ///< dead-reckoned
+  Vec2 velocity_mps = Vec2::Zero();
+  double radius_m = 0.0;  ///< its radius, grown while it is silent for longer than it should be
+};
+
+struct NeighbourOptions {
+  double radius_m = 0.2;
+  double speed_max_mps = 1.5;
+  double keep_radius_m = 6.0;   ///< robots farther than this are not kept
+  Duration expected_silence{};  ///< a healthy robot speaks at least this often
+  Duration forget_after{};
+};
+
+/// The robots near us, as far as the bus tells. Between two words of a robot its position is
+/// extrapolated; from `expected_silence` on its radius grows by v_max for every second more, and
+/// after `forget_after` it is forgotten. Sorted by id; no allocation once warm.
+class NeighbourTable {
+ public:
+  explicit NeighbourTable(const NeighbourOptions& options);
+
+  enum class Outcome { kTaken, kDuplicate, kStale, kFar };
+
+  /// Takes a report. Older or repeated sequence numbers are refused; a robot that was silent for
+  /// `forget_after` may start over (it was restarted).
+  Outcome take(const NeighbourReport& report, const Vec2& own_position_m);
+
+  /// Neighbours as of `now`; valid until the next call.
+  std::span<const Neighbour> at(SteadyTime now, const Vec2& own_position_m);
+
+ private:
+  NeighbourOptions options_;
+  std::vector<NeighbourReport> reports_;  // sorted by robot
+  std::vector<Neighbour> neighbours_;
+};
+
+}  // namespace swarm::agent

@@ -1,0 +1,45 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "swarm_core/base/linalg.hpp"
+#include "swarm_core/base/time.hpp"
+
+namespace swarm::agent {
+
+struct SayOptions {
+  double error_m = 0.05;    ///< speak when others' extrapolation of us is off by more
+  Duration interval_max{};  ///< or when we have been silent this long
+  double near_m = 1.5;      ///< or at every tick while a neighbour's surface is nearer than this
+};
+
+/// When a robot speaks (dead reckoning): others extrapolate its last state linearly, it does the
+/// same and speaks before the difference matters.
+class SayPolicy {
+ public:
+  explicit SayPolicy(const SayOptions& options) : options_(options) {}
+
+  bool must_say(SteadyTime now, const Vec2& position_m, double nearest_gap_m) const {
+    if (!said_) return true;
+    if (now - at_ >= options_.interval_max) return true;
+    if (nearest_gap_m < options_.near_m) return true;
+    const Vec2 believed = position_m_ + to_seconds(now - at_) * velocity_mps_;
+    return (believed - position_m).norm() > options_.error_m;
+  }
+
+  void said(SteadyTime now, const Vec2& position_m, const Vec2& velocity_mps) {
+    said_ = true;
+    at_ = now;
+    position_m_ = position_m;
+    velocity_mps_ = velocity_mps;
+  }
+
+ private:
+  SayOptions options_;
+  bool said_ = false;
+  SteadyTime at_;
+  Vec2 position_m_ = Vec2::Zero();
+  Vec2 velocity_mps_ = Vec2::Zero();
+};
+
+}  // namespace swarm::agent
