@@ -19,13 +19,14 @@ struct DiscoveryAddress {
 };
 
 struct FastDdsOptions {
-  std::string name;                     ///< participant name, seen in DDS tools
+  std::string name;  ///< participant name, seen in DDS tools
   std::uint32_t domain = 0;
-  std::uint32_t index = 0;              ///< unique per domain; decides the first ports tried
-  DiscoveryAddress discovery;           ///< the server this participant is a client of
-  std::uint32_t ownership_strength = 0; ///< of exclusive writers: a stand-by planner has less
-  bool receive_at_tick = true;          ///< no receive thread on data ports; see Participant::receive
+  std::uint32_t index = 0;               ///< unique per domain; decides the first ports tried
+  DiscoveryAddress discovery;            ///< the server this participant is a client of
+  std::uint32_t ownership_strength = 0;  ///< of exclusive writers: a stand-by planner has less
+  bool receive_at_tick = true;  ///< no receive thread on data ports; see Participant::receive
   int receive_buffer_bytes = 4 << 20;
+  std::uint32_t port_tries = 4000;  ///< occupied ports skipped before giving up (self_check tells)
 };
 
 /// Hosts the discovery server of a run; lives in the launcher's process. Bound to loopback.

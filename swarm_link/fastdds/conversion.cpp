@@ -1,0 +1,211 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "swarm_link/fastdds/conversion.hpp"
+
+namespace swarm::link::fastdds {
+
+bool to_wire(const PlanMessage& in, wire::FlowPlan& out) {
+  if (in.nodes.size() > wire::MAX_PLAN_NODES || in.legs.size() > wire::MAX_PLAN_LEGS) return false;
+  out.schema_version(in.schema_version);
+  out.version(in.version);
+  out.epoch(in.epoch);
+  out.t0_utc_ns(in.t0_utc_ns);
+  out.nodes().resize(in.nodes.size());
+  for (std::size_t i = 0; i < in.nodes.size(); ++i) {
+    const auto& node = in.nodes[i];
+    auto& wire_node = out.nodes()[i];
+    wire_node.mean_x_m(node.mean_x_m);
+    wire_node.mean_y_m(node.mean_y_m);
+    wire_node.covariance_xx_m2(node.covariance_xx_m2);
+    wire_node.covariance_xy_m2(node.covariance_xy_m2);
+    wire_node.covariance_yy_m2(node.covariance_yy_m2);
+    wire_node.time_s(node.time_s);
+    wire_node.mass(node.mass);
+  }
+  out.legs().resize(in.legs.size());
+  for (std::size_t i = 0; i < in.legs.size(); ++i) {
+    out.legs()[i].from_node(in.legs[i].from_node);
+    out.legs()[i].to_node(in.legs[i].to_node);
+    out.legs()[i].mass(in.legs[i].mass);
+  }
+  return true;
+}
+
+void from_wire(const wire::FlowPlan& in, PlanMessage& out) {
+  out.schema_version = in.schema_version();
+  out.version = in.version();
+  out.epoch = in.epoch();
+  out.t0_utc_ns = in.t0_utc_ns();
+  out.nodes.clear();
+  out.nodes.reserve(in.nodes().size());
+  for (const auto& node : in.nodes()) {
+    out.nodes.push_back({.mean_x_m = node.mean_x_m(),
+                         .mean_y_m = node.mean_y_m(),
+                         .covariance_xx_m2 = node.covariance_xx_m2(),
+                         .covariance_xy_m2 = node.covariance_xy_m2(),
+                         .covariance_yy_m2 = node.covariance_yy_m2(),
+                         .time_s = node.time_s(),
+                         .mass = node.mass()});
+  }
+  out.legs.clear();
+  out.legs.reserve(in.legs().size());
+  for (const auto& leg : in.legs()) {
+    out.legs.push_back(
+        {.from_node = leg.from_node(), .to_node = leg.to_node(), .mass = leg.mass()});
+  }
+}
+
+bool to_wire(const HeartbeatMessage& in, wire::Heartbeat& out) {
+  out.schema_version(in.schema_version);
+  out.phase(static_cast<std::uint8_t>(in.phase));
+  out.version(in.version);
+  out.epoch(in.epoch);
+  out.sequence_number(in.sequence_number);
+  out.stamp_utc_ns(in.stamp_utc_ns);
+  out.mission_time_s(in.mission_time_s);
+  return true;
+}
+
+void from_wire(const wire::Heartbeat& in, HeartbeatMessage& out) {
+  out.schema_version = in.schema_version();
+  out.phase = static_cast<MissionPhase>(in.phase());
+  out.version = in.version();
+  out.epoch = in.epoch();
+  out.sequence_number = in.sequence_number();
+  out.stamp_utc_ns = in.stamp_utc_ns();
+  out.mission_time_s = in.mission_time_s();
+}
+
+bool to_wire(const CellStatesMessage& in, wire::CellStates& out) {
+  if (in.states.size() > wire::MAX_CELL_STATES) return false;
+  out.schema_version(in.schema_version);
+  out.cell_x(in.cell_x);
+  out.cell_y(in.cell_y);
+  out.states().resize(in.states.size());
+  for (std::size_t i = 0; i < in.states.size(); ++i) {
+    const auto& state = in.states[i];
+    auto& wire_state = out.states()[i];
+    wire_state.robot_id(state.robot_id);
+    wire_state.sequence_number(state.sequence_number);
+    wire_state.stamp_utc_ns(state.stamp_utc_ns);
+    wire_state.x_m(state.x_m);
+    wire_state.y_m(state.y_m);
+    wire_state.vx_mps(state.vx_mps);
+    wire_state.vy_mps(state.vy_mps);
+    wire_state.mode(static_cast<std::uint8_t>(state.mode));
+  }
+  return true;
+}
+
+void from_wire(const wire::CellStates& in, CellStatesMessage& out) {
+  out.schema_version = in.schema_version();
+  out.cell_x = in.cell_x();
+  out.cell_y = in.cell_y();
+  out.states.clear();
+  out.states.reserve(in.states().size());
+  for (const auto& state : in.states()) {
+    out.states.push_back({.robot_id = state.robot_id(),
+                          .sequence_number = state.sequence_number(),
+                          .stamp_utc_ns = state.stamp_utc_ns(),
+                          .x_m = state.x_m(),
+                          .y_m = state.y_m(),
+                          .vx_mps = state.vx_mps(),
+                          .vy_mps = state.vy_mps(),
+                          .mode = static_cast<RobotMode>(state.mode())});
+  }
+}
+
+bool to_wire(const CommandMessage& in, wire::Command& out) {
+  out.schema_version(in.schema_version);
+  out.kind(static_cast<std::uint8_t>(in.kind));
+  out.command_id(in.command_id);
+  out.stamp_utc_ns(in.stamp_utc_ns);
+  return true;
+}
+
+void from_wire(const wire::Command& in, CommandMessage& out) {
+  out.schema_version = in.schema_version();
+  out.kind = static_cast<CommandKind>(in.kind());
+  out.command_id = in.command_id();
+  out.stamp_utc_ns = in.stamp_utc_ns();
+}
+
+bool to_wire(const StatusMessage& in, wire::Status& out) {
+  if (in.refused.size() > wire::MAX_REFUSAL_REASONS ||
+      in.state_age.size() > wire::MAX_HISTOGRAM_BINS) {
+    return false;
+  }
+  out.robot_id(in.robot_id);
+  out.schema_version(in.schema_version);
+  out.mode(static_cast<std::uint8_t>(in.mode));
+  out.arrived(in.arrived);
+  out.settled(in.settled);
+  out.process_id(in.process_id);
+  out.plan_version(in.plan_version);
+  out.plan_epoch(in.plan_epoch);
+  out.stamp_utc_ns(in.stamp_utc_ns);
+  out.x_m(in.x_m);
+  out.y_m(in.y_m);
+  out.remaining_m(in.remaining_m);
+  out.nearest_gap_m(in.nearest_gap_m);
+  out.neighbours_heard(in.neighbours_heard);
+  out.ticks(in.ticks);
+  out.late_ticks(in.late_ticks);
+  out.states_sent(in.states_sent);
+  out.states_received(in.states_received);
+  out.refused(in.refused);
+  out.state_age().resize(in.state_age.size());
+  for (std::size_t i = 0; i < in.state_age.size(); ++i) {
+    out.state_age()[i].bin(in.state_age[i].bin);
+    out.state_age()[i].count(in.state_age[i].count);
+  }
+  return true;
+}
+
+void from_wire(const wire::Status& in, StatusMessage& out) {
+  out.robot_id = in.robot_id();
+  out.schema_version = in.schema_version();
+  out.mode = static_cast<RobotMode>(in.mode());
+  out.arrived = in.arrived();
+  out.settled = in.settled();
+  out.process_id = in.process_id();
+  out.plan_version = in.plan_version();
+  out.plan_epoch = in.plan_epoch();
+  out.stamp_utc_ns = in.stamp_utc_ns();
+  out.x_m = in.x_m();
+  out.y_m = in.y_m();
+  out.remaining_m = in.remaining_m();
+  out.nearest_gap_m = in.nearest_gap_m();
+  out.neighbours_heard = in.neighbours_heard();
+  out.ticks = in.ticks();
+  out.late_ticks = in.late_ticks();
+  out.states_sent = in.states_sent();
+  out.states_received = in.states_received();
+  out.refused = in.refused();
+  out.state_age.clear();
+  out.state_age.reserve(in.state_age().size());
+  for (const auto& bin : in.state_age()) {
+    out.state_age.push_back({.bin = bin.bin(), .count = bin.count()});
+  }
+}
+
+bool to_wire(const EventMessage& in, wire::Event& out) {
+  out.schema_version(in.schema_version);
+  out.severity(static_cast<std::uint8_t>(in.severity));
+  out.source(in.source);
+  out.stamp_utc_ns(in.stamp_utc_ns);
+  out.code() = in.code;
+  out.text() = in.text;
+  return true;
+}
+
+void from_wire(const wire::Event& in, EventMessage& out) {
+  out.schema_version = in.schema_version();
+  out.severity = static_cast<Severity>(in.severity());
+  out.source = in.source();
+  out.stamp_utc_ns = in.stamp_utc_ns();
+  out.code = in.code().to_string();
+  out.text = in.text().to_string();
+}
+
+}  // namespace swarm::link::fastdds

@@ -1,0 +1,204 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "swarm_link/fastdds/fastdds_participant.hpp"
+
+#include <exception>
+#include <utility>
+
+#include <fastdds/dds/domain/DomainParticipantFactory.hpp>
+#include <fmt/format.h>
+
+#include "swarm_link/fastdds/endpoints.hpp"
+#include "swarm_link/fastdds/entity_qos.hpp"
+#include "swarm_link/fastdds/participant_qos.hpp"
+
+namespace swarm::link {
+
+namespace fastdds {
+
+namespace dds = eprosima::fastdds::dds;
+
+namespace {
+
+class FastDdsParticipant final : public Participant {
+ public:
+  FastDdsParticipant(FastDdsOptions options, Ports ports, std::shared_ptr<ReceiveSockets> sockets,
+                     dds::DomainParticipant* participant)
+      : options_(std::move(options)),
+        ports_(ports),
+        sockets_(std::move(sockets)),
+        participant_(participant),
+        publisher_(participant->create_publisher(dds::PUBLISHER_QOS_DEFAULT)),
+        subscriber_(participant->create_subscriber(dds::SUBSCRIBER_QOS_DEFAULT)),
+        topics_(*participant) {
+    register_type<PlanMessage>();
+    register_type<HeartbeatMessage>();
+    register_type<CellStatesMessage>();
+    register_type<CommandMessage>();
+    register_type<StatusMessage>();
+    register_type<EventMessage>();
+  }
+
+  ~FastDdsParticipant() override {
+    participant_->delete_contained_entities();
+    dds::DomainParticipantFactory::get_instance()->delete_participant(participant_);
+  }
+
+  bool usable() const { return publisher_ != nullptr && subscriber_ != nullptr; }
+
+  Result<WriterPtr<PlanMessage>> make_writer(const Topic<PlanMessage>& t) override {
+    return writer(t);
+  }
+  Result<WriterPtr<HeartbeatMessage>> make_writer(const Topic<HeartbeatMessage>& t) override {
+    return writer(t);
+  }
+  Result<WriterPtr<CellStatesMessage>> make_writer(const Topic<CellStatesMessage>& t) override {
+    return writer(t);
+  }
+  Result<WriterPtr<CommandMessage>> make_writer(const Topic<CommandMessage>& t) override {
+    return writer(t);
+  }
+  Result<WriterPtr<StatusMessage>> make_writer(const Topic<StatusMessage>& t) override {
+    return writer(t);
+  }
+  Result<WriterPtr<EventMessage>> make_writer(const Topic<EventMessage>& t) override {
+    return writer(t);
+  }
+  Result<ReaderPtr<PlanMessage>> make_reader(const Topic<PlanMessage>& t) override {
+    return reader(t);
+  }
+  Result<ReaderPtr<HeartbeatMessage>> make_reader(const Topic<HeartbeatMessage>& t) override {
+    return reader(t);
+  }
+  Result<ReaderPtr<CellStatesMessage>> make_reader(const Topic<CellStatesMessage>& t) override {
+    return reader(t);
+  }
+  Result<ReaderPtr<CommandMessage>> make_reader(const Topic<CommandMessage>& t) override {
+    return reader(t);
+  }
+  Result<ReaderPtr<StatusMessage>> make_reader(const Topic<StatusMessage>& t) override {
+    return reader(t);
+  }
+  Result<ReaderPtr<EventMessage>> make_reader(const Topic<EventMessage>& t) override {
+    return reader(t);
+  }
+
+  void receive() override {
+    if (options_.receive_at_tick) sockets_->drain();
+  }
+
+  Result<void> self_check() const override {
+    if (!sockets_->hears_data() || !sockets_->hears_metatraffic()) {
+      return fail(ErrorCode::kEnvironment,
+                  fmt::format("participant '{}' is deaf: none of {} UDP ports from 127.0.0.1:{} on "
+                              "(domain {}, index {}) was free for its {}; end old processes or use "
+                              "another domain",
+                              options_.name, options_.port_tries + 1,
+                              sockets_->hears_metatraffic() ? ports_.data : ports_.metatraffic,
+                              options_.domain, options_.index,
+                              sockets_->hears_metatraffic() ? "data" : "discovery"));
+    }
+    const int granted = granted_receive_buffer_bytes(options_.receive_buffer_bytes);
+    if (granted < options_.receive_buffer_bytes / 2) {
+      return fail(ErrorCode::kEnvironment,
+                  fmt::format("participant '{}' asked for receive buffers of {} bytes and got {}: "
+                              "run 'sysctl -w net.core.rmem_max={}' as root",
+                              options_.name, options_.receive_buffer_bytes, granted,
+                              options_.receive_buffer_bytes));
+    }
+    return {};
+  }
+
+ private:
+  template <class M>
+  void register_type() {
+    participant_->register_type(dds::TypeSupport(new GuardedType<M>()));
+  }
+
+  template <class M>
+  static std::string type_name() {
+    return GuardedType<M>().getName();
+  }
+
+  template <class M>
+  Result<WriterPtr<M>> writer(const Topic<M>& topic) {
+    try {
+      const auto vendor_topic = topics_.acquire(topic.name, type_name<M>());
+      if (!vendor_topic) return tl::unexpected(vendor_topic.error());
+      const auto qos = writer_qos(topic.qos, options_.ownership_strength);
+      auto* made =
+          publisher_->create_datawriter(*vendor_topic, qos, nullptr, dds::StatusMask::none());
+      if (made == nullptr) return refused_endpoint("writer", topic.name);
+      return WriterPtr<M>(new FastDdsWriter<M>(*publisher_, made, topics_, topic.name));
+    } catch (const std::exception& e) {
+      return fail(ErrorCode::kEnvironment, fmt::format("writer of '{}': {}", topic.name, e.what()));
+    }
+  }
+
+  template <class M>
+  Result<ReaderPtr<M>> reader(const Topic<M>& topic) {
+    try {
+      const auto vendor_topic = topics_.acquire(topic.name, type_name<M>());
+      if (!vendor_topic) return tl::unexpected(vendor_topic.error());
+      auto* made = subscriber_->create_datareader(*vendor_topic, reader_qos(topic.qos), nullptr,
+                                                  dds::StatusMask::none());
+      if (made == nullptr) return refused_endpoint("reader", topic.name);
+      return ReaderPtr<M>(new FastDdsReader<M>(*subscriber_, made, topics_, topic.name));
+    } catch (const std::exception& e) {
+      return fail(ErrorCode::kEnvironment, fmt::format("reader of '{}': {}", topic.name, e.what()));
+    }
+  }
+
+  tl::unexpected<Error> refused_endpoint(const char* kind, const std::string& topic) {
+    topics_.release(topic);
+    return fail(ErrorCode::kEnvironment, fmt::format("DDS refused a {} of '{}'", kind, topic));
+  }
+
+  FastDdsOptions options_;
+  Ports ports_;
+  std::shared_ptr<ReceiveSockets> sockets_;
+  dds::DomainParticipant* participant_;
+  dds::Publisher* publisher_;
+  dds::Subscriber* subscriber_;
+  TopicRegistry topics_;
+};
+
+}  // namespace
+}  // namespace fastdds
+
+Result<std::unique_ptr<Participant>> make_fastdds_participant(const FastDdsOptions& options) {
+  using namespace fastdds;
+  const auto ports = first_ports(options.domain, options.index);
+  if (!ports) return tl::unexpected(ports.error());
+  if (options.discovery.host != "127.0.0.1" || options.discovery.port == 0) {
+    return fail(ErrorCode::kBadInput,
+                fmt::format("discovery server '{}:{}' is not a port on 127.0.0.1",
+                            options.discovery.host, options.discovery.port));
+  }
+  try {
+    set_up_library();
+    auto sockets = std::make_shared<ReceiveSockets>(ports->data, options.receive_at_tick,
+                                                    options.receive_buffer_bytes);
+    auto* participant = dds::DomainParticipantFactory::get_instance()->create_participant(
+        options.domain, client_qos(options, *ports, sockets), nullptr, dds::StatusMask::none());
+    if (participant == nullptr) {
+      return fail(
+          ErrorCode::kEnvironment,
+          fmt::format("DDS refused participant '{}' in domain {}: see its message on stderr",
+                      options.name, options.domain));
+    }
+    auto made =
+        std::make_unique<FastDdsParticipant>(options, *ports, std::move(sockets), participant);
+    if (!made->usable()) {
+      return fail(
+          ErrorCode::kEnvironment,
+          fmt::format("DDS gave participant '{}' no publisher or subscriber", options.name));
+    }
+    return made;
+  } catch (const std::exception& e) {
+    return fail(ErrorCode::kEnvironment,
+                fmt::format("DDS participant '{}': {}", options.name, e.what()));
+  }
+}
+
+}  // namespace swarm::link

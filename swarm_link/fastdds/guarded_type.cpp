@@ -1,0 +1,108 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "swarm_link/fastdds/guarded_type.hpp"
+
+#include <fastcdr/Cdr.h>
+#include <fastcdr/FastBuffer.h>
+
+namespace swarm::link::fastdds {
+
+using eprosima::fastcdr::Cdr;
+using eprosima::fastcdr::FastBuffer;
+using Payload = eprosima::fastrtps::rtps::SerializedPayload_t;
+
+namespace {
+
+// Bytes an element takes at least, from the IDL.
+constexpr std::size_t kPlanNodeBytes = 56;
+constexpr std::size_t kPlanLegBytes = 16;
+constexpr std::size_t kRobotStateBytes = 49;
+constexpr std::size_t kHistogramBinBytes = 6;
+
+class Walker {
+ public:
+  explicit Walker(const Payload& payload)
+      : buffer_(reinterpret_cast<char*>(payload.data), payload.length),
+        cdr_(buffer_, Cdr::DEFAULT_ENDIAN, Cdr::DDS_CDR),
+        size_(payload.length) {
+    cdr_.read_encapsulation();
+  }
+
+  template <class... Fields>
+  void skip() {
+    (skip_one<Fields>(), ...);
+  }
+
+  template <class Field>
+  void skip_times(std::uint32_t times) {
+    for (std::uint32_t i = 0; i < times; ++i) skip_one<Field>();
+  }
+
+  std::uint32_t length() {
+    std::uint32_t n = 0;
+    cdr_ >> n;
+    return n;
+  }
+
+  bool fits(std::uint32_t elements, std::size_t bytes_each) const {
+    return elements <= (size_ - cdr_.getSerializedDataLength()) / bytes_each;
+  }
+
+ private:
+  template <class Field>
+  void skip_one() {
+    Field field{};
+    cdr_ >> field;
+  }
+
+  FastBuffer buffer_;
+  Cdr cdr_;
+  std::size_t size_;
+};
+
+}  // namespace
+
+template <>
+bool lengths_fit<wire::FlowPlan>(const Payload& payload) {
+  Walker walker(payload);
+  walker.skip<std::uint16_t, std::uint32_t, std::uint64_t, std::int64_t>();
+  const auto nodes = walker.length();
+  if (!walker.fits(nodes, kPlanNodeBytes)) return false;
+  walker.skip_times<double>(nodes * static_cast<std::uint32_t>(kPlanNodeBytes / sizeof(double)));
+  return walker.fits(walker.length(), kPlanLegBytes);
+}
+
+template <>
+bool lengths_fit<wire::CellStates>(const Payload& payload) {
+  Walker walker(payload);
+  walker.skip<std::uint16_t, std::int32_t, std::int32_t>();
+  return walker.fits(walker.length(), kRobotStateBytes);
+}
+
+template <>
+bool lengths_fit<wire::Status>(const Payload& payload) {
+  Walker walker(payload);
+  walker.skip<std::uint32_t, std::uint16_t, std::uint8_t, bool, bool, std::uint32_t, std::uint32_t,
+              std::uint64_t, std::int64_t, double, double, double, double>();
+  walker.skip_times<std::uint32_t>(5);
+  const auto refused = walker.length();
+  if (!walker.fits(refused, sizeof(std::uint32_t))) return false;
+  walker.skip_times<std::uint32_t>(refused);
+  return walker.fits(walker.length(), kHistogramBinBytes);
+}
+
+// Without sequences; strings are checked by the decoder itself.
+template <>
+bool lengths_fit<wire::Heartbeat>(const Payload&) {
+  return true;
+}
+template <>
+bool lengths_fit<wire::Command>(const Payload&) {
+  return true;
+}
+template <>
+bool lengths_fit<wire::Event>(const Payload&) {
+  return true;
+}
+
+}  // namespace swarm::link::fastdds

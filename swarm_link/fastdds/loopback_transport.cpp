@@ -1,0 +1,221 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "swarm_link/fastdds/loopback_transport.hpp"
+
+#include <algorithm>
+#include <array>
+#include <exception>
+
+#include <arpa/inet.h>
+#include <fastrtps/utils/IPLocator.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+namespace swarm::link::fastdds {
+
+namespace rtps = eprosima::fastdds::rtps;
+using eprosima::fastrtps::rtps::IPLocator;
+using eprosima::fastrtps::rtps::octet;
+
+namespace {
+
+constexpr std::size_t kDatagramBytes = 65'536;
+constexpr std::size_t kBatch = 32;
+constexpr const char* kLoopback = "127.0.0.1";
+
+sockaddr_in to_address(const rtps::Locator& locator) {
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_port = htons(IPLocator::getPhysicalPort(locator));
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  return address;
+}
+
+rtps::Locator to_locator(const sockaddr_in& address) {
+  rtps::Locator locator;
+  locator.kind = LOCATOR_KIND_UDPv4;
+  locator.port = ntohs(address.sin_port);
+  const auto ip = ntohl(address.sin_addr.s_addr);
+  IPLocator::setIPv4(locator, static_cast<octet>(ip >> 24U), static_cast<octet>(ip >> 16U),
+                     static_cast<octet>(ip >> 8U), static_cast<octet>(ip));
+  return locator;
+}
+
+class LoopbackTransport final : public rtps::ChainingTransport {
+ public:
+  explicit LoopbackTransport(const LoopbackTransportDescriptor& descriptor)
+      : ChainingTransport(descriptor), descriptor_(descriptor) {}
+
+  rtps::TransportDescriptorInterface* get_configuration() override { return &descriptor_; }
+
+  bool IsInputChannelOpen(const rtps::Locator& locator) const override {
+    if (sockets().owns(locator.port)) return sockets().is_open(locator);
+    return low_level_transport_->IsInputChannelOpen(locator);
+  }
+
+  bool OpenInputChannel(const rtps::Locator& locator, rtps::TransportReceiverInterface* receiver,
+                        std::uint32_t max_message_size) override {
+    if (sockets().owns(locator.port)) return sockets().open(locator, receiver);
+    // Straight to the low level: nothing is to be done to the bytes on their way.
+    const bool opened = low_level_transport_->OpenInputChannel(locator, receiver, max_message_size);
+    if (opened) sockets().note_opened(locator.port);
+    return opened;
+  }
+
+  bool CloseInputChannel(const rtps::Locator& locator) override {
+    if (sockets().owns(locator.port)) return sockets().close(locator);
+    return low_level_transport_->CloseInputChannel(locator);
+  }
+
+  bool OpenOutputChannel(rtps::SendResourceList& senders, const rtps::Locator& locator) override {
+    return low_level_transport_->OpenOutputChannel(senders, locator);
+  }
+
+  // Never called: neither direction is wrapped (see OpenInputChannel and OpenOutputChannel).
+  bool send(eprosima::fastrtps::rtps::SenderResource*, const octet*, std::uint32_t,
+            eprosima::fastrtps::rtps::LocatorsIterator*,
+            eprosima::fastrtps::rtps::LocatorsIterator*,
+            const std::chrono::steady_clock::time_point&) override {
+    return false;
+  }
+  void receive(rtps::TransportReceiverInterface*, const octet*, std::uint32_t, const rtps::Locator&,
+               const rtps::Locator&) override {}
+
+ private:
+  ReceiveSockets& sockets() const { return *descriptor_.sockets; }
+
+  LoopbackTransportDescriptor descriptor_;
+};
+
+std::shared_ptr<rtps::UDPv4TransportDescriptor> loopback_udp(int buffer_bytes) {
+  auto udp = std::make_shared<rtps::UDPv4TransportDescriptor>();
+  udp->interfaceWhiteList = {kLoopback};
+  udp->receiveBufferSize = static_cast<std::uint32_t>(buffer_bytes);
+  udp->sendBufferSize = static_cast<std::uint32_t>(buffer_bytes);
+  return udp;
+}
+
+}  // namespace
+
+ReceiveSockets::ReceiveSockets(std::uint16_t first_data_port, bool at_tick, int buffer_bytes)
+    : first_data_port_(first_data_port), at_tick_(at_tick), buffer_bytes_(buffer_bytes) {
+  if (at_tick_) buffers_.reset(new unsigned char[kBatch * kDatagramBytes]);
+}
+
+ReceiveSockets::~ReceiveSockets() {
+  for (const auto& socket : sockets_) ::close(socket.fd);
+}
+
+bool ReceiveSockets::is_data_port(std::uint32_t port) const {
+  return first_data_port_ != 0 && port >= first_data_port_ && (port - first_data_port_) % 2 == 0;
+}
+
+bool ReceiveSockets::open(const Locator& locator, Receiver* receiver) {
+  const int fd = ::socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+  if (fd < 0) return false;
+  ::setsockopt(fd, SOL_SOCKET, SO_RCVBUF, &buffer_bytes_, sizeof buffer_bytes_);
+  const auto address = to_address(locator);
+  if (::bind(fd, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
+    ::close(fd);
+    return false;
+  }
+  const std::lock_guard lock(mutex_);
+  sockets_.push_back({fd, locator, receiver});
+  opened_.push_back(locator.port);
+  return true;
+}
+
+bool ReceiveSockets::close(const Locator& locator) {
+  const std::lock_guard lock(mutex_);
+  const auto it = std::find_if(sockets_.begin(), sockets_.end(),
+                               [&](const Socket& s) { return s.locator.port == locator.port; });
+  if (it == sockets_.end()) return false;
+  ::close(it->fd);
+  sockets_.erase(it);
+  return true;
+}
+
+bool ReceiveSockets::is_open(const Locator& locator) const {
+  const std::lock_guard lock(mutex_);
+  return std::any_of(sockets_.begin(), sockets_.end(),
+                     [&](const Socket& s) { return s.locator.port == locator.port; });
+}
+
+void ReceiveSockets::note_opened(std::uint32_t port) {
+  const std::lock_guard lock(mutex_);
+  opened_.push_back(port);
+}
+
+void ReceiveSockets::drain() {
+  const std::lock_guard lock(mutex_);
+  for (const auto& socket : sockets_) {
+    for (int received = 0; received < kMaxDatagrams;) {
+      const int batch = drain_socket(socket);
+      received += batch;
+      if (batch < static_cast<int>(kBatch)) break;
+    }
+  }
+}
+
+int ReceiveSockets::drain_socket(const Socket& socket) {
+  std::array<mmsghdr, kBatch> messages{};
+  std::array<iovec, kBatch> vectors;
+  std::array<sockaddr_in, kBatch> senders;
+  for (std::size_t i = 0; i < kBatch; ++i) {
+    vectors[i] = {buffers_.get() + i * kDatagramBytes, kDatagramBytes};
+    messages[i].msg_hdr.msg_iov = &vectors[i];
+    messages[i].msg_hdr.msg_iovlen = 1;
+    messages[i].msg_hdr.msg_name = &senders[i];
+    messages[i].msg_hdr.msg_namelen = sizeof(sockaddr_in);
+  }
+  const int count = ::recvmmsg(socket.fd, messages.data(), kBatch, MSG_DONTWAIT, nullptr);
+  for (int i = 0; i < count; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    try {
+      socket.receiver->OnDataReceived(buffers_.get() + k * kDatagramBytes, messages[k].msg_len,
+                                      socket.locator, to_locator(senders[k]));
+    } catch (const std::exception&) {
+      continue;  // the vendor choked on one datagram: as good as lost
+    }
+  }
+  return std::max(count, 0);
+}
+
+bool ReceiveSockets::hears_data() const {
+  const std::lock_guard lock(mutex_);
+  return std::any_of(opened_.begin(), opened_.end(), [&](auto port) { return is_data_port(port); });
+}
+
+bool ReceiveSockets::hears_metatraffic() const {
+  const std::lock_guard lock(mutex_);
+  return std::any_of(opened_.begin(), opened_.end(),
+                     [&](auto port) { return !is_data_port(port); });
+}
+
+bool ReceiveSockets::hears(std::uint32_t port) const {
+  const std::lock_guard lock(mutex_);
+  return std::find(opened_.begin(), opened_.end(), port) != opened_.end();
+}
+
+int granted_receive_buffer_bytes(int asked_bytes) {
+  const int fd = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  if (fd < 0) return 0;
+  int granted = 0;
+  socklen_t size = sizeof granted;
+  ::setsockopt(fd, SOL_SOCKET, SO_RCVBUF, &asked_bytes, sizeof asked_bytes);
+  ::getsockopt(fd, SOL_SOCKET, SO_RCVBUF, &granted, &size);
+  ::close(fd);
+  return granted / 2;  // the kernel reports twice what was asked, for its own bookkeeping
+}
+
+LoopbackTransportDescriptor::LoopbackTransportDescriptor(
+    std::shared_ptr<ReceiveSockets> receive_sockets, int buffer_bytes)
+    : ChainingTransportDescriptor(loopback_udp(buffer_bytes)),
+      sockets(std::move(receive_sockets)) {}
+
+rtps::TransportInterface* LoopbackTransportDescriptor::create_transport() const {
+  return new LoopbackTransport(*this);
+}
+
+}  // namespace swarm::link::fastdds

@@ -1,0 +1,78 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include <fastdds/rtps/transport/ChainingTransport.h>
+#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
+
+/// UDP on the loopback interface whose user-data sockets have no receive thread: the owner drains
+/// them from its own tick. The wake-up per datagram is two thirds of what receiving a small sample
+/// costs; this removes it. Metatraffic (discovery) stays with the vendor's threads.
+namespace swarm::link::fastdds {
+
+/// The receiving sockets of one participant; shared by the transport, which opens them, and the
+/// participant, which drains and judges them.
+class ReceiveSockets {
+ public:
+  /// `first_data_port`: data ports are this one and every second one above it (the vendor's rule
+  /// for finding a free port adds 2). Zero: every port stays with the vendor.
+  ReceiveSockets(std::uint16_t first_data_port, bool at_tick, int buffer_bytes);
+  ~ReceiveSockets();
+  ReceiveSockets(const ReceiveSockets&) = delete;
+  ReceiveSockets& operator=(const ReceiveSockets&) = delete;
+
+  bool is_data_port(std::uint32_t port) const;
+  bool owns(std::uint32_t port) const { return at_tick_ && is_data_port(port); }
+
+  using Receiver = eprosima::fastdds::rtps::TransportReceiverInterface;
+  using Locator = eprosima::fastdds::rtps::Locator;
+  bool open(const Locator& locator, Receiver* receiver);
+  bool close(const Locator& locator);
+  bool is_open(const Locator& locator) const;
+
+  /// Remembers that the vendor's transport opened or closed a port.
+  void note_opened(std::uint32_t port);
+
+  /// Hands waiting datagrams to the vendor, at most kMaxDatagrams so that a flood cannot hold the
+  /// tick.
+  static constexpr int kMaxDatagrams = 8192;
+  void drain();
+
+  bool hears_data() const;
+  bool hears_metatraffic() const;
+  bool hears(std::uint32_t port) const;
+
+ private:
+  struct Socket {
+    int fd;
+    Locator locator;
+    Receiver* receiver;
+  };
+  int drain_socket(const Socket& socket);
+
+  std::uint16_t first_data_port_;
+  bool at_tick_;
+  int buffer_bytes_;
+  mutable std::mutex mutex_;
+  std::vector<Socket> sockets_;
+  std::vector<std::uint32_t> opened_;
+  std::unique_ptr<unsigned char[]> buffers_;  // untouched pages cost nothing
+};
+
+/// Receive buffer the kernel really grants when `asked_bytes` are asked for.
+int granted_receive_buffer_bytes(int asked_bytes);
+
+struct LoopbackTransportDescriptor : eprosima::fastdds::rtps::ChainingTransportDescriptor {
+  explicit LoopbackTransportDescriptor(std::shared_ptr<ReceiveSockets> receive_sockets,
+                                       int buffer_bytes);
+  eprosima::fastdds::rtps::TransportInterface* create_transport() const override;
+
+  std::shared_ptr<ReceiveSockets> sockets;
+};
+
+}  // namespace swarm::link::fastdds

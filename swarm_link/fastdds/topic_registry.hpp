@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <string>
+
+#include <fastdds/dds/domain/DomainParticipant.hpp>
+#include <fastdds/dds/topic/Topic.hpp>
+
+#include "swarm_core/base/result.hpp"
+
+namespace swarm::link::fastdds {
+
+/// The vendor's topics of one participant, shared by its endpoints and deleted with the last of
+/// them: cell topics come and go for hours.
+class TopicRegistry {
+ public:
+  explicit TopicRegistry(eprosima::fastdds::dds::DomainParticipant& participant)
+      : participant_(participant) {}
+
+  Result<eprosima::fastdds::dds::Topic*> acquire(const std::string& name, const std::string& type);
+  void release(const std::string& name);
+
+ private:
+  struct Entry {
+    eprosima::fastdds::dds::Topic* topic = nullptr;
+    int uses = 0;
+  };
+  eprosima::fastdds::dds::DomainParticipant& participant_;
+  std::map<std::string, Entry> entries_;
+};
+
+}  // namespace swarm::link::fastdds
