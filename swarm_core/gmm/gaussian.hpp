@@ -25,8 +25,8 @@ class Gaussian {
   /// deviations lie within [kMinSigma_m, kMaxSigma_m].
   static Result<Gaussian> make(const Vec2& mean_m, const Mat2& covariance_m2);
 
-  /// From the sampler's 5-D parameter vector [x, y, σ₁, σ₂, ρ]                     [SwarmPRM, eq. 8].
-  /// \pre σ₁, σ₂ within the limits above, |ρ| < 1; asserted.
+  /// From the sampler's 5-D parameter vector [x, y, σ₁, σ₂, ρ]                     [SwarmPRM, eq.
+  /// 8]. \pre σ₁, σ₂ within the limits above, |ρ| < 1; asserted.
   static Gaussian from_parameters(const Vec2& mean_m, double sigma1_m, double sigma2_m, double rho);
 
   /// For results of closed forms that keep validity (geodesics, projections); asserts det > 0.

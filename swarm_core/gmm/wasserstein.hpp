@@ -16,10 +16,12 @@ double wasserstein2_squared(const Gaussian& a, const Gaussian& b);
 double wasserstein2(const Gaussian& a, const Gaussian& b);
 
 /// Matrix T of the optimal transport map x ↦ μ_b + T(x − μ_a): the geometric mean Σ_a⁻¹ # Σ_b.
-/// Symmetric positive definite, TΣ_aT = Σ_b. A robot at μ_a + y rides to μ_b + Ty in a straight line.
+/// Symmetric positive definite, TΣ_aT = Σ_b. A robot at μ_a + y rides to μ_b + Ty in a straight
+/// line.
 Mat2 transport_map(const Gaussian& a, const Gaussian& b);
 
-/// Point t ∈ [0, 1] of the W₂ geodesic from a to b                          [SwarmPRM, eq. 3 and 4].
+/// Point t ∈ [0, 1] of the W₂ geodesic from a to b                          [SwarmPRM, eq. 3 and
+/// 4].
 ///
 ///   μ(t) = (1−t)μ_a + tμ_b,   Σ(t) = AΣ_aA  with  A = (1−t)I + tT    (the same as eq. 4, no roots)
 class Geodesic {

@@ -26,9 +26,9 @@ struct PlanLeg {
 };
 
 /// The flow of Gaussians: the one notion from solver over wire to robot. A directed acyclic graph
-/// whose legs run forward in time; the mass into a node equals the mass out of it, except at sources
-/// (no leg in; together mass 1) and sinks (no leg out; together mass 1). SwarmPRM's routes ξᵢⱼ with
-/// mass λᵢⱼ, ROVER's π_k(i,j) and a CRoPS guide path are all such flows.
+/// whose legs run forward in time; the mass into a node equals the mass out of it, except at
+/// sources (no leg in; together mass 1) and sinks (no leg out; together mass 1). SwarmPRM's routes
+/// ξᵢⱼ with mass λᵢⱼ, ROVER's π_k(i,j) and a CRoPS guide path are all such flows.
 class FlowPlan {
  public:
   static constexpr std::size_t kMaxNodes = 4096;  ///< bound of the wire format
@@ -52,8 +52,8 @@ class FlowPlan {
   /// Time at which the last mass arrives.
   MissionTime duration() const { return duration_; }
 
-  /// mixture(t) = Σ over the legs alive at t of π · geodesic((t−t_from)/(t_to−t_from)). Before their
-  /// time sources stand still, after it sinks do. The weights sum to 1 at every t.
+  /// mixture(t) = Σ over the legs alive at t of π · geodesic((t−t_from)/(t_to−t_from)). Before
+  /// their time sources stand still, after it sinks do. The weights sum to 1 at every t.
   Mixture mixture_at(MissionTime t) const;
 
   /// Hash of the content: two plans with the same digest are the same flow, whoever published them.

@@ -10,8 +10,8 @@ namespace swarm {
 /// Φ⁻¹(p), the standard normal quantile; absolute error below 1e-12. \pre 0 < p < 1
 double standard_normal_quantile(double p);
 
-/// k(α) = φ(Φ⁻¹(1−α))/α, so that CVaR_α(N(μ, σ²)) = μ + k σ       [SwarmPRM, eq. 7]. k(0.05) = 2.0627.
-/// \pre 0 < α < 1
+/// k(α) = φ(Φ⁻¹(1−α))/α, so that CVaR_α(N(μ, σ²)) = μ + k σ       [SwarmPRM, eq. 7]. k(0.05)
+/// = 2.0627. \pre 0 < α < 1
 double cvar_coefficient(double alpha);
 
 /// The risk promise of a plan: CVaR_α(−sdf) ≤ δ for every convex obstacle.
@@ -20,8 +20,9 @@ struct RiskLimit {
   double delta_m = -0.2;  ///< safe region threshold δ ≤ 0
 };
 
-/// CVaR of η' ~ N(−s(μ,O), nᵀΣn), the linearised negated signed distance of a Gaussian to one convex
-/// obstacle [m]                                                           [SwarmPRM, eq. 10–12].
+/// CVaR of η' ~ N(−s(μ,O), nᵀΣn), the linearised negated signed distance of a Gaussian to one
+/// convex obstacle [m]                                                           [SwarmPRM, eq.
+/// 10–12].
 double obstacle_cvar_m(const Gaussian& g, const SignedDistance& at_mean, double k);
 
 /// Largest CVaR over all convex obstacles of the world [m]; −∞ for a world without obstacles.

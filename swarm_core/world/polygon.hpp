@@ -18,8 +18,9 @@ class Polygon {
  public:
   static constexpr std::size_t kMaxVertices = 10'000;
 
-  /// Either orientation is accepted; repeated and collinear vertices are dropped. Refuses fewer than
-  /// three corners, non-finite numbers, zero area and self-intersections (named by their edges).
+  /// Either orientation is accepted; repeated and collinear vertices are dropped. Refuses fewer
+  /// than three corners, non-finite numbers, zero area and self-intersections (named by their
+  /// edges).
   static Result<Polygon> make(std::vector<Vec2> vertices_m);
 
   const std::vector<Vec2>& vertices_m() const { return vertices_m_; }

@@ -1,0 +1,25 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "swarm_core/base/result.hpp"
+#include "swarm_core/plan/flow_plan.hpp"
+
+namespace swarm {
+
+/// The plan as a JSON document, for files and people:
+///
+///   {"nodes": [{"mean_m": [x, y], "covariance_m2": [xx, xy, yy], "time_s": t, "mass": w}, …],
+///    "legs":  [{"from": 0, "to": 1, "mass": π}, …]}
+///
+/// Numbers are written so that they read back bit by bit: the digest survives the round trip.
+std::string to_json(const FlowPlan& plan);
+
+/// Reads such a document; refuses wrong syntax, missing, unknown or mistyped keys (named by their
+/// place, e.g. "nodes[3].mass") and everything Gaussian::make and FlowPlan::make refuse.
+Result<FlowPlan> plan_from_json(std::string_view text);
+
+}  // namespace swarm

@@ -1,0 +1,207 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "swarm_core/world/world.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace swarm {
+namespace {
+
+// Nearer than this a direction taken from two points is rounding noise, and two distances are
+// equal.
+constexpr double kTiny_m = 1e-9;
+
+double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
+
+// The point of segment a + s·ab, s ∈ [0, 1], nearest to p.
+double nearest_parameter(const Vec2& a, const Vec2& ab, const Vec2& p) {
+  const double length_squared = ab.squaredNorm();
+  if (length_squared == 0.0) return 0.0;
+  return std::clamp((p - a).dot(ab) / length_squared, 0.0, 1.0);
+}
+
+// Nearest boundary point by all edges, sign by the parity of crossings: right for any simple
+// polygon, and for a convex one the same as the largest half-plane distance. Vertices run
+// counter-clockwise.
+SignedDistance polygon_distance(std::span<const Vec2> vertices_m, const Vec2& p) {
+  double best_squared = std::numeric_limits<double>::infinity();
+  double best_parameter = 0.0;
+  Vec2 best_offset = Vec2::Zero();
+  Vec2 best_edge = Vec2::UnitX();
+  bool inside = false;
+  const Vec2* from = &vertices_m.back();
+  for (const Vec2& to : vertices_m) {
+    const Vec2 edge = to - *from;
+    const double parameter = nearest_parameter(*from, edge, p);
+    const Vec2 offset = p - (*from + parameter * edge);
+    const double squared = offset.squaredNorm();
+    if (squared < best_squared) {
+      best_squared = squared;
+      best_parameter = parameter;
+      best_offset = offset;
+      best_edge = edge;
+    }
+    if ((from->y() > p.y()) != (to.y() > p.y())) {
+      const bool left = cross(edge, p - *from) > 0.0;
+      if (left == (edge.y() > 0.0)) inside = !inside;
+    }
+    from = &to;
+  }
+  const double distance_m = std::sqrt(best_squared);
+  const double sign = inside ? -1.0 : 1.0;
+  const bool at_corner = best_parameter == 0.0 || best_parameter == 1.0;
+  if (at_corner && distance_m > kTiny_m)
+    return {sign * distance_m, sign / distance_m * best_offset};
+  return {sign * distance_m, Vec2(best_edge.y(), -best_edge.x()).normalized()};
+}
+
+SignedDistance circle_distance(const Circle& circle, const Vec2& p) {
+  const Vec2 offset = p - circle.center_m;
+  const double norm_m = offset.norm();
+  return {norm_m - circle.radius_m, norm_m > 0.0 ? Vec2(offset / norm_m) : Vec2::UnitX()};
+}
+
+SignedDistance obstacle_distance(const Obstacle& obstacle, const Vec2& p) {
+  if (const auto* circle = std::get_if<Circle>(&obstacle)) return circle_distance(*circle, p);
+  return polygon_distance(std::get<Polygon>(obstacle).vertices_m(), p);
+}
+
+bool cross_properly(const Vec2& a, const Vec2& ab, const Vec2& c, const Vec2& cd) {
+  const Vec2 ac = c - a;
+  const double side_c = cross(ab, ac);
+  const double side_d = cross(ab, ac + cd);
+  const double side_a = cross(cd, -ac);
+  const double side_b = cross(cd, ab - ac);
+  return side_c * side_d < 0.0 && side_a * side_b < 0.0;
+}
+
+double segment_point_squared(const Vec2& a, const Vec2& ab, const Vec2& p) {
+  return (p - a - nearest_parameter(a, ab, p) * ab).squaredNorm();
+}
+
+double segment_segment_squared(const Vec2& a, const Vec2& ab, const Vec2& c, const Vec2& cd) {
+  if (cross_properly(a, ab, c, cd)) return 0.0;
+  return std::min({segment_point_squared(a, ab, c), segment_point_squared(a, ab, c + cd),
+                   segment_point_squared(c, cd, a), segment_point_squared(c, cd, a + ab)});
+}
+
+bool boxes_apart(const Box& a, const Box& b, double gap_m) {
+  return a.min_m.x() - b.max_m.x() > gap_m || b.min_m.x() - a.max_m.x() > gap_m ||
+         a.min_m.y() - b.max_m.y() > gap_m || b.min_m.y() - a.max_m.y() > gap_m;
+}
+
+Box box_of(std::span<const Vec2> points_m) {
+  Box box{points_m.front(), points_m.front()};
+  for (const Vec2& p : points_m) {
+    box.min_m = box.min_m.cwiseMin(p);
+    box.max_m = box.max_m.cwiseMax(p);
+  }
+  return box;
+}
+
+Box box_of(const Circle& circle) {
+  const Vec2 reach = Vec2::Constant(circle.radius_m);
+  return {circle.center_m - reach, circle.center_m + reach};
+}
+
+bool polygon_blocks(const Polygon& polygon, const Vec2& from, const Vec2& step, const Box& swept,
+                    double reach_m) {
+  const std::vector<Vec2>& vertices = polygon.vertices_m();
+  const Vec2* a = &vertices.back();
+  for (const Vec2& b : vertices) {
+    const Box edge_box{a->cwiseMin(b), a->cwiseMax(b)};
+    if (!boxes_apart(edge_box, swept, reach_m) &&
+        segment_segment_squared(from, step, *a, b - *a) < reach_m * reach_m) {
+      return true;
+    }
+    a = &b;
+  }
+  return polygon.contains(from);
+}
+
+}  // namespace
+
+double Box::distance_m(const Vec2& p) const {
+  const double dx = std::max({min_m.x() - p.x(), 0.0, p.x() - max_m.x()});
+  const double dy = std::max({min_m.y() - p.y(), 0.0, p.y() - max_m.y()});
+  return std::sqrt(dx * dx + dy * dy);
+}
+
+SignedDistance ConvexObstacle::signed_distance(const Vec2& point_m) const {
+  return vertices_m.empty() ? circle_distance(circle, point_m)
+                            : polygon_distance(vertices_m, point_m);
+}
+
+Result<World> World::make(Box bounds_m, std::vector<Obstacle> obstacles) {
+  if (!bounds_m.min_m.allFinite() || !bounds_m.max_m.allFinite() ||
+      (bounds_m.min_m.array() >= bounds_m.max_m.array()).any()) {
+    return fail(ErrorCode::kBadInput, "world: bounds must be finite, min below max on both axes");
+  }
+  World world;
+  world.bounds_m_ = bounds_m;
+  world.boxes_.reserve(obstacles.size());
+  for (std::size_t i = 0; i < obstacles.size(); ++i) {
+    if (const auto* circle = std::get_if<Circle>(&obstacles[i])) {
+      if (!circle->center_m.allFinite() || !std::isfinite(circle->radius_m) ||
+          circle->radius_m <= 0.0) {
+        return fail(ErrorCode::kBadInput,
+                    fmt::format("world: obstacle {} is a circle without a finite centre and a "
+                                "positive radius (radius {} m)",
+                                i, circle->radius_m));
+      }
+      world.boxes_.push_back(box_of(*circle));
+      world.convex_obstacles_.push_back({{}, *circle, world.boxes_.back()});
+      continue;
+    }
+    const Polygon& polygon = std::get<Polygon>(obstacles[i]);
+    if (polygon.vertices_m().empty()) {
+      return fail(ErrorCode::kBadInput, fmt::format("world: obstacle {} has no vertices", i));
+    }
+    world.boxes_.push_back(box_of(polygon.vertices_m()));
+    for (std::vector<Vec2>& part : decompose_convex(polygon)) {
+      const Box box = box_of(part);
+      world.convex_obstacles_.push_back({std::move(part), {}, box});
+    }
+  }
+  world.obstacles_ = std::move(obstacles);
+  return world;
+}
+
+SignedDistance World::signed_distance(const Vec2& point_m) const {
+  SignedDistance best{std::numeric_limits<double>::infinity(), Vec2::UnitX()};
+  for (std::size_t i = 0; i < obstacles_.size(); ++i) {
+    // Outside its box an obstacle is farther than the box, so never nearer than one that holds p.
+    const double box_distance_m = boxes_[i].distance_m(point_m);
+    if (box_distance_m > 0.0 && box_distance_m >= best.distance_m) continue;
+    const SignedDistance candidate = obstacle_distance(obstacles_[i], point_m);
+    if (candidate.distance_m < best.distance_m) best = candidate;
+  }
+  return best;
+}
+
+bool World::segment_is_free(const Vec2& from_m, const Vec2& to_m, double clearance_m) const {
+  // A segment at exactly the clearance is free, whatever the rounding; one that touches is not.
+  const double reach_m = std::max(clearance_m - kTiny_m, kTiny_m);
+  const Box swept{from_m.cwiseMin(to_m), from_m.cwiseMax(to_m)};
+  const Vec2 step = to_m - from_m;
+  for (std::size_t i = 0; i < obstacles_.size(); ++i) {
+    if (boxes_apart(boxes_[i], swept, reach_m)) continue;
+    if (const auto* circle = std::get_if<Circle>(&obstacles_[i])) {
+      const double blocked_m = circle->radius_m + reach_m;
+      if (segment_point_squared(from_m, step, circle->center_m) < blocked_m * blocked_m) {
+        return false;
+      }
+    } else if (polygon_blocks(std::get<Polygon>(obstacles_[i]), from_m, step, swept, reach_m)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace swarm
