@@ -1,0 +1,29 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "swarm_core/base/result.hpp"
+
+namespace CLI {
+class App;
+}
+
+/// What the main() of every program shares. Domain code never includes this.
+namespace swarm::shell {
+
+/// Runs a program's body: prints an error to stderr as `name: message` (every line) and turns it
+/// into the exit code. The only catch-all of a program.
+int run_main(const std::string& name, const std::function<Result<ExitCode>()>& body);
+
+/// Adds `--version` and `--check MISSION.yaml` (validate and exit), which every program has.
+void add_common_options(CLI::App& app);
+
+/// Parses. Holds an exit code when there is nothing left to do (help, version, check); an error of
+/// kind kBadInput on wrong usage.
+Result<std::optional<ExitCode>> parse(CLI::App& app, int argc, char** argv);
+
+}  // namespace swarm::shell

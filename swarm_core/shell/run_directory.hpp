@@ -1,0 +1,40 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "swarm_core/base/result.hpp"
+
+/// A run's directory: where the launcher, the planner, the agents and the monitor meet.
+namespace swarm::shell {
+
+inline constexpr std::string_view kMissionFile = "mission.resolved.yaml";
+inline constexpr std::string_view kPlanFile = "plan.json";
+inline constexpr std::string_view kPlanStatsFile = "plan_stats.json";
+inline constexpr std::string_view kSummaryFile = "summary.json";
+inline constexpr std::string_view kEventsFile = "events.jsonl";
+inline constexpr std::string_view kRunFile = "run.json";
+inline constexpr std::string_view kControlSocket = "control.sock";
+inline constexpr std::string_view kLogsFolder = "logs";
+inline constexpr std::string_view kBlackboxFolder = "blackbox";
+
+/// How to join a run; `run.json`.
+struct RunInfo {
+  std::uint32_t domain = 0;
+  std::string discovery_host = "127.0.0.1";
+  std::uint16_t discovery_port = 0;
+  std::uint64_t seed = 0;
+};
+
+Result<void> write_run_info(const std::filesystem::path& run_dir, const RunInfo& info);
+Result<RunInfo> read_run_info(const std::filesystem::path& run_dir);
+
+/// Writes a whole file under a temporary name and renames it, so that readers never see half of it.
+Result<void> write_file(const std::filesystem::path& file, std::string_view content);
+Result<std::string> read_file(const std::filesystem::path& file, std::size_t max_bytes);
+
+}  // namespace swarm::shell
