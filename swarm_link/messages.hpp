@@ -107,8 +107,8 @@ struct StatusMessage {
   std::uint32_t neighbours_heard = 0;
   std::uint32_t ticks = 0, late_ticks = 0;
   std::uint32_t states_sent = 0, states_received = 0;
-  std::vector<std::uint32_t> refused;          ///< by RefusalReason
-  std::vector<HistogramBinMessage> state_age;  ///< bins of a swarm::Histogram
+  std::vector<std::uint32_t> refused{};          ///< by RefusalReason
+  std::vector<HistogramBinMessage> state_age{};  ///< bins of a swarm::Histogram
   bool operator==(const StatusMessage&) const = default;
 };
 

@@ -43,7 +43,7 @@ struct LinkStats {
   UtcTime stamp{};
   std::uint32_t states_sent = 0;
   std::uint32_t states_received = 0;
-  std::vector<std::uint32_t> refused;  ///< by link::RefusalReason
+  std::vector<std::uint32_t> refused{};  ///< by link::RefusalReason
   Histogram state_age;                 ///< written → used by the controller
 };
 
@@ -51,8 +51,8 @@ struct LinkStats {
 struct Note {
   UtcTime stamp{};
   UtcTime caused{};  ///< stamp of the message that caused it; 0 if none
-  std::string code;  ///< as link::EventMessage::code
-  std::string text;
+  std::string code{};  ///< as link::EventMessage::code
+  std::string text{};
 };
 
 using Record = std::variant<Header, Step, LinkStats, Note>;

@@ -1,0 +1,271 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "robot_agent/agent_process.hpp"
+
+#include <cerrno>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "robot_agent/drivers/simulated_robot.hpp"
+#include "robot_agent/inbox.hpp"
+#include "robot_agent/robot.hpp"
+#include "swarm_core/mission/mission_file.hpp"
+#include "swarm_core/mission/placement.hpp"
+#include "swarm_core/shell/run_directory.hpp"
+#include "swarm_core/shell/stop_signal.hpp"
+#include "swarm_link/fastdds/fastdds_participant.hpp"
+#include "swarm_link/topics.hpp"
+
+namespace swarm::agent {
+namespace {
+
+UtcTime utc_now() {
+  return std::chrono::time_point_cast<Duration>(std::chrono::system_clock::now());
+}
+
+/// Sleeps until `at`; false when a signal woke us early.
+bool sleep_until(SteadyTime at) {
+  const auto ns = at.time_since_epoch().count();
+  const timespec when{.tv_sec = static_cast<time_t>(ns / 1'000'000'000),
+                      .tv_nsec = static_cast<long>(ns % 1'000'000'000)};
+  return ::clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &when, nullptr) != EINTR;
+}
+
+/// A respawned robot's body stands where its black box last saw it; a new one at its place in the
+/// mission.
+Result<Vec2> standing_place(const std::filesystem::path& box_file, const Vec2& placed_m) {
+  if (!std::filesystem::exists(box_file)) return placed_m;
+  const auto file = blackbox::read_file(box_file);
+  if (!file) return tl::unexpected(file.error());
+  for (auto it = file->records.rbegin(); it != file->records.rend(); ++it) {
+    if (const auto* step = std::get_if<blackbox::Step>(&*it)) return step->position_m;
+  }
+  return placed_m;
+}
+
+}  // namespace
+
+struct AgentProcess::Impl {
+  ProcessOptions options;
+  Mission mission;
+  std::unique_ptr<link::Participant> participant;
+  std::unique_ptr<link::StateChannel> states;
+  link::WriterPtr<link::StatusMessage> status_writer;
+  link::WriterPtr<link::EventMessage> event_writer;
+  std::optional<Inbox> inbox;
+  std::vector<Robot> robots;
+  std::optional<FlowPlan> plan;
+  std::vector<link::RobotStateMessage> saying;
+  std::vector<Vec2> positions;
+  link::RefusalCounters reported;  // what was announced as an event already
+  bool planner_was_alive = false;
+  SteadyTime status_at;
+
+  Result<void> join(const shell::RunInfo& run);
+  Result<void> make_robots(std::uint64_t seed);
+  void tick(const Robot::Tick& tick);
+  void report_health(const Robot::Tick& tick);
+  void announce(UtcTime now, link::Severity severity, const std::string& code,
+                const std::string& text);
+  link::StatusMessage full_status(const Robot& robot, UtcTime now);
+  void record_link_stats(UtcTime now);
+};
+
+Result<void> AgentProcess::Impl::join(const shell::RunInfo& run) {
+  auto made =
+      link::make_fastdds_participant({.name = fmt::format("robot_agent_{}", options.first.value()),
+                                      .domain = run.domain,
+                                      .index = options.participant_index,
+                                      .discovery = {run.discovery_host, run.discovery_port}});
+  if (!made) return tl::unexpected(made.error());
+  participant = std::move(*made);
+  if (const auto hears = participant->self_check(); !hears) return hears;
+
+  auto plan_reader = participant->make_reader(link::plan_topic());
+  auto heartbeat_reader = participant->make_reader(link::heartbeat_topic());
+  auto command_reader = participant->make_reader(link::command_topic());
+  auto status = participant->make_writer(link::status_topic());
+  auto event = participant->make_writer(link::event_topic());
+  if (!plan_reader) return tl::unexpected(plan_reader.error());
+  if (!heartbeat_reader) return tl::unexpected(heartbeat_reader.error());
+  if (!command_reader) return tl::unexpected(command_reader.error());
+  if (!status) return tl::unexpected(status.error());
+  if (!event) return tl::unexpected(event.error());
+  status_writer = std::move(*status);
+  event_writer = std::move(*event);
+
+  const LinkSpec& l = mission.link;
+  states = link::make_topic_channel(*participant, {.cell_size_m = l.cell_size_m,
+                                                   .hear_radius_m = l.hear_radius_m,
+                                                   .join_margin_m = l.join_margin_m,
+                                                   .leave_margin_m = l.leave_margin_m});
+  const link::WireLimits limits{
+      .robots = mission.robots.count,
+      .bounds_m = mission.world.bounds_m(),
+      .speed_max_mps = mission.robots.speed_max_mps,
+      .clock_skew_warn = from_seconds(mission.timing.clock_skew_warn_s),
+      .clock_skew_refuse = from_seconds(mission.timing.clock_skew_refuse_s)};
+  inbox.emplace(
+      Readers{std::move(*plan_reader), std::move(*heartbeat_reader), std::move(*command_reader)},
+      *states, limits, from_seconds(mission.timing.planner_silence_s));
+  return {};
+}
+
+Result<void> AgentProcess::Impl::make_robots(std::uint64_t seed) {
+  const auto places = place_robots(mission, seed);
+  if (!places) return tl::unexpected(places.error());
+  robots.reserve(options.count);
+  for (std::uint32_t i = 0; i < options.count; ++i) {
+    const RobotId id(options.first.value() + i);
+    const auto box_file = blackbox::file_of(options.run_dir, id);
+    const auto place = standing_place(box_file, (*places)[id.value()]);
+    if (!place) return tl::unexpected(place.error());
+    auto box = blackbox::Writer::open(box_file);
+    if (!box) return tl::unexpected(box.error());
+    box->append(blackbox::Header{.robot = id,
+                                 .robots = mission.robots.count,
+                                 .process_id = static_cast<std::uint32_t>(::getpid()),
+                                 .radius_m = mission.robots.radius_m,
+                                 .stamp = utc_now()});
+    robots.emplace_back(mission.world, agent_options(mission, id, seed),
+                        std::make_unique<SimulatedRobot>(std::chrono::steady_clock::now(), *place),
+                        std::move(*box));
+  }
+  return {};
+}
+
+void AgentProcess::Impl::announce(UtcTime now, link::Severity severity, const std::string& code,
+                                  const std::string& text) {
+  event_writer->write({.severity = severity,
+                       .source = options.first.value(),
+                       .stamp_utc_ns = now.time_since_epoch().count(),
+                       .code = code,
+                       .text = text});
+  robots.front().note(now, code, text);
+}
+
+void AgentProcess::Impl::tick(const Robot::Tick& tick) {
+  participant->receive();
+  inbox->receive(tick.now, tick.utc_now, [this](RobotId id) -> const EchoGuard* {
+    const std::uint32_t offset = id.value() - options.first.value();
+    return offset < robots.size() ? &robots[offset].echo() : nullptr;
+  });
+  const std::optional<FlowPlan> new_plan = inbox->take_plan();
+
+  saying.clear();
+  positions.clear();
+  for (Robot& robot : robots) {
+    robot.step(tick, *inbox, new_plan ? &*new_plan : nullptr);
+    if (robot.to_say()) saying.push_back(*robot.to_say());
+    positions.push_back(robot.position_m());
+  }
+  states->publish(saying);
+  states->listen_around(positions);
+  report_health(tick);
+}
+
+link::StatusMessage AgentProcess::Impl::full_status(const Robot& robot, UtcTime now) {
+  link::StatusMessage status = robot.status(now);
+  status.process_id = static_cast<std::uint32_t>(::getpid());
+  status.plan_epoch = inbox->plan_epoch();
+  status.plan_version = inbox->plan_version();
+  const auto& refused = inbox->refused().all();
+  status.refused.assign(refused.begin(), refused.end());
+  return status;
+}
+
+void AgentProcess::Impl::record_link_stats(UtcTime now) {
+  for (Robot& robot : robots) {
+    const link::StatusMessage status = robot.status(now);
+    blackbox::LinkStats stats{.stamp = now,
+                              .states_sent = status.states_sent,
+                              .states_received = status.states_received,
+                              .state_age = robot.state_age()};
+    // What the process refused belongs to no single robot; it is kept once, in its first robot's
+    // box.
+    if (&robot == &robots.front()) {
+      stats.refused.assign(inbox->refused().all().begin(), inbox->refused().all().end());
+    }
+    robot.record(stats);
+  }
+}
+
+void AgentProcess::Impl::report_health(const Robot::Tick& tick) {
+  const bool periodic = tick.now - status_at >= from_seconds(1.0 / mission.link.status_hz);
+  for (const Robot& robot : robots) {
+    if (periodic || robot.mode_changed()) status_writer->write(full_status(robot, tick.utc_now));
+  }
+  const bool alive = inbox->mission().planner_alive(tick.now);
+  if (alive != planner_was_alive) {
+    announce(tick.utc_now, alive ? link::Severity::kInfo : link::Severity::kWarning,
+             alive ? "planner-heard" : "planner-silent",
+             alive ? "hears the planner" : "planner silent: holds with avoidance on");
+    planner_was_alive = alive;
+  }
+  if (!periodic) return;
+  status_at = tick.now;
+  record_link_stats(tick.utc_now);
+  for (std::size_t i = 0; i < link::kRefusalReasons; ++i) {
+    const auto reason = static_cast<link::RefusalReason>(i);
+    const std::uint32_t fresh = inbox->refused()[reason] - reported[reason];
+    if (fresh == 0) continue;
+    reported.count(reason, fresh);
+    announce(tick.utc_now, link::Severity::kWarning, "refused",
+             fmt::format("{} message(s): {}", fresh, link::to_string(reason)));
+  }
+}
+
+AgentProcess::AgentProcess(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+AgentProcess::~AgentProcess() = default;
+
+Result<std::unique_ptr<AgentProcess>> AgentProcess::make(const ProcessOptions& options) {
+  auto impl = std::make_unique<Impl>();
+  impl->options = options;
+  const auto run = shell::read_run_info(options.run_dir);
+  if (!run) return tl::unexpected(run.error());
+  auto mission = load_mission(options.run_dir / shell::kMissionFile);
+  if (!mission) return tl::unexpected(mission.error());
+  impl->mission = std::move(*mission);
+  if (options.first.value() + options.count > impl->mission.robots.count || options.count == 0) {
+    return fail(ErrorCode::kBadInput, fmt::format("--ids: the mission has robots 0 to {}",
+                                                  impl->mission.robots.count - 1));
+  }
+  if (auto robots = impl->make_robots(run->seed); !robots) return tl::unexpected(robots.error());
+  if (auto joined = impl->join(*run); !joined) return tl::unexpected(joined.error());
+  return std::unique_ptr<AgentProcess>(new AgentProcess(std::move(impl)));
+}
+
+Result<void> AgentProcess::run() {
+  Impl& p = *impl_;
+  const Duration period = from_seconds(1.0 / p.mission.control.rate_hz);
+  // Processes tick out of step with each other, so that they do not all want the CPU at once.
+  const Duration phase = period * (p.options.first.value() * 7919 % 1000) / 1000;
+  const auto now = std::chrono::steady_clock::now();
+  SteadyTime next = now - now.time_since_epoch() % period + period + phase;
+  while (shell::stop_requests() == 0) {
+    if (!sleep_until(next)) continue;
+    const SteadyTime started = std::chrono::steady_clock::now();
+    p.tick({.now = started, .utc_now = utc_now(), .lateness = started - next, .period = period});
+    next += period;
+    // After an overrun of whole periods the missed ticks are skipped, not replayed in a burst.
+    const SteadyTime finished = std::chrono::steady_clock::now();
+    if (finished > next) next += (finished - next) / period * period;
+    if (p.options.parent_pid != 0 &&
+        static_cast<std::uint32_t>(::getppid()) != p.options.parent_pid)
+      break;
+  }
+  const UtcTime at_end = utc_now();
+  p.record_link_stats(at_end);
+  for (Robot& robot : p.robots) {
+    p.status_writer->write(p.full_status(robot, at_end));
+    robot.note(at_end, "exit", "graceful end");
+  }
+  return {};
+}
+
+}  // namespace swarm::agent

@@ -1,0 +1,116 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "robot_agent/inbox.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace swarm::agent {
+
+using link::RefusalReason;
+
+Inbox::Inbox(Readers readers, link::StateChannel& states, const link::WireLimits& limits,
+             Duration planner_silence)
+    : readers_(std::move(readers)), states_(states), limits_(limits), mission_(planner_silence) {}
+
+void Inbox::receive_fixed_topics(SteadyTime now, UtcTime utc_now) {
+  // Epochs and command ids are UTC stamps of their makers: one from the future is forged, and would
+  // lock everyone out if it were believed.
+  const auto newest =
+      static_cast<std::uint64_t>((utc_now + limits_.clock_skew_refuse).time_since_epoch().count());
+  plans_.clear();
+  readers_.plan->take(plans_);
+  for (const link::PlanMessage& message : plans_) {
+    auto plan = link::check_plan(message, limits_);
+    if (!plan) {
+      refused_.count(plan.error());
+    } else if (message.epoch > newest) {
+      refused_.count(RefusalReason::kForged);
+    } else if (!plan_sequence_.accept(message.epoch, message.version)) {
+      refused_.count(RefusalReason::kStale);
+    } else {
+      new_plan_ = std::move(*plan);
+      plan_epoch_ = message.epoch;
+      plan_version_ = message.version;
+    }
+  }
+
+  heartbeats_.clear();
+  readers_.heartbeat->take(heartbeats_);
+  for (const link::HeartbeatMessage& beat : heartbeats_) {
+    if (const auto ok = link::check_heartbeat(beat); !ok) {
+      refused_.count(ok.error());
+    } else if (beat.epoch > newest) {
+      refused_.count(RefusalReason::kForged);
+    } else if (std::pair(beat.epoch, beat.sequence_number) <=
+               std::pair(heartbeat_epoch_, last_heartbeat_)) {
+      refused_.count(RefusalReason::kStale);
+    } else {
+      heartbeat_epoch_ = beat.epoch;
+      last_heartbeat_ = beat.sequence_number;
+      mission_.on_heartbeat(now);
+    }
+  }
+
+  commands_.clear();
+  readers_.command->take(commands_);
+  for (const link::CommandMessage& command : commands_) {
+    if (const auto ok = link::check_command(command); !ok) {
+      refused_.count(ok.error());
+      continue;
+    }
+    if (command.command_id > newest) {
+      refused_.count(RefusalReason::kForged);
+      continue;
+    }
+    const auto outcome = mission_.on_command(command.kind, command.command_id);
+    if (outcome == MissionWatch::Outcome::kStale) refused_.count(RefusalReason::kStale);
+    if (outcome == MissionWatch::Outcome::kObeyed && command.kind == CommandKind::kStop) {
+      stop_stamp_utc_ns_ = command.stamp_utc_ns;
+    }
+  }
+
+  const std::uint64_t undecodable = readers_.plan->undecodable() +
+                                    readers_.heartbeat->undecodable() +
+                                    readers_.command->undecodable() + states_.undecodable();
+  refused_.count(RefusalReason::kUndecodable,
+                 static_cast<std::uint32_t>(undecodable - undecodable_seen_));
+  undecodable_seen_ = undecodable;
+}
+
+void Inbox::begin_states() {
+  heard_.clear();
+  batches_.clear();
+  states_.take(batches_);
+}
+
+void Inbox::receive_state(const link::RobotStateMessage& state, SteadyTime steady_now,
+                          UtcTime utc_now, const EchoGuard* own) {
+  if (own != nullptr && own->is_echo(state)) return;
+  if (const auto ok = link::check_state(state, limits_, utc_now); !ok) {
+    refused_.count(ok.error());
+    return;
+  }
+  if (own != nullptr) {
+    refused_.count(RefusalReason::kForged);
+    return;
+  }
+  // Ages are taken on our own clock; a sender whose clock is off by more than the warning threshold
+  // is believed to have spoken just now.
+  Duration age = utc_now - UtcTime(Duration(state.stamp_utc_ns));
+  if (age < -limits_.clock_skew_warn) ++skewed_;
+  if (std::chrono::abs(age) >
+      std::max(limits_.clock_skew_warn, Duration(std::chrono::seconds(1)))) {
+    ++skewed_;
+    age = Duration::zero();
+  }
+  age = std::max(age, Duration::zero());
+  heard_.push_back({.report = {.robot = RobotId(state.robot_id),
+                               .sequence = state.sequence_number,
+                               .as_of = steady_now - age,
+                               .position_m = {state.x_m, state.y_m},
+                               .velocity_mps = {state.vx_mps, state.vy_mps}},
+                    .age = age});
+}
+
+}  // namespace swarm::agent

@@ -1,0 +1,117 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "robot_agent/mission_watch.hpp"
+#include "robot_agent/neighbour_table.hpp"
+#include "swarm_core/metrics/histogram.hpp"
+#include "swarm_link/state_channel.hpp"
+#include "swarm_link/validation.hpp"
+
+namespace swarm::agent {
+
+/// Remembers what a robot of ours said lately, to tell its echo from somebody who claims its id.
+class EchoGuard {
+ public:
+  void said(const link::RobotStateMessage& state) {
+    said_[next_++ % said_.size()] = {state.sequence_number, state.stamp_utc_ns};
+  }
+  bool is_echo(const link::RobotStateMessage& state) const {
+    for (const Said& s : said_) {
+      if (s.sequence == state.sequence_number && s.stamp == state.stamp_utc_ns) return true;
+    }
+    return false;
+  }
+
+ private:
+  struct Said {
+    std::uint32_t sequence = 0;
+    std::int64_t stamp = 0;
+  };
+  std::array<Said, 64> said_{};
+  std::size_t next_ = 0;
+};
+
+struct Readers {
+  link::ReaderPtr<link::PlanMessage> plan;
+  link::ReaderPtr<link::HeartbeatMessage> heartbeat;
+  link::ReaderPtr<link::CommandMessage> command;
+};
+
+/// A state that passed the edge, with its age.
+struct HeardState {
+  NeighbourReport report;
+  Duration age{};  ///< written → now, by the clocks of both
+};
+
+/// The edge of an agent process: takes everything that arrived, checks it, counts what is refused,
+/// and hands on domain objects.
+class Inbox {
+ public:
+  Inbox(Readers readers, link::StateChannel& states, const link::WireLimits& limits,
+        Duration planner_silence);
+
+  /// Takes what arrived. `own(id)` names the guard of a robot of this process, or nullptr.
+  template <class OwnGuard>
+  void receive(SteadyTime steady_now, UtcTime utc_now, OwnGuard own) {
+    receive_fixed_topics(steady_now, utc_now);
+    begin_states();
+    for (const link::CellStatesMessage& batch : batches_) {
+      if (const auto ok = link::check_batch(batch); !ok) {
+        refused_.count(ok.error());
+        continue;
+      }
+      for (const link::RobotStateMessage& state : batch.states) {
+        receive_state(state, steady_now, utc_now, own(RobotId(state.robot_id)));
+      }
+    }
+  }
+
+  std::span<const HeardState> heard() const { return heard_; }
+
+  /// The newest plan, once, when one arrived.
+  std::optional<FlowPlan> take_plan() { return std::exchange(new_plan_, std::nullopt); }
+  std::uint64_t plan_epoch() const { return plan_epoch_; }
+  std::uint32_t plan_version() const { return plan_version_; }
+
+  const MissionWatch& mission() const { return mission_; }
+  std::int64_t stop_stamp_utc_ns() const { return stop_stamp_utc_ns_; }
+
+  link::RefusalCounters& refused() { return refused_; }
+  std::uint32_t skewed() const {
+    return skewed_;
+  }  ///< states whose clock differs by more than the warning
+
+ private:
+  void receive_fixed_topics(SteadyTime now, UtcTime utc_now);
+  void begin_states();
+  void receive_state(const link::RobotStateMessage& state, SteadyTime steady_now, UtcTime utc_now,
+                     const EchoGuard* own);
+
+  Readers readers_;
+  link::StateChannel& states_;
+  link::WireLimits limits_;
+  MissionWatch mission_;
+  link::PlanSequence plan_sequence_;
+  link::RefusalCounters refused_;
+  std::uint64_t undecodable_seen_ = 0;
+  std::uint64_t last_heartbeat_ = 0;
+  std::uint64_t heartbeat_epoch_ = 0;
+  std::optional<FlowPlan> new_plan_;
+  std::uint64_t plan_epoch_ = 0;
+  std::uint32_t plan_version_ = 0;
+  std::int64_t stop_stamp_utc_ns_ = 0;
+  std::uint32_t skewed_ = 0;
+  std::vector<HeardState> heard_;
+  std::vector<link::PlanMessage> plans_;
+  std::vector<link::HeartbeatMessage> heartbeats_;
+  std::vector<link::CommandMessage> commands_;
+  std::vector<link::CellStatesMessage> batches_;
+};
+
+}  // namespace swarm::agent

@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include <CLI/CLI.hpp>
+
+#include "robot_agent/agent_process.hpp"
+#include "swarm_core/shell/program.hpp"
+#include "swarm_core/shell/stop_signal.hpp"
+
+int main(int argc, char** argv) {
+  using swarm::ExitCode;
+  using swarm::Result;
+  return swarm::shell::run_main("robot_agent", [&]() -> Result<ExitCode> {
+    CLI::App app(
+        "Moves one robot (or several) of a run, knowing only the plan, the map and the "
+        "neighbours it hears.\nThe launcher starts it; to start one by hand: "
+        "robot_agent --run RUN_DIR --ids 7",
+        "robot_agent");
+    swarm::agent::ProcessOptions options;
+    std::uint32_t first = 0;
+    app.add_option("--run", options.run_dir, "Run directory made by the launcher")->required();
+    app.add_option("--ids", first, "First robot of this process")->required();
+    app.add_option("--count", options.count, "Number of robots in this process");
+    app.add_option("--index", options.participant_index,
+                   "DDS participant index, unique in the run");
+    app.add_option("--parent", options.parent_pid, "End when this process is no longer our parent");
+    swarm::shell::add_common_options(app);
+    const auto done = swarm::shell::parse(app, argc, argv);
+    if (!done) return tl::unexpected(done.error());
+    if (*done) return **done;
+    options.first = swarm::RobotId(first);
+
+    swarm::shell::catch_stop_signals();
+    const auto process = swarm::agent::AgentProcess::make(options);
+    if (!process) return tl::unexpected(process.error());
+    if (const auto ran = (*process)->run(); !ran) return tl::unexpected(ran.error());
+    return ExitCode::kOk;
+  });
+}

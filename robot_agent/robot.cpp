@@ -1,0 +1,122 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "robot_agent/robot.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace swarm::agent {
+namespace {
+
+constexpr Duration kLate = std::chrono::milliseconds(20);
+
+std::int64_t to_us(Duration d) {
+  return std::chrono::duration_cast<std::chrono::microseconds>(d).count();
+}
+
+std::int64_t to_ns(UtcTime t) { return t.time_since_epoch().count(); }
+
+}  // namespace
+
+Robot::Robot(const World& world, const AgentOptions& options, std::unique_ptr<Driver> driver,
+             blackbox::Writer box)
+    : id_(options.robot),
+      agent_(world, options),
+      driver_(std::move(driver)),
+      box_(std::move(box)) {}
+
+void Robot::step(const Tick& tick, const Inbox& inbox, const FlowPlan* new_plan) {
+  const Measurement body = driver_->measure(tick.now);
+  position_m_ = body.position_m;
+  const std::uint8_t goal = agent_.has_route()
+                                ? static_cast<std::uint8_t>(std::min(agent_.goal(), 254U))
+                                : blackbox::Step::kNoGoal;
+  if (body.command_expired) {  // the body stopped between two ticks: the path has a point there
+    box_.append(blackbox::Step{.stamp = tick.utc_now - (tick.now - body.expired_at),
+                               .position_m = position_m_,
+                               .mode = static_cast<std::uint8_t>(output_.mode),
+                               .goal = goal});
+  }
+  if (new_plan != nullptr) {
+    agent_.accept_plan(*new_plan, position_m_);
+    note(tick.utc_now, "plan", "took plan version " + std::to_string(inbox.plan_version()));
+  }
+  for (const HeardState& state : inbox.heard()) {
+    if (agent_.hear(state.report, position_m_) == NeighbourTable::Outcome::kTaken) {
+      state_age_.add(to_us(state.age));
+      ++heard_;
+    }
+  }
+  const RobotMode before = output_.mode;
+  output_ = agent_.tick({.now = tick.now,
+                         .position_m = position_m_,
+                         .phase = inbox.mission().phase(),
+                         .planner_alive = inbox.mission().planner_alive(tick.now)});
+  mode_changed_ = !stepped_ || output_.mode != before;
+  stepped_ = true;
+  driver_->command(tick.now, output_.velocity_mps, 2 * tick.period);
+
+  ++ticks_;
+  if (tick.lateness > kLate) ++late_ticks_;
+  box_.append(blackbox::Step{
+      .stamp = tick.utc_now,
+      .position_m = position_m_,
+      .velocity_mps = output_.velocity_mps,
+      .lateness_us =
+          static_cast<std::int32_t>(std::min<std::int64_t>(to_us(tick.lateness), INT32_MAX)),
+      .mode = static_cast<std::uint8_t>(output_.mode),
+      .goal = agent_.has_route() ? static_cast<std::uint8_t>(std::min(agent_.goal(), 254U))
+                                 : blackbox::Step::kNoGoal,
+      .neighbours = output_.neighbours});
+  if (mode_changed_) {
+    note(tick.utc_now, "mode", std::string(to_string(output_.mode)),
+         output_.mode == RobotMode::kStopped ? inbox.stop_stamp_utc_ns() : 0);
+  }
+
+  to_say_.reset();
+  if (output_.say) {
+    to_say_ = link::RobotStateMessage{.robot_id = id_.value(),
+                                      .sequence_number = ++sequence_,
+                                      .stamp_utc_ns = to_ns(tick.utc_now),
+                                      .x_m = position_m_.x(),
+                                      .y_m = position_m_.y(),
+                                      .vx_mps = output_.velocity_mps.x(),
+                                      .vy_mps = output_.velocity_mps.y(),
+                                      .mode = output_.mode};
+    echo_.said(*to_say_);
+    ++said_;
+  }
+}
+
+link::StatusMessage Robot::status(UtcTime utc_now) const {
+  link::StatusMessage s{
+      .robot_id = id_.value(),
+      .mode = output_.mode,
+      .arrived = output_.mode == RobotMode::kArrived,
+      .settled = output_.settled,
+      .stamp_utc_ns = to_ns(utc_now),
+      .x_m = position_m_.x(),
+      .y_m = position_m_.y(),
+      .remaining_m = output_.remaining_m,
+      .nearest_gap_m = std::isfinite(output_.nearest_gap_m) ? output_.nearest_gap_m : 1e9,
+      .neighbours_heard = output_.neighbours,
+      .ticks = ticks_,
+      .late_ticks = late_ticks_,
+      .states_sent = said_,
+      .states_received = heard_};
+  for (std::size_t i = 0; i < Histogram::kBins; ++i) {
+    if (state_age_.bin(i) == 0) continue;
+    s.state_age.push_back(
+        {static_cast<std::uint16_t>(i), static_cast<std::uint32_t>(state_age_.bin(i))});
+  }
+  return s;
+}
+
+void Robot::note(UtcTime utc_now, const std::string& code, const std::string& text,
+                 std::int64_t caused_utc_ns) {
+  box_.append(blackbox::Note{
+      .stamp = utc_now, .caused = UtcTime(Duration(caused_utc_ns)), .code = code, .text = text});
+}
+
+}  // namespace swarm::agent
