@@ -1,0 +1,39 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+
+#include "swarm_core/base/result.hpp"
+
+namespace swarm::planner {
+
+struct ProcessOptions {
+  std::filesystem::path run_dir;
+  std::uint32_t participant_index = 1;
+  std::uint32_t parent_pid = 0;            ///< end when this process is gone; 0 = do not watch
+  std::uint32_t ownership_strength = 100;  ///< a stand-by planner has less
+};
+
+/// The program: plans, publishes the plan (once, kept for late joiners) and the heartbeat, and
+/// follows the mission's commands for its clock t0. The same mission and seed give the same plan,
+/// so after a restart it publishes the same flow under a higher epoch and the swarm goes on where
+/// it was.
+class PlannerProcess {
+ public:
+  /// Plans first, joins the bus second: a mission that cannot be planned ends here, saying why.
+  static Result<std::unique_ptr<PlannerProcess>> make(const ProcessOptions& options);
+  ~PlannerProcess();
+
+  /// Runs until a stop signal or the end of the parent.
+  Result<void> run();
+
+ private:
+  struct Impl;
+  explicit PlannerProcess(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace swarm::planner

@@ -1,0 +1,39 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <sys/types.h>
+
+#include "swarm_core/base/result.hpp"
+#include "swarm_launcher/supervisor.hpp"
+
+namespace swarm::launcher {
+
+/// Starts a program with stdout and stderr appended to `log`. The child
+///  - is in a process group of its own, so that Ctrl-C at the terminal reaches the launcher alone,
+///  - is told to end (SIGTERM) by the kernel when the launcher dies, so that nothing is orphaned,
+///  - is a little less urgent than the launcher (nice 5), which must not be starved by hundreds of
+///  them.
+/// Call it from the thread that lives as long as the launcher: the kernel watches that thread.
+Result<pid_t> start_process(const std::vector<std::string>& command_line,
+                            const std::filesystem::path& log);
+
+struct ExitedChild {
+  pid_t pid = 0;
+  ProcessExit exit;
+  double cpu_s = 0.0;  ///< user + system
+  double max_rss_mb = 0.0;
+};
+
+/// The next child that has ended, if any; never blocks.
+std::optional<ExitedChild> reap_child();
+
+/// Path of a program that lies beside the running one, e.g. "robot_agent".
+std::filesystem::path sibling_program(const std::string& name);
+
+}  // namespace swarm::launcher

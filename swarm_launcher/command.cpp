@@ -1,0 +1,18 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "swarm_launcher/command.hpp"
+
+#include <cstdio>
+
+#include "swarm_launcher/control_socket.hpp"
+
+namespace swarm::launcher {
+
+Result<ExitCode> command_mission(const std::filesystem::path& run_dir, CommandKind kind) {
+  const auto done = send_command(
+      run_dir, kind, [](const std::string& line) { std::printf("%s\n", line.c_str()); });
+  if (!done) return tl::unexpected(done.error());
+  return *done ? ExitCode::kOk : ExitCode::kCriteriaNotMet;
+}
+
+}  // namespace swarm::launcher

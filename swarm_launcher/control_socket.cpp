@@ -1,0 +1,161 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "swarm_launcher/control_socket.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <optional>
+#include <utility>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include "swarm_core/shell/run_directory.hpp"
+
+namespace swarm::launcher {
+namespace {
+
+constexpr int kAnswerTimeout_ms = 15'000;
+constexpr std::size_t kMaxLine = 64;
+
+/// Socket addresses hold 107 characters; a path through /proc/self/fd is short for any directory.
+class ShortAddress {
+ public:
+  explicit ShortAddress(const std::filesystem::path& run_dir)
+      : dir_fd_(::open(run_dir.c_str(), O_DIRECTORY | O_PATH | O_CLOEXEC)) {
+    address_.sun_family = AF_UNIX;
+    const std::string path = fmt::format("/proc/self/fd/{}/{}", dir_fd_, shell::kControlSocket);
+    path.copy(address_.sun_path, sizeof(address_.sun_path) - 1);
+  }
+  ~ShortAddress() {
+    if (dir_fd_ >= 0) ::close(dir_fd_);
+  }
+  ShortAddress(const ShortAddress&) = delete;
+  ShortAddress& operator=(const ShortAddress&) = delete;
+
+  const sockaddr* get() const { return reinterpret_cast<const sockaddr*>(&address_); }
+
+ private:
+  int dir_fd_;
+  sockaddr_un address_ = {};
+};
+
+std::optional<CommandKind> parse_command(const std::string& word) {
+  for (const CommandKind kind :
+       {CommandKind::kStart, CommandKind::kPause, CommandKind::kResume, CommandKind::kStop}) {
+    if (word == to_string(kind)) return kind;
+  }
+  return std::nullopt;
+}
+
+void send_line(int fd, const std::string& line) {
+  const std::string text = line + "\n";
+  // A client that does not read loses its answer; the launcher never waits for it.
+  (void)::send(fd, text.data(), text.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+}
+
+}  // namespace
+
+Result<ControlServer> ControlServer::listen(const std::filesystem::path& run_dir) {
+  ControlServer server;
+  server.socket_ = run_dir / shell::kControlSocket;
+  ::unlink(server.socket_.c_str());
+  server.listen_fd_ = ::socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+  const ShortAddress address(run_dir);
+  const mode_t old_mask = ::umask(0077);  // only the user who runs the mission may command it
+  const bool bound = ::bind(server.listen_fd_, address.get(), sizeof(sockaddr_un)) == 0;
+  ::umask(old_mask);
+  if (!bound || ::listen(server.listen_fd_, 8) != 0) {
+    return fail(
+        ErrorCode::kEnvironment,
+        fmt::format("cannot listen on {}: {}", server.socket_.string(), std::strerror(errno)));
+  }
+  return server;
+}
+
+ControlServer::ControlServer(ControlServer&& other) noexcept
+    : listen_fd_(std::exchange(other.listen_fd_, -1)),
+      socket_(std::move(other.socket_)),
+      clients_(std::exchange(other.clients_, {})) {}
+
+ControlServer::~ControlServer() {
+  for (const Client& client : clients_) ::close(client.fd);
+  if (listen_fd_ < 0) return;
+  ::close(listen_fd_);
+  ::unlink(socket_.c_str());
+}
+
+std::vector<CommandKind> ControlServer::poll() {
+  for (int fd = 0;
+       (fd = ::accept4(listen_fd_, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC)) >= 0;) {
+    clients_.push_back({.fd = fd, .input = {}});
+  }
+  std::vector<CommandKind> commands;
+  for (Client& client : clients_) {
+    std::array<char, kMaxLine> buffer;
+    const ssize_t n = ::recv(client.fd, buffer.data(), buffer.size(), MSG_DONTWAIT);
+    if (n > 0) client.input.append(buffer.data(), static_cast<std::size_t>(n));
+    const bool gone = n == 0 || (n < 0 && errno != EAGAIN && errno != EINTR);
+    const std::size_t end = client.input.find('\n');
+    if (!client.asked && end != std::string::npos) {
+      client.asked = true;
+      if (const auto kind = parse_command(client.input.substr(0, end))) {
+        commands.push_back(*kind);
+        continue;
+      }
+      send_line(client.fd, "failed: unknown command");
+    } else if (!gone && client.input.size() < kMaxLine) {
+      continue;
+    }
+    ::close(std::exchange(client.fd, -1));
+  }
+  std::erase_if(clients_, [](const Client& c) { return c.fd < 0; });
+  return commands;
+}
+
+void ControlServer::answer(const std::string& line, bool last) {
+  for (const Client& client : clients_) {
+    send_line(client.fd, line);
+    if (last) ::close(client.fd);
+  }
+  if (last) clients_.clear();
+}
+
+Result<bool> send_command(const std::filesystem::path& run_dir, CommandKind kind,
+                          const std::function<void(const std::string&)>& on_line) {
+  const int fd = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  const ShortAddress address(run_dir);
+  if (::connect(fd, address.get(), sizeof(sockaddr_un)) != 0) {
+    const int error = errno;
+    ::close(fd);
+    return fail(ErrorCode::kEnvironment, fmt::format("no mission is running in {}: {}",
+                                                     run_dir.string(), std::strerror(error)));
+  }
+  send_line(fd, std::string(to_string(kind)));
+  std::string input;
+  std::string last;
+  for (pollfd waiting{.fd = fd, .events = POLLIN, .revents = 0};
+       ::poll(&waiting, 1, kAnswerTimeout_ms) > 0;) {
+    std::array<char, 4096> buffer;
+    const ssize_t n = ::recv(fd, buffer.data(), buffer.size(), 0);
+    if (n <= 0) break;
+    input.append(buffer.data(), static_cast<std::size_t>(n));
+    for (std::size_t end = 0; (end = input.find('\n')) != std::string::npos;
+         input.erase(0, end + 1)) {
+      last = input.substr(0, end);
+      on_line(last);
+    }
+  }
+  ::close(fd);
+  if (last.empty()) return fail(ErrorCode::kEnvironment, "the launcher did not answer");
+  return last.starts_with("done");
+}
+
+}  // namespace swarm::launcher

@@ -1,0 +1,26 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "swarm_core/base/time.hpp"
+#include "swarm_link/messages.hpp"
+
+namespace swarm::launcher {
+
+/// `events.jsonl`: what happened, one JSON object a line, flushed at once.
+class EventLog {
+ public:
+  explicit EventLog(const std::filesystem::path& file) : out_(file, std::ios::app) {}
+  void write(UtcTime at, const std::string& source, link::Severity severity,
+             const std::string& code, const std::string& text);
+  void write(const link::EventMessage& event);
+
+ private:
+  std::ofstream out_;
+};
+
+}  // namespace swarm::launcher

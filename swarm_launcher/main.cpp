@@ -1,0 +1,72 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include <map>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include "swarm_core/shell/program.hpp"
+#include "swarm_core/shell/stop_signal.hpp"
+#include "swarm_launcher/command.hpp"
+#include "swarm_launcher/plan.hpp"
+#include "swarm_launcher/run.hpp"
+
+int main(int argc, char** argv) {
+  using namespace swarm;
+  return shell::run_main("swarm_launcher", [&]() -> Result<ExitCode> {
+    CLI::App app(
+        "Flies a swarm: starts planner and robots, scripts the mission, supervises, reports.\n"
+        "  swarm_launcher run deploy/missions/swarmprm_standin.yaml\n"
+        "  swarm_launcher command RUN_DIR stop",
+        "swarm_launcher");
+    app.require_subcommand(1);
+    shell::add_common_options(app);
+
+    launcher::RunOptions run;
+    CLI::App* run_command = app.add_subcommand("run", "Fly a mission with one process per robot");
+    run_command->add_option("mission", run.mission_file, "Mission file")
+        ->required()
+        ->type_name("MISSION.yaml");
+    run_command->add_option("--robots", run.robots, "Number of robots, instead of the mission's")
+        ->check(CLI::Range(1, 20000));
+    run_command->add_option("--per-process", run.per_process, "Robots hosted by one agent process")
+        ->check(CLI::Range(1, 20000));
+    run_command->add_option("--seed", run.seed, "Seed of placement, plan and robots");
+    run_command->add_option("--out", run.out, "Run directory (default: runs/<mission>-<time>)");
+    run_command->add_option("--domain", run.domain, "DDS domain (default: a free one)")
+        ->check(CLI::Range(0, 229));
+    run_command->add_flag("--json", run.json, "Print the summary as JSON");
+
+    launcher::PlanCommandOptions plan;
+    CLI::App* plan_command = app.add_subcommand("plan", "Plan a mission without flying it");
+    plan_command->add_option("mission", plan.mission_file, "Mission file")
+        ->required()
+        ->type_name("MISSION.yaml");
+    plan_command->add_option("--seed", plan.seed, "First seed");
+    plan_command->add_option("--repeat", plan.repeat, "Number of seeds")
+        ->check(CLI::Range(1, 100000));
+    plan_command->add_option("--out", plan.out, "Directory for plan.json and plan.svg");
+    plan_command->add_flag("--json", plan.json, "Print the result as JSON");
+
+    std::filesystem::path run_dir;
+    std::string kind;
+    const std::map<std::string, CommandKind> kinds = {{"start", CommandKind::kStart},
+                                                      {"pause", CommandKind::kPause},
+                                                      {"resume", CommandKind::kResume},
+                                                      {"stop", CommandKind::kStop}};
+    CLI::App* command =
+        app.add_subcommand("command", "Command a running mission; stop is an emergency stop");
+    command->add_option("run_dir", run_dir, "Its run directory")->required()->type_name("RUN_DIR");
+    command->add_option("kind", kind, "start, pause, resume or stop")
+        ->required()
+        ->check(CLI::IsMember(kinds));
+
+    const auto done = shell::parse(app, argc, argv);
+    if (!done) return tl::unexpected(done.error());
+    if (*done) return **done;
+    shell::catch_stop_signals();
+    if (run_command->parsed()) return launcher::run_mission(run);
+    if (plan_command->parsed()) return launcher::plan_mission(plan);
+    return launcher::command_mission(run_dir, kinds.at(kind));
+  });
+}

@@ -1,0 +1,24 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+
+#include "swarm_core/base/result.hpp"
+
+namespace swarm::launcher {
+
+struct PlanCommandOptions {
+  std::filesystem::path mission_file;
+  std::uint64_t seed = 1;
+  std::uint32_t repeat = 1;   ///< seeds seed … seed + repeat − 1
+  std::filesystem::path out;  ///< directory for plan.json and plan.svg; empty: none
+  bool json = false;
+};
+
+/// `swarm_launcher plan`: plans without flying; prints times as medians, ratios as means, the
+/// largest CVaR and the share of seeds that succeeded.
+Result<ExitCode> plan_mission(const PlanCommandOptions& options);
+
+}  // namespace swarm::launcher

@@ -1,0 +1,40 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "swarm_launcher/progress.hpp"
+
+#include <cstdio>
+#include <cstdlib>
+
+#include <unistd.h>
+
+namespace swarm::launcher {
+
+Progress::Progress() : live_(::isatty(STDERR_FILENO) == 1 && std::getenv("NO_COLOR") == nullptr) {}
+
+Progress::~Progress() {
+  if (shown_) std::fputc('\n', stderr);
+}
+
+void Progress::clear() {
+  if (shown_) std::fputs("\r\033[K", stderr);
+  shown_ = false;
+}
+
+void Progress::show(const std::string& headline, const std::string& details) {
+  if (live_) {
+    clear();
+    std::fprintf(stderr, "%s  %s", headline.c_str(), details.c_str());
+    std::fflush(stderr);
+    shown_ = true;
+  } else if (headline != headline_) {
+    std::fprintf(stderr, "%s\n", headline.c_str());
+  }
+  headline_ = headline;
+}
+
+void Progress::say(const std::string& line) {
+  clear();
+  std::fprintf(stderr, "%s\n", line.c_str());
+}
+
+}  // namespace swarm::launcher

@@ -1,0 +1,29 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+namespace swarm::launcher {
+
+/// One live line on a terminal, rewritten in place; without a terminal (or with NO_COLOR set) each
+/// change of `headline` is a line of its own and the details are left out. Writes to stderr.
+class Progress {
+ public:
+  Progress();
+  ~Progress();
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+
+  void show(const std::string& headline, const std::string& details);
+  /// A message of its own, above the live line.
+  void say(const std::string& line);
+
+ private:
+  void clear();
+  bool live_;
+  bool shown_ = false;
+  std::string headline_;
+};
+
+}  // namespace swarm::launcher

@@ -1,0 +1,374 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "swarm_launcher/run.hpp"
+
+#include <csignal>
+#include <cstdio>
+#include <map>
+#include <thread>
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include "swarm_core/mission/mission_file.hpp"
+#include "swarm_core/mission/placement.hpp"
+#include "swarm_core/shell/run_directory.hpp"
+#include "swarm_core/shell/stop_signal.hpp"
+#include "swarm_launcher/child_process.hpp"
+#include "swarm_launcher/control_socket.hpp"
+#include "swarm_launcher/domain_lock.hpp"
+#include "swarm_launcher/event_log.hpp"
+#include "swarm_launcher/progress.hpp"
+#include "swarm_launcher/summary.hpp"
+#include "swarm_launcher/supervisor.hpp"
+#include "swarm_launcher/swarm_view.hpp"
+#include "swarm_link/fastdds/fastdds_participant.hpp"
+#include "swarm_link/validation.hpp"
+
+namespace swarm::launcher {
+namespace {
+
+constexpr Duration kStep = std::chrono::milliseconds(20);
+constexpr std::uint32_t kFirstAgentIndex = 2;  // DDS participants 0 and 1: launcher and planner
+
+UtcTime utc_now() {
+  return std::chrono::time_point_cast<Duration>(std::chrono::system_clock::now());
+}
+
+std::filesystem::path default_run_dir(const std::string& mission) {
+  const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
+  return std::filesystem::path("runs") /
+         fmt::format("{}-{:%Y%m%d-%H%M%S}", mission, fmt::localtime(now));
+}
+
+Result<void> make_run_dir(const std::filesystem::path& dir) {
+  std::error_code error;
+  if (std::filesystem::exists(dir / shell::kRunFile, error)) {
+    return fail(ErrorCode::kBadInput,
+                fmt::format("--out {}: holds a run already; name another directory", dir.string()));
+  }
+  for (const auto& folder : {shell::kLogsFolder, shell::kBlackboxFolder}) {
+    std::filesystem::create_directories(dir / folder, error);
+    if (error) {
+      return fail(ErrorCode::kEnvironment,
+                  fmt::format("cannot make {}: {}", (dir / folder).string(), error.message()));
+    }
+  }
+  return {};
+}
+
+int number_of(EndSignal signal) {
+  switch (signal) {
+    case EndSignal::kInterrupt:
+      return SIGINT;
+    case EndSignal::kTerminate:
+      return SIGTERM;
+    case EndSignal::kKill:
+      return SIGKILL;
+  }
+  return SIGKILL;
+}
+
+/// The imperative shell around the Supervisor: processes, bus, files, terminal.
+class Run {
+ public:
+  static Result<std::unique_ptr<Run>> make(const RunOptions& options);
+  ~Run();
+  Result<Measurements> fly();
+  const std::filesystem::path& dir() const { return dir_; }
+  std::string planner_complaint() const;
+
+ private:
+  Run(const RunOptions& options, Mission mission, std::filesystem::path dir, DomainLock lock)
+      : options_(options),
+        mission_(std::move(mission)),
+        dir_(std::move(dir)),
+        lock_(std::move(lock)),
+        events_(dir_ / shell::kEventsFile) {}
+
+  Result<void> join();
+  Result<void> act(const Action& action);
+  Result<void> start(ProcessIndex process);
+  void send(CommandKind kind);
+  void reap(SteadyTime now);
+  void read_bus();
+  void serve_control(SteadyTime now);
+  void show(SteadyTime now);
+
+  RunOptions options_;
+  Mission mission_;
+  std::filesystem::path dir_;
+  DomainLock lock_;
+  EventLog events_;
+  Progress progress_;
+  std::unique_ptr<link::DiscoveryServer> server_;
+  std::unique_ptr<link::Participant> participant_;
+  link::ReaderPtr<link::StatusMessage> status_reader_;
+  link::ReaderPtr<link::EventMessage> event_reader_;
+  link::WriterPtr<link::CommandMessage> command_writer_;
+  std::optional<ControlServer> control_;
+  std::optional<CommandKind> asked_;  // by the clients of control_, not answered yet
+  std::optional<Supervisor> supervisor_;
+  SwarmView view_;
+  link::WireLimits limits_;
+  link::RefusalCounters refused_;
+  std::map<pid_t, ProcessIndex> children_;
+  Measurements measurements_;
+  std::vector<link::StatusMessage> statuses_;
+  std::vector<link::EventMessage> heard_events_;
+  SteadyTime shown_at_;
+  int interrupts_seen_ = 0;
+};
+
+Result<std::unique_ptr<Run>> Run::make(const RunOptions& options) {
+  auto mission = load_mission(options.mission_file);
+  if (!mission) return tl::unexpected(mission.error());
+  if (options.robots) mission->robots.count = *options.robots;
+  if (const auto places = place_robots(*mission, options.seed); !places) {
+    return tl::unexpected(places.error());
+  }
+  const std::uint32_t agents =
+      (mission->robots.count + options.per_process - 1) / options.per_process;
+  auto lock = DomainLock::take(options.domain, agents + kFirstAgentIndex);
+  if (!lock) return tl::unexpected(lock.error());
+  const auto dir = options.out.empty() ? default_run_dir(mission->name) : options.out;
+  if (const auto made = make_run_dir(dir); !made) return tl::unexpected(made.error());
+  if (auto written = shell::write_file(dir / shell::kMissionFile, to_yaml(*mission)); !written) {
+    return tl::unexpected(written.error());
+  }
+  auto run = std::unique_ptr<Run>(new Run(options, std::move(*mission), dir, std::move(*lock)));
+  if (const auto joined = run->join(); !joined) return tl::unexpected(joined.error());
+  return run;
+}
+
+Run::~Run() {
+  for (const auto& [pid, process] : children_) ::kill(pid, SIGKILL);
+}
+
+Result<void> Run::join() {
+  auto server = link::make_discovery_server(lock_.domain(), 0);
+  if (!server) return tl::unexpected(server.error());
+  server_ = std::move(*server);
+  const link::DiscoveryAddress address = server_->address();
+  if (auto written = shell::write_run_info(dir_, {.domain = lock_.domain(),
+                                                  .discovery_host = address.host,
+                                                  .discovery_port = address.port,
+                                                  .seed = options_.seed});
+      !written) {
+    return written;
+  }
+  auto participant = link::make_fastdds_participant(
+      {.name = "swarm_launcher", .domain = lock_.domain(), .index = 0, .discovery = address});
+  if (!participant) return tl::unexpected(participant.error());
+  participant_ = std::move(*participant);
+  if (const auto hears = participant_->self_check(); !hears) return hears;
+  auto status = participant_->make_reader(link::status_topic());
+  auto event = participant_->make_reader(link::event_topic());
+  auto command = participant_->make_writer(link::command_topic());
+  if (!status) return tl::unexpected(status.error());
+  if (!event) return tl::unexpected(event.error());
+  if (!command) return tl::unexpected(command.error());
+  status_reader_ = std::move(*status);
+  event_reader_ = std::move(*event);
+  command_writer_ = std::move(*command);
+  auto control = ControlServer::listen(dir_);
+  if (!control) return tl::unexpected(control.error());
+  control_.emplace(std::move(*control));
+
+  limits_ = {.robots = mission_.robots.count,
+             .bounds_m = mission_.world.bounds_m(),
+             .speed_max_mps = mission_.robots.speed_max_mps,
+             .clock_skew_warn = from_seconds(mission_.timing.clock_skew_warn_s),
+             .clock_skew_refuse = from_seconds(mission_.timing.clock_skew_refuse_s)};
+  supervisor_.emplace(SupervisorOptions{.robots = mission_.robots.count,
+                                        .per_process = options_.per_process,
+                                        .launcher = mission_.launcher,
+                                        .script = mission_.script},
+                      std::chrono::steady_clock::now());
+  view_ = SwarmView(mission_.robots.count);
+  return {};
+}
+
+Result<void> Run::start(ProcessIndex process) {
+  std::vector<std::string> command_line;
+  std::string log;
+  if (process == kPlanner) {
+    command_line = {sibling_program("planner_service"), "--run", dir_.string(), "--index", "1"};
+    log = "planner.log";
+  } else {
+    const auto [first, count] = supervisor_->robots_of(process);
+    command_line = {sibling_program("robot_agent"),
+                    "--run",
+                    dir_.string(),
+                    "--ids",
+                    fmt::format("{}", first.value()),
+                    "--count",
+                    fmt::format("{}", count),
+                    "--index",
+                    fmt::format("{}", kFirstAgentIndex + process.value() - 1)};
+    log = fmt::format("agent-{:05}.log", first.value());
+  }
+  command_line.insert(command_line.end(), {"--parent", fmt::format("{}", ::getpid())});
+  const auto pid = start_process(command_line, dir_ / shell::kLogsFolder / log);
+  if (!pid) return tl::unexpected(pid.error());
+  children_.emplace(*pid, process);
+  return {};
+}
+
+void Run::send(CommandKind kind) {
+  const std::int64_t stamp = utc_now().time_since_epoch().count();
+  command_writer_->write(
+      {.kind = kind, .command_id = static_cast<std::uint64_t>(stamp), .stamp_utc_ns = stamp});
+}
+
+Result<void> Run::act(const Action& action) {
+  if (const auto* to_start = std::get_if<StartProcess>(&action)) return start(to_start->process);
+  if (const auto* command = std::get_if<SendCommand>(&action)) {
+    send(command->kind);
+  } else if (const auto* signal = std::get_if<SignalProcess>(&action)) {
+    for (const auto& [pid, process] : children_) {
+      if (process == signal->process) ::kill(pid, number_of(signal->signal));
+    }
+  } else if (const auto* event = std::get_if<LogEvent>(&action)) {
+    events_.write(utc_now(), "launcher",
+                  event->warning ? link::Severity::kWarning : link::Severity::kInfo, event->code,
+                  event->text);
+    if (event->warning) progress_.say(event->text);
+  }
+  return {};
+}
+
+void Run::reap(SteadyTime now) {
+  while (const auto child = reap_child()) {
+    const auto known = children_.find(child->pid);
+    if (known == children_.end()) continue;
+    measurements_.cpu_s += child->cpu_s;
+    measurements_.max_rss_mb = std::max(measurements_.max_rss_mb, child->max_rss_mb);
+    supervisor_->on_exit(known->second, child->exit, now);
+    children_.erase(known);
+  }
+}
+
+void Run::read_bus() {
+  participant_->receive();
+  statuses_.clear();
+  status_reader_->take(statuses_);
+  for (const link::StatusMessage& status : statuses_) {
+    if (const auto ok = link::check_status(status, limits_); !ok) {
+      refused_.count(ok.error());
+      continue;
+    }
+    supervisor_->on_status(
+        RobotId(status.robot_id),
+        {.has_plan = status.plan_version > 0, .mode = status.mode, .settled = status.settled});
+    view_.take(status);
+  }
+  heard_events_.clear();
+  event_reader_->take(heard_events_);
+  for (const link::EventMessage& event : heard_events_) {
+    if (const auto ok = link::check_event(event); !ok) {
+      refused_.count(ok.error());
+      continue;
+    }
+    events_.write(event);
+  }
+}
+
+void Run::serve_control(SteadyTime now) {
+  for (const CommandKind kind : control_->poll()) {
+    supervisor_->on_command(kind, now);
+    asked_ = kind;
+  }
+  if (!asked_ || !control_->has_clients()) return;
+  if (*asked_ != CommandKind::kStop) {
+    control_->answer(
+        fmt::format("done: {} sent to {} robots", to_string(*asked_), command_writer_->matched()),
+        true);
+    asked_.reset();
+    return;
+  }
+  if (supervisor_->phase() != MissionPhase::kStopped) return;  // not acted on yet
+  const auto unstopped = supervisor_->unstopped();
+  if (unstopped.empty()) {
+    control_->answer(
+        fmt::format("done: {} robots confirmed the stop", supervisor_->counts().stopped), true);
+    asked_.reset();
+  } else if (supervisor_->stage() == Supervisor::Stage::kEnding) {
+    control_->answer("failed: stop not confirmed by robots " + describe(unstopped), true);
+    asked_.reset();
+  }
+}
+
+void Run::show(SteadyTime now) {
+  if (now - shown_at_ < std::chrono::milliseconds(250)) return;
+  shown_at_ = now;
+  const Supervisor::Counts c = supervisor_->counts();
+  const std::uint32_t n = mission_.robots.count;
+  std::string headline;
+  switch (supervisor_->stage()) {
+    case Supervisor::Stage::kStarting:
+      headline = fmt::format("starting {} processes", supervisor_->processes());
+      break;
+    case Supervisor::Stage::kGathering:
+      headline = "waiting for all robots to be heard";
+      break;
+    case Supervisor::Stage::kRunning:
+      headline = fmt::format("mission {}", to_string(supervisor_->phase()));
+      break;
+    case Supervisor::Stage::kEnding:
+      headline = "ending all processes";
+      break;
+    case Supervisor::Stage::kDone:
+      headline = "all processes ended";
+      break;
+  }
+  progress_.show(headline, fmt::format("t {:.0f} s  ready {}/{}  arrived {}/{}  lost {}  {}",
+                                       supervisor_->mission_time(now).count(), c.ready, n,
+                                       c.arrived, n, c.lost, view_.describe(now)));
+}
+
+Result<Measurements> Run::fly() {
+  while (supervisor_->stage() != Supervisor::Stage::kDone) {
+    const SteadyTime now = std::chrono::steady_clock::now();
+    for (; interrupts_seen_ < shell::stop_requests(); ++interrupts_seen_)
+      supervisor_->on_interrupt();
+    reap(now);
+    read_bus();
+    serve_control(now);
+    for (const Action& action : supervisor_->step(now)) {
+      if (auto done = act(action); !done) return tl::unexpected(done.error());
+    }
+    show(now);
+    std::this_thread::sleep_for(kStep);
+  }
+  rusage own = {};
+  ::getrusage(RUSAGE_SELF, &own);
+  measurements_.cpu_s += static_cast<double>(own.ru_utime.tv_sec + own.ru_stime.tv_sec) +
+                         1e-6 * static_cast<double>(own.ru_utime.tv_usec + own.ru_stime.tv_usec);
+  measurements_.discovery_s = supervisor_->discovery_s();
+  measurements_.refused_by_launcher = refused_.total();
+  measurements_.outcome = supervisor_->outcome();
+  return measurements_;
+}
+
+std::string Run::planner_complaint() const {
+  return shell::read_file(dir_ / shell::kLogsFolder / "planner.log", 1U << 20U).value_or("");
+}
+
+}  // namespace
+
+Result<ExitCode> run_mission(const RunOptions& options) {
+  const auto run = Run::make(options);
+  if (!run) return tl::unexpected(run.error());
+  std::fprintf(stderr, "run directory: %s\n", (*run)->dir().c_str());
+  const auto measured = (*run)->fly();
+  if (!measured) return tl::unexpected(measured.error());
+  if (measured->outcome == Outcome::kPlannerFailed) {
+    std::fputs((*run)->planner_complaint().c_str(), stderr);
+  }
+  return summarise((*run)->dir(), *measured, options.json);
+}
+
+}  // namespace swarm::launcher

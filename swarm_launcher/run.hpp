@@ -1,0 +1,27 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+
+#include "swarm_core/base/result.hpp"
+
+namespace swarm::launcher {
+
+struct RunOptions {
+  std::filesystem::path mission_file;
+  std::optional<std::uint32_t> robots;  ///< instead of the mission's
+  std::uint32_t per_process = 1;
+  std::uint64_t seed = 1;
+  std::filesystem::path out;  ///< run directory; empty: runs/<mission>-<time>
+  bool json = false;
+  int domain = -1;  ///< DDS domain; negative: a free one
+};
+
+/// `swarm_launcher run`: the whole mission with real processes, from planning to the audited
+/// report. Result on stdout, progress on stderr.
+Result<ExitCode> run_mission(const RunOptions& options);
+
+}  // namespace swarm::launcher

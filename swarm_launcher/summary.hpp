@@ -1,0 +1,27 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+
+#include "swarm_core/base/result.hpp"
+#include "swarm_launcher/supervisor.hpp"
+
+namespace swarm::launcher {
+
+/// What only the launcher can measure.
+struct Measurements {
+  Outcome outcome = Outcome::kNone;
+  double discovery_s = -1.0;  ///< negative: never complete
+  double cpu_s = 0.0;         ///< of all processes of the run
+  double max_rss_mb = 0.0;    ///< of the largest child
+  std::uint64_t refused_by_launcher = 0;
+};
+
+/// Audits the run from its black boxes, adds the launcher's measurements, writes summary.json and
+/// the report, prints the result (JSON or for people) to stdout and decides the exit code.
+Result<ExitCode> summarise(const std::filesystem::path& run_dir, const Measurements& measured,
+                           bool json);
+
+}  // namespace swarm::launcher

@@ -1,0 +1,164 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "swarm_core/base/ids.hpp"
+#include "swarm_core/base/strong_id.hpp"
+#include "swarm_core/base/time.hpp"
+#include "swarm_core/mission/mission.hpp"
+#include "swarm_core/mission/phase.hpp"
+
+namespace swarm::launcher {
+
+/// Process of a run: 0 is the planner, 1 … the agents.
+using ProcessIndex = StrongId<struct ProcessIndexTag, std::uint32_t>;
+inline constexpr ProcessIndex kPlanner{0};
+
+struct SupervisorOptions {
+  std::uint32_t robots = 0;
+  std::uint32_t per_process = 1;
+  LauncherSpec launcher;
+  std::vector<ScriptEvent> script;
+  Duration signal_grace = std::chrono::seconds(5);  ///< SIGINT, this, SIGTERM, this, SIGKILL
+};
+
+/// How a process ended.
+struct ProcessExit {
+  int code = 0;    ///< exit code; meaningless if signal != 0
+  int signal = 0;  ///< signal that killed it, 0 if it ended by itself
+};
+
+/// What a robot's status said.
+struct RobotReport {
+  bool has_plan = false;
+  RobotMode mode = RobotMode::kWaiting;
+  bool settled = false;
+};
+
+enum class EndSignal { kInterrupt, kTerminate, kKill };
+
+struct StartProcess {
+  ProcessIndex process;
+};
+struct SignalProcess {
+  ProcessIndex process;
+  EndSignal signal;
+};
+struct SendCommand {
+  CommandKind kind;
+};
+struct LogEvent {
+  bool warning = false;
+  std::string code;
+  std::string text;
+};
+using Action = std::variant<StartProcess, SignalProcess, SendCommand, LogEvent>;
+
+enum class Outcome {
+  kNone,       ///< still going on
+  kCompleted,  ///< every robot that lives has settled
+  kTimeLimit,
+  kQuorumTimeout,
+  kPlannerFailed,  ///< it said why; restarting would not help, or did not
+  kStopped,        ///< emergency stop
+  kInterrupted,    ///< SIGINT or SIGTERM to the launcher
+  kAllLost,
+};
+std::string_view to_string(Outcome outcome);  ///< snake_case, as in summary.json
+
+/// Decides when processes start, restart and end, and when the mission's commands go out. Pure:
+/// times and observations in, actions out.
+///
+///   starting ──last start──▶ gathering ──everyone ready──▶ running ──settled, limit, stop──▶
+///   ending ──▶ done
+///      └──────────── interrupt, planner cannot plan, quorum time-out ─────────────────────────▲
+class Supervisor {
+ public:
+  enum class Stage { kStarting, kGathering, kRunning, kEnding, kDone };
+
+  Supervisor(const SupervisorOptions& options, SteadyTime now);
+
+  std::uint32_t processes() const { return static_cast<std::uint32_t>(processes_.size()); }
+  /// First robot and number of robots of an agent process.
+  std::pair<RobotId, std::uint32_t> robots_of(ProcessIndex process) const;
+
+  void on_status(RobotId robot, const RobotReport& report);
+  void on_exit(ProcessIndex process, const ProcessExit& exit, SteadyTime now);
+  void on_command(CommandKind kind, SteadyTime now);  ///< of the user
+  void on_interrupt();                                ///< the second one kills
+
+  /// What to do now. Call it often (every 50 ms or so).
+  std::vector<Action> step(SteadyTime now);
+
+  Stage stage() const { return stage_; }
+  Outcome outcome() const { return outcome_; }
+  MissionPhase phase() const { return phase_; }
+
+  struct Counts {
+    std::uint32_t started = 0, ready = 0, arrived = 0, settled = 0, stopped = 0, lost = 0;
+  };
+  Counts counts() const;
+  /// Robots that live and have not confirmed an emergency stop.
+  std::vector<RobotId> unstopped() const;
+  std::vector<RobotId> lost() const;
+
+  /// From the last start of a process to everyone being ready; negative if that never happened.
+  double discovery_s() const { return discovery_s_; }
+  /// Mission time, 0 before the start.
+  MissionTime mission_time(SteadyTime now) const;
+
+ private:
+  struct Process {
+    bool alive = false;
+    bool started = false;
+    std::uint32_t respawns = 0;
+    SteadyTime respawn_at;
+    bool respawn_due = false;
+  };
+  struct Robot {
+    RobotReport report;
+    bool heard = false;
+    bool lost = false;
+  };
+
+  void start_due(SteadyTime now, std::vector<Action>& actions);
+  void gather(SteadyTime now, std::vector<Action>& actions);
+  void run(SteadyTime now, std::vector<Action>& actions);
+  void repeat_stop(SteadyTime now, std::vector<Action>& actions);
+  void begin_ending(Outcome outcome, SteadyTime now);
+  void end(SteadyTime now, std::vector<Action>& actions);
+  void command(CommandKind kind, SteadyTime now, std::vector<Action>& actions);
+
+  SupervisorOptions options_;
+  Stage stage_ = Stage::kStarting;
+  Outcome outcome_ = Outcome::kNone;
+  MissionPhase phase_ = MissionPhase::kReady;
+  std::vector<Process> processes_;
+  std::vector<Robot> robots_;
+  std::vector<LogEvent> pending_log_;
+  std::vector<CommandKind> pending_commands_;
+  std::uint32_t next_start_ = 0;
+  SteadyTime begun_;
+  SteadyTime last_start_;
+  SteadyTime started_at_;  // of the mission
+  SteadyTime all_arrived_at_;
+  bool all_arrived_ = false;
+  double discovery_s_ = -1.0;
+  std::size_t next_script_ = 0;
+  std::uint32_t stops_to_send_ = 0;
+  SteadyTime next_stop_;
+  SteadyTime stop_ends_;
+  std::uint32_t interrupts_ = 0;
+  SteadyTime ending_since_;
+  std::uint32_t signals_sent_ = 0;
+};
+
+/// "3, 7, 12-15" for people.
+std::string describe(const std::vector<RobotId>& robots);
+
+}  // namespace swarm::launcher

@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "swarm_launcher/swarm_view.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include <fmt/format.h>
+
+namespace swarm::launcher {
+
+void SwarmView::take(const link::StatusMessage& status) { robots_.at(status.robot_id) = status; }
+
+std::string SwarmView::describe(SteadyTime now) {
+  Totals totals;
+  double gap = std::numeric_limits<double>::infinity();
+  for (const link::StatusMessage& r : robots_) {
+    if (r.ticks == 0) continue;
+    totals.sent += r.states_sent;
+    totals.heard += r.states_received;
+    totals.ticks += r.ticks;
+    totals.late += r.late_ticks;
+    gap = std::min(gap, r.nearest_gap_m);
+  }
+  const double elapsed = std::max(1e-3, to_seconds(now - at_));
+  const auto rate = [&](std::uint64_t after, std::uint64_t before) {
+    return static_cast<double>(after - std::min(after, before)) / elapsed;
+  };
+  const double late = totals.ticks == 0 ? 0.0
+                                        : 100.0 * static_cast<double>(totals.late) /
+                                              static_cast<double>(totals.ticks);
+  std::string text =
+      fmt::format("{}states {:.0f}/s said, {:.0f}/s heard  late {:.2f} %",
+                  gap < 1e3 ? fmt::format("nearest gap {:.2f} m  ", gap) : "",
+                  rate(totals.sent, before_.sent), rate(totals.heard, before_.heard), late);
+  before_ = totals;
+  at_ = now;
+  return text;
+}
+
+}  // namespace swarm::launcher
