@@ -45,8 +45,8 @@ struct PlanMessage {
   std::uint32_t version = 0;
   std::uint64_t epoch = 0;
   std::int64_t t0_utc_ns = 0;
-  std::vector<PlanNodeMessage> nodes;
-  std::vector<PlanLegMessage> legs;
+  std::vector<PlanNodeMessage> nodes{};
+  std::vector<PlanLegMessage> legs{};
   bool operator==(const PlanMessage&) const = default;
 };
 
@@ -73,7 +73,7 @@ struct RobotStateMessage {
 struct CellStatesMessage {
   std::uint16_t schema_version = kSchemaVersion;
   std::int32_t cell_x = 0, cell_y = 0;
-  std::vector<RobotStateMessage> states;
+  std::vector<RobotStateMessage> states{};
   bool operator==(const CellStatesMessage&) const = default;
 };
 
@@ -117,8 +117,8 @@ struct EventMessage {
   Severity severity = Severity::kInfo;
   std::uint32_t source = 0;
   std::int64_t stamp_utc_ns = 0;
-  std::string code;  ///< stable, machine-readable, kebab-case; at most 64 characters
-  std::string text;  ///< for people; at most 512 characters
+  std::string code{};  ///< stable, machine-readable, kebab-case; at most 64 characters
+  std::string text{};  ///< for people; at most 512 characters
   bool operator==(const EventMessage&) const = default;
 };
 

@@ -24,7 +24,8 @@ class StateChannel {
   /// ones they no longer do (with hysteresis).
   virtual void listen_around(std::span<const Vec2> positions_m) = 0;
 
-  /// Appends the cell batches heard since the last call.
+  /// Appends the cell batches heard since the last call; what this process says itself comes back
+  /// as well (robots of one process hear each other over the bus like all others).
   virtual std::size_t take(std::vector<CellStatesMessage>& out) = 0;
 
   /// Batches that did not decode, since the start.
@@ -39,7 +40,9 @@ struct CellOptions {
 };
 
 /// The `topics` channel: one ordinary topic per cell, endpoints made and discovered as robots move.
-/// Writers of left cells linger (their discovery is dear, keeping them is not) up to a small number.
+/// Writers are made `join_margin_m` before a robot enters a cell, so that they are discovered when it
+/// does, and those of left cells linger (their discovery is dear, keeping them is not) up to a small
+/// number. Call participant.receive() before take(). An endpoint the bus refuses is tried again.
 /// Works over any participant. \pre participant outlives the channel
 std::unique_ptr<StateChannel> make_topic_channel(Participant& participant, const CellOptions& options);
 

@@ -2,10 +2,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "swarm_link/fastdds/conversion.hpp"
 
+#include "swarm_link/wire_bounds.hpp"
+
 namespace swarm::link::fastdds {
 
+static_assert(kMaxPlanNodes == wire::MAX_PLAN_NODES && kMaxPlanLegs == wire::MAX_PLAN_LEGS &&
+              kMaxCellStates == wire::MAX_CELL_STATES &&
+              kMaxRefusalReasons == wire::MAX_REFUSAL_REASONS &&
+              kMaxHistogramBins == wire::MAX_HISTOGRAM_BINS &&
+              kSchemaVersion == wire::SCHEMA_VERSION);
+
 bool to_wire(const PlanMessage& in, wire::FlowPlan& out) {
-  if (in.nodes.size() > wire::MAX_PLAN_NODES || in.legs.size() > wire::MAX_PLAN_LEGS) return false;
+  if (!fits_wire(in)) return false;
   out.schema_version(in.schema_version);
   out.version(in.version);
   out.epoch(in.epoch);
@@ -77,7 +85,7 @@ void from_wire(const wire::Heartbeat& in, HeartbeatMessage& out) {
 }
 
 bool to_wire(const CellStatesMessage& in, wire::CellStates& out) {
-  if (in.states.size() > wire::MAX_CELL_STATES) return false;
+  if (!fits_wire(in)) return false;
   out.schema_version(in.schema_version);
   out.cell_x(in.cell_x);
   out.cell_y(in.cell_y);
@@ -131,10 +139,7 @@ void from_wire(const wire::Command& in, CommandMessage& out) {
 }
 
 bool to_wire(const StatusMessage& in, wire::Status& out) {
-  if (in.refused.size() > wire::MAX_REFUSAL_REASONS ||
-      in.state_age.size() > wire::MAX_HISTOGRAM_BINS) {
-    return false;
-  }
+  if (!fits_wire(in)) return false;
   out.robot_id(in.robot_id);
   out.schema_version(in.schema_version);
   out.mode(static_cast<std::uint8_t>(in.mode));
