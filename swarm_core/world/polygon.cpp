@@ -46,14 +46,15 @@ std::vector<Corner> corners_of(const std::vector<Vec2>& vertices_m) {
       corners.push_back({vertices_m[i], i});
     }
   }
-  // The seam between the last vertex and the first.
-  while (corners.size() >= 3 && is_superfluous(corners[corners.size() - 2].at_m,
-                                               corners.back().at_m, corners.front().at_m)) {
+  // The seam between the last vertex and the first: a repeated one first, for it would hide the
+  // rest.
+  while (corners.size() >= 3 && ((corners.back().at_m - corners.front().at_m).norm() <= kTiny_m ||
+                                 is_superfluous(corners[corners.size() - 2].at_m,
+                                                corners.back().at_m, corners.front().at_m))) {
     corners.pop_back();
   }
   while (corners.size() >= 3 &&
-         ((corners.back().at_m - corners.front().at_m).norm() <= kTiny_m ||
-          is_superfluous(corners.back().at_m, corners.front().at_m, corners[1].at_m))) {
+         is_superfluous(corners.back().at_m, corners.front().at_m, corners[1].at_m)) {
     corners.erase(corners.begin());
   }
   return corners;
