@@ -1,0 +1,210 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "robot_agent/agent.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <new>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace {
+std::size_t allocations = 0;
+}  // namespace
+
+// Counts what the control loop must not do.
+void* operator new(std::size_t size) {
+  ++allocations;
+  if (void* p = std::malloc(size)) return p;
+  throw std::bad_alloc();
+}
+void operator delete(void* p) noexcept { std::free(p); }
+void operator delete(void* p, std::size_t) noexcept { std::free(p); }
+
+namespace swarm::agent {
+namespace {
+
+constexpr Duration kPeriod = std::chrono::milliseconds(100);
+
+/// A corridor with a block in it, one start and one goal Gaussian.
+Mission mission(std::uint32_t robots) {
+  Mission m;
+  m.world =
+      *World::make({{0, 0}, {60, 30}}, {*Polygon::make({{25, 0}, {35, 0}, {35, 12}, {25, 12}})});
+  m.robots.count = robots;
+  m.start = *Mixture::make({{1.0, Gaussian::from_parameters({10, 8}, 2, 2, 0)}});
+  m.goal = *Mixture::make({{1.0, Gaussian::from_parameters({50, 8}, 2, 2, 0)}});
+  return m;
+}
+
+FlowPlan plan_over_the_block() {
+  const auto node = [](Vec2 mean, double sigma, double time) {
+    return PlanNode{Gaussian::from_parameters(mean, sigma, sigma, 0), MissionTime(time), 1.0};
+  };
+  return *FlowPlan::make(
+      {node({10, 8}, 2, 0), node({24, 20}, 1.5, 15), node({36, 20}, 1.5, 25), node({50, 8}, 2, 40)},
+      {{0, 1, 1}, {1, 2, 1}, {2, 3, 1}});
+}
+
+struct Swarm {
+  Mission spec;
+  std::vector<Agent> agents;
+  std::vector<Vec2> positions;
+  std::vector<Vec2> velocities;
+  std::vector<AgentOutput> outputs;
+  std::uint32_t sequence = 0;
+  SteadyTime now{std::chrono::seconds(1000)};
+
+  explicit Swarm(std::uint32_t robots) : spec(mission(robots)) {
+    for (std::uint32_t i = 0; i < robots; ++i) {
+      agents.emplace_back(spec.world, agent_options(spec, RobotId(i), 1));
+      positions.emplace_back(8.0 + 1.2 * (i % 4), 5.0 + 1.2 * (i / 4));
+      velocities.emplace_back(Vec2::Zero());
+    }
+    outputs.resize(robots);
+  }
+
+  void tick(MissionPhase phase, bool planner_alive) {
+    ++sequence;
+    for (std::size_t i = 0; i < agents.size(); ++i) {
+      for (std::size_t j = 0; j < agents.size(); ++j) {
+        if (i == j) continue;
+        agents[i].hear(
+            {RobotId(static_cast<std::uint32_t>(j)), sequence, now, positions[j], velocities[j]},
+            positions[i]);
+      }
+      outputs[i] = agents[i].tick({now, positions[i], phase, planner_alive});
+    }
+    for (std::size_t i = 0; i < agents.size(); ++i) {
+      velocities[i] = outputs[i].velocity_mps;
+      positions[i] += 0.1 * velocities[i];
+    }
+    now += kPeriod;
+  }
+
+  double least_gap() const {
+    double gap = 1e9;
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+      for (std::size_t j = i + 1; j < positions.size(); ++j) {
+        gap = std::min(gap, (positions[i] - positions[j]).norm() - 0.4);
+      }
+    }
+    return gap;
+  }
+};
+
+TEST(Agent, CarriesACrowdAroundTheBlockWithoutAContact) {
+  Swarm sut(20);
+  for (std::size_t i = 0; i < sut.agents.size(); ++i)
+    sut.agents[i].accept_plan(plan_over_the_block(), sut.positions[i]);
+
+  int steps = 0;
+  const auto all_arrived = [&] {
+    return std::all_of(sut.outputs.begin(), sut.outputs.end(),
+                       [](const AgentOutput& o) { return o.mode == RobotMode::kArrived; });
+  };
+  while (steps < 1500 && !all_arrived()) {
+    sut.tick(MissionPhase::kRunning, true);
+    ++steps;
+    ASSERT_GT(sut.least_gap(), 0.0);
+    for (const Vec2& p : sut.positions) ASSERT_GT(sut.spec.world.distance_m(p), 0.2);
+  }
+
+  EXPECT_TRUE(all_arrived()) << steps;
+  for (const Vec2& p : sut.positions)
+    EXPECT_TRUE(sut.spec.goal.components()[0].gaussian.contains_99(p));
+}
+
+TEST(Agent, WaitsUntilTheMissionStarts) {
+  Swarm sut(1);
+  sut.tick(MissionPhase::kRunning, true);
+  EXPECT_EQ(sut.outputs[0].mode, RobotMode::kWaiting);  // no plan
+
+  sut.agents[0].accept_plan(plan_over_the_block(), sut.positions[0]);
+  sut.tick(MissionPhase::kReady, true);
+
+  EXPECT_EQ(sut.outputs[0].mode, RobotMode::kWaiting);
+  EXPECT_EQ(sut.outputs[0].velocity_mps, Vec2::Zero());
+}
+
+TEST(Agent, HoldsWhenThePlannerIsSilentAndGoesOnWhenItIsBack) {
+  Swarm sut(1);
+  sut.agents[0].accept_plan(plan_over_the_block(), sut.positions[0]);
+  sut.tick(MissionPhase::kRunning, true);
+  EXPECT_GT(sut.outputs[0].velocity_mps.norm(), 1.0);
+
+  sut.tick(MissionPhase::kRunning, false);
+  EXPECT_EQ(sut.outputs[0].mode, RobotMode::kHolding);
+  EXPECT_EQ(sut.outputs[0].velocity_mps, Vec2::Zero());
+
+  sut.tick(MissionPhase::kRunning, true);
+  EXPECT_EQ(sut.outputs[0].mode, RobotMode::kMoving);
+}
+
+TEST(Agent, EvadesWhileItHolds) {
+  Swarm sut(1);
+  sut.agents[0].accept_plan(plan_over_the_block(), sut.positions[0]);
+  sut.tick(MissionPhase::kRunning, true);
+  sut.agents[0].hear({RobotId(0), 1, sut.now, sut.positions[0] + Vec2(0.5, 0), {-1, 0}},
+                     sut.positions[0]);
+
+  const AgentOutput out =
+      sut.agents[0].tick({sut.now, sut.positions[0], MissionPhase::kPaused, true});
+
+  EXPECT_EQ(out.mode, RobotMode::kHolding);
+  EXPECT_LT(out.velocity_mps.x(), 0.0);
+}
+
+TEST(Agent, StandsStillForGoodAfterAStop) {
+  Swarm sut(2);
+  for (std::size_t i = 0; i < 2; ++i)
+    sut.agents[i].accept_plan(plan_over_the_block(), sut.positions[i]);
+  sut.tick(MissionPhase::kRunning, true);
+
+  sut.tick(MissionPhase::kStopped, true);
+
+  for (const AgentOutput& o : sut.outputs) {
+    EXPECT_EQ(o.mode, RobotMode::kStopped);
+    EXPECT_EQ(o.velocity_mps, Vec2::Zero());
+  }
+}
+
+TEST(Agent, KeepsItsProgressWhenTheSamePlanIsPublishedAgain) {
+  Swarm sut(1);
+  sut.agents[0].accept_plan(plan_over_the_block(), sut.positions[0]);
+  for (int i = 0; i < 100; ++i) sut.tick(MissionPhase::kRunning, true);
+  const double before = sut.outputs[0].remaining_m;
+
+  sut.agents[0].accept_plan(plan_over_the_block(), sut.positions[0]);
+  sut.tick(MissionPhase::kRunning, true);
+
+  EXPECT_LE(sut.outputs[0].remaining_m, before);
+}
+
+TEST(Agent, DoesTheSameForTheSameInputs) {
+  Swarm a(8);
+  Swarm b(8);
+  for (Swarm* s : {&a, &b}) {
+    for (std::size_t i = 0; i < 8; ++i)
+      s->agents[i].accept_plan(plan_over_the_block(), s->positions[i]);
+    for (int i = 0; i < 300; ++i) s->tick(MissionPhase::kRunning, true);
+  }
+
+  for (std::size_t i = 0; i < 8; ++i) EXPECT_EQ(a.positions[i], b.positions[i]);
+}
+
+TEST(Agent, DoesNotAllocateOnceWarm) {
+  Swarm sut(20);
+  for (std::size_t i = 0; i < sut.agents.size(); ++i)
+    sut.agents[i].accept_plan(plan_over_the_block(), sut.positions[i]);
+  for (int i = 0; i < 50; ++i) sut.tick(MissionPhase::kRunning, true);
+
+  const std::size_t before = allocations;
+  for (int i = 0; i < 100; ++i) sut.tick(MissionPhase::kRunning, true);
+
+  EXPECT_EQ(allocations - before, 0U);
+}
+
+}  // namespace
+}  // namespace swarm::agent

@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "robot_agent/mission_watch.hpp"
+
+#include <gtest/gtest.h>
+
+namespace swarm::agent {
+namespace {
+
+using Outcome = MissionWatch::Outcome;
+constexpr Duration kSilence = std::chrono::seconds(2);
+
+TEST(MissionWatch, FollowsTheCommandsInOrder) {
+  MissionWatch sut(kSilence);
+
+  EXPECT_EQ(sut.on_command(CommandKind::kStart, 10), Outcome::kObeyed);
+  EXPECT_EQ(sut.phase(), MissionPhase::kRunning);
+  EXPECT_EQ(sut.on_command(CommandKind::kPause, 20), Outcome::kObeyed);
+  EXPECT_EQ(sut.phase(), MissionPhase::kPaused);
+  EXPECT_EQ(sut.on_command(CommandKind::kResume, 30), Outcome::kObeyed);
+  EXPECT_EQ(sut.phase(), MissionPhase::kRunning);
+}
+
+TEST(MissionWatch, IgnoresRepeatedAndOldCommands) {
+  MissionWatch sut(kSilence);
+  sut.on_command(CommandKind::kStart, 10);
+  sut.on_command(CommandKind::kPause, 20);
+
+  EXPECT_EQ(sut.on_command(CommandKind::kPause, 20), Outcome::kDuplicate);
+  EXPECT_EQ(sut.on_command(CommandKind::kResume, 15), Outcome::kStale);
+  EXPECT_EQ(sut.phase(), MissionPhase::kPaused);
+}
+
+TEST(MissionWatch, ObeysEveryStopAndNothingAfterIt) {
+  MissionWatch sut(kSilence);
+  sut.on_command(CommandKind::kStart, 10);
+
+  EXPECT_EQ(sut.on_command(CommandKind::kStop, 1), Outcome::kObeyed);  // however old
+  sut.on_command(CommandKind::kStart, 40);
+  sut.on_command(CommandKind::kResume, 50);
+  EXPECT_EQ(sut.phase(), MissionPhase::kStopped);
+}
+
+TEST(MissionWatch, NoticesTheSilenceOfThePlanner) {
+  MissionWatch sut(kSilence);
+  const SteadyTime t0{std::chrono::seconds(100)};
+  EXPECT_FALSE(sut.planner_alive(t0));
+
+  sut.on_heartbeat(t0);
+
+  EXPECT_TRUE(sut.planner_alive(t0 + kSilence));
+  EXPECT_FALSE(sut.planner_alive(t0 + kSilence + Duration(1)));
+}
+
+}  // namespace
+}  // namespace swarm::agent

@@ -1,0 +1,39 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "robot_agent/say_policy.hpp"
+
+#include <gtest/gtest.h>
+
+namespace swarm::agent {
+namespace {
+
+using std::chrono::milliseconds;
+SteadyTime at(int ms) { return SteadyTime(milliseconds(ms)); }
+SayOptions options() { return {.error_m = 0.05, .interval_max = milliseconds(500), .near_m = 1.5}; }
+
+TEST(SayPolicy, StaysSilentWhileOthersExtrapolateRight) {
+  SayPolicy sut(options());
+  EXPECT_TRUE(sut.must_say(at(0), {0, 0}, 10.0));
+  sut.said(at(0), {0, 0}, {1, 0});
+
+  EXPECT_FALSE(sut.must_say(at(400), {0.4, 0.04}, 10.0));
+  EXPECT_TRUE(sut.must_say(at(400), {0.4, 0.06}, 10.0));
+}
+
+TEST(SayPolicy, SpeaksAtLeastEveryInterval) {
+  SayPolicy sut(options());
+  sut.said(at(0), {0, 0}, {0, 0});
+
+  EXPECT_FALSE(sut.must_say(at(499), {0, 0}, 10.0));
+  EXPECT_TRUE(sut.must_say(at(500), {0, 0}, 10.0));
+}
+
+TEST(SayPolicy, SpeaksAtEveryTickNearOthers) {
+  SayPolicy sut(options());
+  sut.said(at(0), {0, 0}, {0, 0});
+
+  EXPECT_TRUE(sut.must_say(at(100), {0, 0}, 1.49));
+}
+
+}  // namespace
+}  // namespace swarm::agent

@@ -1,0 +1,266 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "swarm_launcher/supervisor.hpp"
+
+#include <algorithm>
+#include <optional>
+
+#include <gtest/gtest.h>
+
+namespace swarm::launcher {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+/// Drives a supervisor with a clock of its own and pretends to be its processes.
+struct Bench {
+  SteadyTime now{seconds(100)};
+  SupervisorOptions options;
+  std::optional<Supervisor> sut;
+  std::vector<std::uint32_t> started;
+  std::vector<CommandKind> commands;
+  std::vector<std::pair<std::uint32_t, EndSignal>> signals;
+  std::vector<std::string> log;
+  bool obedient = true;  // children end when they are asked to
+
+  explicit Bench(std::uint32_t robots, std::uint32_t per_process = 1) {
+    options.robots = robots;
+    options.per_process = per_process;
+    options.launcher.starts_per_s = 10.0;
+  }
+
+  void run_for(Duration d) {
+    if (!sut) sut.emplace(options, now);
+    for (const SteadyTime until = now + d; now < until; now += milliseconds(50)) {
+      for (const Action& action : sut->step(now)) take(action);
+    }
+  }
+
+  void take(const Action& action) {
+    if (const auto* start = std::get_if<StartProcess>(&action))
+      started.push_back(start->process.value());
+    if (const auto* command = std::get_if<SendCommand>(&action)) commands.push_back(command->kind);
+    if (const auto* event = std::get_if<LogEvent>(&action))
+      log.push_back(event->code + ": " + event->text);
+    if (const auto* signal = std::get_if<SignalProcess>(&action)) {
+      signals.emplace_back(signal->process.value(), signal->signal);
+      if (obedient) sut->on_exit(signal->process, {}, now);
+    }
+  }
+
+  void report_all(RobotMode mode, bool settled = false) {
+    for (std::uint32_t i = 0; i < options.robots; ++i)
+      sut->on_status(RobotId(i), {true, mode, settled});
+  }
+
+  bool logged(const std::string& fragment) const {
+    return std::any_of(log.begin(), log.end(),
+                       [&](const std::string& l) { return l.find(fragment) != std::string::npos; });
+  }
+};
+
+TEST(Supervisor, StartsThePlannerThenAgentsInWaves) {
+  Bench bench(30);
+
+  bench.run_for(milliseconds(1000));
+
+  EXPECT_EQ(bench.started.front(), 0U);
+  EXPECT_GE(bench.started.size(), 10U);
+  EXPECT_LE(bench.started.size(), 12U);
+}
+
+TEST(Supervisor, StartsTheMissionWhenEveryRobotIsReady) {
+  Bench bench(5);
+  bench.run_for(seconds(1));
+  EXPECT_TRUE(bench.commands.empty());
+
+  bench.report_all(RobotMode::kWaiting);
+  bench.run_for(milliseconds(100));
+
+  ASSERT_EQ(bench.commands.size(), 1U);
+  EXPECT_EQ(bench.commands[0], CommandKind::kStart);
+  EXPECT_GE(bench.sut->discovery_s(), 0.0);
+}
+
+TEST(Supervisor, NamesWhoIsMissingAndGivesUp) {
+  Bench bench(5);
+  bench.run_for(seconds(1));
+  for (const std::uint32_t i : {0U, 2U})
+    bench.sut->on_status(RobotId(i), {true, RobotMode::kWaiting, false});
+
+  bench.run_for(seconds(35));
+
+  EXPECT_TRUE(bench.logged("1, 3-4"));
+  EXPECT_EQ(bench.sut->outcome(), Outcome::kQuorumTimeout);
+  EXPECT_EQ(bench.sut->stage(), Supervisor::Stage::kDone);
+  EXPECT_LT(bench.sut->discovery_s(), 0.0);
+}
+
+TEST(Supervisor, GoesOnWithAQuorumAfterTheTimeOut) {
+  Bench bench(5);
+  bench.options.launcher.quorum_share = 0.8;
+  bench.run_for(seconds(1));
+  for (std::uint32_t i = 0; i < 4; ++i)
+    bench.sut->on_status(RobotId(i), {true, RobotMode::kWaiting, false});
+
+  bench.run_for(seconds(31));
+
+  EXPECT_TRUE(bench.logged("not ready"));
+  EXPECT_EQ(bench.sut->stage(), Supervisor::Stage::kRunning);
+}
+
+struct Running : Bench {
+  explicit Running(std::uint32_t robots) : Bench(robots) {}
+  void start() {
+    run_for(seconds(2));
+    report_all(RobotMode::kWaiting);
+    run_for(milliseconds(100));
+    ASSERT_EQ(sut->stage(), Supervisor::Stage::kRunning);
+  }
+};
+
+TEST(Supervisor, EndsWhenAllHaveSettled) {
+  Running bench(5);
+  bench.start();
+
+  bench.report_all(RobotMode::kArrived, true);
+  bench.run_for(seconds(1));
+
+  EXPECT_EQ(bench.sut->outcome(), Outcome::kCompleted);
+  EXPECT_EQ(bench.sut->stage(), Supervisor::Stage::kDone);
+}
+
+TEST(Supervisor, CountsAKilledAgentAsLostAndFliesOn) {
+  Running bench(5);
+  bench.start();
+
+  bench.sut->on_exit(ProcessIndex(3), {.code = 0, .signal = 9}, bench.now);
+  bench.run_for(seconds(1));
+  EXPECT_EQ(bench.sut->stage(), Supervisor::Stage::kRunning);
+  ASSERT_EQ(bench.sut->lost().size(), 1U);
+  EXPECT_EQ(bench.sut->lost()[0], RobotId(2));
+
+  bench.report_all(RobotMode::kArrived, true);
+  bench.run_for(seconds(1));
+  EXPECT_EQ(bench.sut->outcome(), Outcome::kCompleted);
+}
+
+TEST(Supervisor, RestartsAPlannerThatCrashedButNotOneThatCannotPlan) {
+  Running crashed(3);
+  crashed.start();
+  crashed.sut->on_exit(kPlanner, {.code = 0, .signal = 9}, crashed.now);
+  crashed.run_for(seconds(1));
+  EXPECT_EQ(std::count(crashed.started.begin(), crashed.started.end(), 0U), 2);
+  EXPECT_EQ(crashed.sut->stage(), Supervisor::Stage::kRunning);
+
+  Bench infeasible(3);
+  infeasible.run_for(milliseconds(200));
+  infeasible.sut->on_exit(kPlanner, {.code = 1, .signal = 0}, infeasible.now);
+  infeasible.run_for(seconds(1));
+  EXPECT_EQ(infeasible.sut->outcome(), Outcome::kPlannerFailed);
+}
+
+TEST(Supervisor, GivesUpOnAPlannerThatKeepsCrashing) {
+  Running bench(3);
+  bench.start();
+  for (int i = 0; i < 4; ++i) {
+    bench.sut->on_exit(kPlanner, {.code = 0, .signal = 11}, bench.now);
+    bench.run_for(seconds(1));
+  }
+
+  EXPECT_EQ(bench.sut->outcome(), Outcome::kPlannerFailed);
+}
+
+TEST(Supervisor, RepeatsAStopAndNamesWhoHasNotConfirmed) {
+  Running bench(4);
+  bench.start();
+  for (const std::uint32_t i : {0U, 1U, 3U})
+    bench.sut->on_status(RobotId(i), {true, RobotMode::kStopped, false});
+
+  bench.sut->on_command(CommandKind::kStop, bench.now);
+  bench.run_for(seconds(6));
+
+  EXPECT_EQ(std::count(bench.commands.begin(), bench.commands.end(), CommandKind::kStop), 15);
+  EXPECT_TRUE(bench.logged("not confirmed by 2"));
+  EXPECT_EQ(bench.sut->outcome(), Outcome::kStopped);
+}
+
+TEST(Supervisor, ClimbsTheLadderOfSignals) {
+  Running bench(2);
+  bench.start();
+  bench.obedient = false;
+
+  bench.sut->on_interrupt();
+  bench.run_for(milliseconds(100));
+  EXPECT_EQ(bench.signals.size(), 3U);
+  EXPECT_EQ(bench.signals.back().second, EndSignal::kInterrupt);
+  bench.run_for(seconds(5));
+  EXPECT_EQ(bench.signals.back().second, EndSignal::kTerminate);
+  bench.run_for(seconds(5));
+  EXPECT_EQ(bench.signals.back().second, EndSignal::kKill);
+  for (std::uint32_t i = 0; i < 3; ++i)
+    bench.sut->on_exit(ProcessIndex(i), {.code = 0, .signal = 9}, bench.now);
+  bench.run_for(milliseconds(100));
+
+  EXPECT_EQ(bench.sut->stage(), Supervisor::Stage::kDone);
+  EXPECT_EQ(bench.sut->outcome(), Outcome::kInterrupted);
+}
+
+TEST(Supervisor, StopsStartingWhenInterrupted) {
+  Bench bench(100);
+  bench.run_for(milliseconds(500));
+  const std::size_t started = bench.started.size();
+
+  bench.sut->on_interrupt();
+  bench.run_for(seconds(1));
+
+  EXPECT_EQ(bench.started.size(), started);
+  EXPECT_EQ(bench.sut->stage(), Supervisor::Stage::kDone);
+}
+
+TEST(Supervisor, KillsAtTheSecondInterrupt) {
+  Running bench(2);
+  bench.start();
+  bench.obedient = false;
+
+  bench.sut->on_interrupt();
+  bench.run_for(milliseconds(100));
+  bench.sut->on_interrupt();
+  bench.run_for(milliseconds(100));
+
+  EXPECT_EQ(bench.signals.back().second, EndSignal::kKill);
+}
+
+TEST(Supervisor, PlaysTheScript) {
+  Running bench(2);
+  bench.options.script = {{1.0, ScriptAction::kPause}, {3.0, ScriptAction::kResume}};
+  bench.start();
+
+  bench.run_for(seconds(2));
+  EXPECT_EQ(bench.sut->phase(), MissionPhase::kPaused);
+  bench.run_for(seconds(2));
+
+  EXPECT_EQ(bench.sut->phase(), MissionPhase::kRunning);
+}
+
+TEST(Supervisor, SplitsRobotsOverProcesses) {
+  Bench bench(10, 4);
+  bench.run_for(seconds(1));
+
+  EXPECT_EQ(bench.sut->processes(), 4U);
+  EXPECT_EQ(bench.sut->robots_of(ProcessIndex(3)), std::pair(RobotId(8), 2U));
+}
+
+TEST(Supervisor, EndsAtTheTimeLimit) {
+  Running bench(2);
+  bench.options.launcher.time_limit_s = 5.0;
+  bench.start();
+
+  bench.run_for(seconds(6));
+
+  EXPECT_EQ(bench.sut->outcome(), Outcome::kTimeLimit);
+}
+
+}  // namespace
+}  // namespace swarm::launcher
