@@ -12,14 +12,14 @@
 
 namespace swarm {
 
-/// Everything a mission file says, with its defaults. One struct per top-level key, one field per key
-/// of the file, the same names. Components take their own options, never the Mission.
+/// Everything a mission file says, with its defaults. One struct per top-level key, one field per
+/// key of the file, the same names. Components take their own options, never the Mission.
 
 struct RobotsSpec {
   std::uint32_t count = 100;
   double radius_m = 0.2;
   double speed_max_mps = 1.5;
-  double placement_gap_m = 0.7;  ///< least surface gap between robots, and to obstacles, at the start
+  double placement_gap_m = 0.7;  ///< least surface gap to robots and obstacles at the start
 };
 
 struct PlannerSpec {
@@ -30,32 +30,32 @@ struct PlannerSpec {
   double risk_delta_m = -0.2;         ///< δ
   double sigma_min_m = 1.0;           ///< sampler range of σ₁, σ₂
   double sigma_max_m = 4.0;
-  double rho_max = 0.6;               ///< sampler range of |ρ|
-  double bridge_share = 0.3;          ///< share of samples drawn by the Gaussian sampler of ref. [20]
-  double bridge_sigma_m = 10.0;       ///< spread of its pairs
-  std::uint32_t shortcuts = 200;      ///< smoothing tries per route, 0 = publish the roadmap's routes
-  double speed_mps = 1.25;            ///< speed of the Gaussians along a route
+  double rho_max = 0.6;           ///< sampler range of |ρ|
+  double bridge_share = 0.3;      ///< share of samples drawn by the Gaussian sampler of ref. [20]
+  double bridge_sigma_m = 10.0;   ///< spread of its pairs
+  std::uint32_t shortcuts = 200;  ///< smoothing tries per route, 0 = publish the roadmap's routes
+  double speed_mps = 1.25;        ///< speed of the Gaussians along a route
 };
 
 struct ControlSpec {
   double rate_hz = 10.0;
-  double cruise_mps = 1.45;             ///< wished speed along the flow
-  double look_ahead_s = 8.0;            ///< pursuit: how far ahead along the own route a robot aims
-  double neighbour_gap_m = 0.6;         ///< d0: neighbours nearer than this push
-  double neighbour_push_mps = 0.6;      ///< speed of that push at contact
-  double obstacle_gap_m = 0.5;          ///< obstacles nearer than this push
+  double cruise_mps = 1.45;         ///< wished speed along the flow
+  double look_ahead_s = 8.0;        ///< pursuit: how far ahead along the own route a robot aims
+  double neighbour_gap_m = 0.6;     ///< d0: neighbours nearer than this push
+  double neighbour_push_mps = 0.6;  ///< speed of that push at contact
+  double obstacle_gap_m = 0.5;      ///< obstacles nearer than this push
   double obstacle_push_mps = 1.0;
-  double approach_gain_hz = 0.8;        ///< P-gain towards the aim point near the end
-  double stuck_after_s = 4.0;           ///< no progress for this long → diffusion kick
-  double kick_mps = 0.8;                ///< σ of the kick's velocity
-  double kick_s = 1.5;                  ///< duration of one kick
+  double approach_gain_hz = 0.8;  ///< P-gain towards the aim point near the end
+  double stuck_after_s = 4.0;     ///< no progress for this long → diffusion kick
+  double kick_mps = 0.8;          ///< σ of the kick's velocity
+  double kick_s = 1.5;            ///< duration of one kick
 };
 
 struct SafetySpec {
-  double gap_share = 0.25;         ///< γ: share of the gap a robot may close in one step
+  double gap_share = 0.25;           ///< γ: share of the gap a robot may close in one step
   double neighbour_margin_m = 0.25;  ///< m
   double obstacle_margin_m = 0.05;   ///< m_o
-  double follow_share = 0.5;       ///< β: how much of a neighbour's retreat may be used
+  double follow_share = 0.5;         ///< β: how much of a neighbour's retreat may be used
 };
 
 struct LinkSpec {
@@ -65,7 +65,7 @@ struct LinkSpec {
   double leave_margin_m = 3.0;       ///< and left this much after
   double send_error_m = 0.05;        ///< dead reckoning: speak when extrapolation is off by this
   double send_interval_max_s = 0.5;  ///< … or this old
-  double send_near_m = 1.5;          ///< … or at every tick while a neighbour's surface is this near
+  double send_near_m = 1.5;  ///< … or at every tick while a neighbour's surface is this near
   double status_hz = 1.0;
 };
 
@@ -79,9 +79,9 @@ struct TimingSpec {
 
 struct LauncherSpec {
   double starts_per_s = 60.0;
-  double quorum_share = 1.0;            ///< after the time-out this share of robots is enough
-  double quorum_timeout_s = 30.0;       ///< until then all are waited for; the missing are named
-  double time_limit_s = 600.0;          ///< of mission time
+  double quorum_share = 1.0;       ///< after the time-out this share of robots is enough
+  double quorum_timeout_s = 30.0;  ///< until then all are waited for; the missing are named
+  double time_limit_s = 600.0;     ///< of mission time
   std::uint32_t respawn_planner_max = 3;
   std::uint32_t respawn_agent_max = 0;
 };

@@ -13,10 +13,10 @@ namespace swarm {
 /// Largest mission file read.
 inline constexpr std::size_t kMaxMissionBytes = 16U << 20U;
 
-/// Reads a mission from YAML. Strict: every key is known, used once, in range and of the right type;
-/// the world is well-formed; start and goal lie inside it. On failure the error holds *all* violations,
-/// one per line, as `file:line:column: what is wrong; what would be right`.
-/// `name` is only used in messages. Never throws.
+/// Reads a mission from YAML. Strict: every key is known, used once, in range and of the right
+/// type; the world is well-formed; start and goal lie inside it. On failure the error holds *all*
+/// violations, one per line, as `file:line:column: what is wrong; what would be right`. `name` is
+/// only used in messages. Never throws.
 Result<Mission> parse_mission(std::string_view yaml, const std::string& name);
 
 /// Reads and parses a file.

@@ -9,9 +9,10 @@
 
 namespace swarm {
 
-/// Share u of a robot in a stratified draw, in [0, 1): robot i of n owns the stratum [i/n, (i+1)/n)
-/// of a permuted order, so that over all robots every cumulated weight is met within one robot.
-/// The same for every caller that knows (robot, robots); no communication.
+/// Share u of a robot in a stratified draw: the middle (i + ½)/n of its own stratum [i/n, (i+1)/n),
+/// so that over all robots every cumulated weight is met within one robot. Neighbouring ids fall
+/// into the same component. The same for every caller that knows (robot, robots); no communication.
+/// \pre robot < robots; asserted
 double stratified_share(std::uint32_t robot, std::uint32_t robots);
 
 /// Where the simulated robots stand at the start [m]: robot i in the start component its stratified

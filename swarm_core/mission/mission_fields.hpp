@@ -1,0 +1,113 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <string_view>
+#include <variant>
+
+#include "swarm_core/mission/mission.hpp"
+#include "swarm_core/mission/yaml_reader.hpp"
+
+/// The scalar keys of each section with the numbers they accept: said once, used by the reader, the
+/// writer and the tests.
+namespace swarm::mission_fields {
+
+template <class Section>
+struct Field {
+  std::string_view key;
+  std::variant<double Section::*, std::uint32_t Section::*> member;
+  yaml::Range range;
+};
+
+/// Over 0 and at most `high`.
+constexpr yaml::Range positive(double high) { return {.low = 0.0, .high = high, .low_open = true}; }
+/// From `low` to `high`, both allowed.
+constexpr yaml::Range between(double low, double high) { return {.low = low, .high = high}; }
+
+/// Coordinates and sizes: beyond this it is no place robots of this size drive in.
+inline constexpr double kMaxExtent_m = 1e6;
+inline constexpr double kMaxRobots = 20'000;
+inline constexpr std::size_t kMaxComponents = 255;  ///< a black box names goals by one byte
+inline constexpr std::size_t kMaxObstacles = 10'000;
+inline constexpr std::size_t kMaxVertices = 100'000;  ///< of all polygons together
+inline constexpr std::size_t kMaxScriptEvents = 1'000;
+inline constexpr std::size_t kMaxNameLength = 64;
+inline constexpr std::array<std::string_view, 1> kPlannerMethods{"swarmprm"};
+inline constexpr std::array<std::pair<std::string_view, ScriptAction>, 3> kScriptActions{
+    {{"pause", ScriptAction::kPause},
+     {"resume", ScriptAction::kResume},
+     {"stop", ScriptAction::kStop}}};
+inline constexpr yaml::Range kScriptTime_s = between(0.0, 1e6);
+
+inline constexpr std::array<Field<RobotsSpec>, 4> kRobots{{
+    {"count", &RobotsSpec::count, between(1, kMaxRobots)},
+    {"radius_m", &RobotsSpec::radius_m, positive(100)},
+    {"speed_max_mps", &RobotsSpec::speed_max_mps, positive(100)},
+    {"placement_gap_m", &RobotsSpec::placement_gap_m, between(0, 100)},
+}};
+
+inline constexpr std::array<Field<PlannerSpec>, 11> kPlanner{{
+    {"samples", &PlannerSpec::samples, between(1, 100'000)},
+    {"connection_radius_m", &PlannerSpec::connection_radius_m, positive(kMaxExtent_m)},
+    {"risk_alpha", &PlannerSpec::risk_alpha, between(1e-6, 1 - 1e-6)},
+    {"risk_delta_m", &PlannerSpec::risk_delta_m, between(-1000, 0)},
+    {"sigma_min_m", &PlannerSpec::sigma_min_m, between(0.01, 1000)},
+    {"sigma_max_m", &PlannerSpec::sigma_max_m, between(0.01, 1000)},
+    {"rho_max", &PlannerSpec::rho_max, between(0, 0.99)},
+    {"bridge_share", &PlannerSpec::bridge_share, between(0, 1)},
+    {"bridge_sigma_m", &PlannerSpec::bridge_sigma_m, positive(kMaxExtent_m)},
+    {"shortcuts", &PlannerSpec::shortcuts, between(0, 1'000'000)},
+    {"speed_mps", &PlannerSpec::speed_mps, positive(100)},
+}};
+
+inline constexpr std::array<Field<ControlSpec>, 11> kControl{{
+    {"rate_hz", &ControlSpec::rate_hz, between(0.5, 1000)},
+    {"cruise_mps", &ControlSpec::cruise_mps, positive(100)},
+    {"look_ahead_s", &ControlSpec::look_ahead_s, between(0, 600)},
+    {"neighbour_gap_m", &ControlSpec::neighbour_gap_m, between(0, 100)},
+    {"neighbour_push_mps", &ControlSpec::neighbour_push_mps, between(0, 100)},
+    {"obstacle_gap_m", &ControlSpec::obstacle_gap_m, between(0, 100)},
+    {"obstacle_push_mps", &ControlSpec::obstacle_push_mps, between(0, 100)},
+    {"approach_gain_hz", &ControlSpec::approach_gain_hz, positive(1000)},
+    {"stuck_after_s", &ControlSpec::stuck_after_s, positive(3600)},
+    {"kick_mps", &ControlSpec::kick_mps, between(0, 100)},
+    {"kick_s", &ControlSpec::kick_s, between(0, 600)},
+}};
+
+inline constexpr std::array<Field<SafetySpec>, 4> kSafety{{
+    {"gap_share", &SafetySpec::gap_share, positive(1)},
+    {"neighbour_margin_m", &SafetySpec::neighbour_margin_m, between(0, 100)},
+    {"obstacle_margin_m", &SafetySpec::obstacle_margin_m, between(0, 100)},
+    {"follow_share", &SafetySpec::follow_share, between(0, 1)},
+}};
+
+inline constexpr std::array<Field<LinkSpec>, 8> kLink{{
+    {"cell_size_m", &LinkSpec::cell_size_m, between(1, 10'000)},
+    {"hear_radius_m", &LinkSpec::hear_radius_m, positive(10'000)},
+    {"join_margin_m", &LinkSpec::join_margin_m, between(0, 1000)},
+    {"leave_margin_m", &LinkSpec::leave_margin_m, between(0, 1000)},
+    {"send_error_m", &LinkSpec::send_error_m, between(0, 100)},
+    {"send_interval_max_s", &LinkSpec::send_interval_max_s, positive(60)},
+    {"send_near_m", &LinkSpec::send_near_m, between(0, 10'000)},
+    {"status_hz", &LinkSpec::status_hz, between(0.01, 100)},
+}};
+
+inline constexpr std::array<Field<TimingSpec>, 5> kTiming{{
+    {"heartbeat_hz", &TimingSpec::heartbeat_hz, between(2, 1000)},
+    {"planner_silence_s", &TimingSpec::planner_silence_s, positive(3600)},
+    {"neighbour_forget_s", &TimingSpec::neighbour_forget_s, positive(60)},
+    {"clock_skew_warn_s", &TimingSpec::clock_skew_warn_s, positive(3600)},
+    {"clock_skew_refuse_s", &TimingSpec::clock_skew_refuse_s, positive(3600)},
+}};
+
+inline constexpr std::array<Field<LauncherSpec>, 6> kLauncher{{
+    {"starts_per_s", &LauncherSpec::starts_per_s, positive(10'000)},
+    {"quorum_share", &LauncherSpec::quorum_share, positive(1)},
+    {"quorum_timeout_s", &LauncherSpec::quorum_timeout_s, positive(3600)},
+    {"time_limit_s", &LauncherSpec::time_limit_s, positive(1e6)},
+    {"respawn_planner_max", &LauncherSpec::respawn_planner_max, between(0, 1000)},
+    {"respawn_agent_max", &LauncherSpec::respawn_agent_max, between(0, 1000)},
+}};
+
+}  // namespace swarm::mission_fields

@@ -1,0 +1,79 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "swarm_core/mission/mission_rules.hpp"
+
+#include <fmt/format.h>
+
+namespace swarm {
+namespace {
+
+struct Side {
+  std::string_view key;
+  double value;
+};
+
+/// Collects rules of the form "culprit ≤ limit".
+class Rules {
+ public:
+  void at_most(const Side& culprit, const Side& limit) {
+    if (culprit.value <= limit.value) return;
+    add({culprit.key, limit.key}, fmt::format("{} is {}; must be <= {} ({})", culprit.key,
+                                              culprit.value, limit.key, limit.value));
+  }
+  void below(const Side& culprit, const Side& limit) {
+    if (culprit.value < limit.value) return;
+    add({culprit.key, limit.key}, fmt::format("{} is {}; must be < {} ({})", culprit.key,
+                                              culprit.value, limit.key, limit.value));
+  }
+  void add(std::vector<std::string_view> keys, std::string message) {
+    broken.push_back({std::move(keys), std::move(message)});
+  }
+  std::vector<BrokenRule> broken;
+};
+
+}  // namespace
+
+double least_hear_radius_m(const Mission& mission) {
+  const double braking_s = 1.0 / (mission.control.rate_hz * mission.safety.gap_share);
+  return 2.0 * mission.robots.radius_m + mission.safety.neighbour_margin_m +
+         2.0 * mission.robots.speed_max_mps * (braking_s + mission.link.send_interval_max_s);
+}
+
+std::vector<BrokenRule> broken_rules(const Mission& mission) {
+  const auto& [name, world, robots, start, goal, planner, control, safety, link, timing, launcher,
+               script] = mission;
+  Rules rules;
+  rules.at_most({"planner.sigma_min_m", planner.sigma_min_m},
+                {"planner.sigma_max_m", planner.sigma_max_m});
+  rules.at_most({"planner.speed_mps", planner.speed_mps},
+                {"robots.speed_max_mps", robots.speed_max_mps});
+  rules.at_most({"control.cruise_mps", control.cruise_mps},
+                {"robots.speed_max_mps", robots.speed_max_mps});
+  rules.at_most({"safety.neighbour_margin_m", safety.neighbour_margin_m},
+                {"robots.placement_gap_m", robots.placement_gap_m});
+  rules.at_most({"safety.obstacle_margin_m", safety.obstacle_margin_m},
+                {"robots.placement_gap_m", robots.placement_gap_m});
+  rules.below({"link.send_interval_max_s", link.send_interval_max_s},
+              {"timing.neighbour_forget_s", timing.neighbour_forget_s});
+  rules.below({"link.join_margin_m", link.join_margin_m},
+              {"link.leave_margin_m", link.leave_margin_m});
+  rules.at_most({"link.hear_radius_m", link.hear_radius_m}, {"link.cell_size_m", link.cell_size_m});
+  rules.at_most({"timing.clock_skew_warn_s", timing.clock_skew_warn_s},
+                {"timing.clock_skew_refuse_s", timing.clock_skew_refuse_s});
+  // One lost heartbeat must not stop the swarm.
+  if (timing.planner_silence_s * timing.heartbeat_hz < 2.0) {
+    rules.add({"timing.planner_silence_s", "timing.heartbeat_hz"},
+              fmt::format("timing.planner_silence_s is {}; must be >= {}, two heartbeats",
+                          timing.planner_silence_s, 2.0 / timing.heartbeat_hz));
+  }
+  if (const double least_m = least_hear_radius_m(mission); link.hear_radius_m < least_m) {
+    rules.add({"link.hear_radius_m", "robots.radius_m", "robots.speed_max_mps", "control.rate_hz",
+               "safety.gap_share", "safety.neighbour_margin_m", "link.send_interval_max_s"},
+              fmt::format("link.hear_radius_m is {}; must be >= {:.4g}, from where on the safety "
+                          "filter needs to know a robot",
+                          link.hear_radius_m, least_m));
+  }
+  return std::move(rules.broken);
+}
+
+}  // namespace swarm

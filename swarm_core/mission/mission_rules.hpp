@@ -1,0 +1,27 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "swarm_core/mission/mission.hpp"
+
+namespace swarm {
+
+/// A rule between several keys that a mission breaks.
+struct BrokenRule {
+  std::vector<std::string_view> keys;  ///< paths of the keys it ties, the most likely culprit first
+  std::string message;                 ///< what is wrong; what would be right
+};
+
+/// Distance between two robots' centres from which they must hear each other [m]: the safety filter
+/// begins to brake at surface gap m + 2·v_max·dt/γ, and until its next word (send_interval_max_s) a
+/// pair may close in at 2·v_max.
+double least_hear_radius_m(const Mission& mission);
+
+/// All rules between keys that `mission` breaks; its single values are taken to be in range.
+std::vector<BrokenRule> broken_rules(const Mission& mission);
+
+}  // namespace swarm

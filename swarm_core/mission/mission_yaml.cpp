@@ -1,0 +1,96 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include <iterator>
+
+#include <fmt/format.h>
+
+#include "swarm_core/mission/mission_fields.hpp"
+#include "swarm_core/mission/mission_file.hpp"
+
+namespace swarm {
+namespace {
+
+using Out = std::back_insert_iterator<std::string>;
+
+// fmt's `{}` writes the shortest decimal that reads back to the same double.
+
+std::string point(const Vec2& p) { return fmt::format("[{}, {}]", p.x(), p.y()); }
+
+void write_obstacle(Out out, const Obstacle& obstacle) {
+  if (const auto* circle = std::get_if<Circle>(&obstacle)) {
+    fmt::format_to(out, "    - circle_m: {{center: {}, radius: {}}}\n", point(circle->center_m),
+                   circle->radius_m);
+    return;
+  }
+  fmt::format_to(out, "    - polygon_m:\n");
+  for (const Vec2& vertex : std::get<Polygon>(obstacle).vertices_m()) {
+    fmt::format_to(out, "        - {}\n", point(vertex));
+  }
+}
+
+void write_world(Out out, const World& world) {
+  const Box& bounds = world.bounds_m();
+  fmt::format_to(out, "world:\n  bounds_m: [{}, {}, {}, {}]\n", bounds.min_m.x(), bounds.min_m.y(),
+                 bounds.max_m.x(), bounds.max_m.y());
+  if (world.obstacles().empty()) return;
+  fmt::format_to(out, "  obstacles:\n");
+  for (const Obstacle& obstacle : world.obstacles()) write_obstacle(out, obstacle);
+}
+
+void write_mixture(Out out, std::string_view key, const Mixture& mixture) {
+  fmt::format_to(out, "{}:\n", key);
+  for (const auto& [weight, gaussian] : mixture.components()) {
+    const Mat2& c = gaussian.covariance_m2();
+    fmt::format_to(out, "  - mean_m: {}\n    covariance_m2: [[{}, {}], [{}, {}]]\n    weight: {}\n",
+                   point(gaussian.mean_m()), c(0, 0), c(0, 1), c(1, 0), c(1, 1), weight);
+  }
+}
+
+template <class Section, std::size_t N>
+void write_fields(Out out, const Section& section,
+                  const std::array<mission_fields::Field<Section>, N>& fields) {
+  for (const auto& field : fields) {
+    std::visit([&](auto member) { fmt::format_to(out, "  {}: {}\n", field.key, section.*member); },
+               field.member);
+  }
+}
+
+void write_script(Out out, const std::vector<ScriptEvent>& script) {
+  if (script.empty()) return;
+  fmt::format_to(out, "script:\n");
+  for (const ScriptEvent& event : script) {
+    for (const auto& [name, action] : mission_fields::kScriptActions) {
+      if (action != event.action) continue;
+      fmt::format_to(out, "  - {{at_s: {}, action: {}}}\n", event.at_s, name);
+    }
+  }
+}
+
+}  // namespace
+
+std::string to_yaml(const Mission& mission) {
+  std::string text;
+  const Out out(text);
+  fmt::format_to(out, "version: 1\nname: \"{}\"\n", mission.name);
+  write_world(out, mission.world);
+  fmt::format_to(out, "robots:\n");
+  write_fields(out, mission.robots, mission_fields::kRobots);
+  write_mixture(out, "start", mission.start);
+  write_mixture(out, "goal", mission.goal);
+  fmt::format_to(out, "planner:\n  method: {}\n", mission.planner.method);
+  write_fields(out, mission.planner, mission_fields::kPlanner);
+  fmt::format_to(out, "control:\n");
+  write_fields(out, mission.control, mission_fields::kControl);
+  fmt::format_to(out, "safety:\n");
+  write_fields(out, mission.safety, mission_fields::kSafety);
+  fmt::format_to(out, "link:\n");
+  write_fields(out, mission.link, mission_fields::kLink);
+  fmt::format_to(out, "timing:\n");
+  write_fields(out, mission.timing, mission_fields::kTiming);
+  fmt::format_to(out, "launcher:\n");
+  write_fields(out, mission.launcher, mission_fields::kLauncher);
+  write_script(out, mission.script);
+  return text;
+}
+
+}  // namespace swarm

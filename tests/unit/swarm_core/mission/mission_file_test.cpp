@@ -1,0 +1,285 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "swarm_core/mission/mission_file.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "swarm_core/mission/mission_fields.hpp"
+#include "swarm_core/risk/cvar.hpp"
+
+namespace swarm {
+namespace {
+
+constexpr const char* kLeast = R"(version: 1
+world: {bounds_m: [0, 0, 20, 10]}
+start: [{mean_m: [3, 5], covariance_m2: [[1, 0], [0, 1]], weight: 1}]
+goal: [{mean_m: [17, 5], covariance_m2: [[1, 0], [0, 1]], weight: 1}]
+)";
+
+/// Every section with values that are not the defaults.
+constexpr const char* kFull = R"(version: 1
+name: full-1
+world:
+  bounds_m: [-1e1, 0, 20.5, 10]
+  obstacles:
+    - polygon_m: [[8, 2], [8, 3], [9, 3], [9, 2]]
+    - circle_m: {center: [12, 6], radius: 0.75}
+    - {polygon_m: [[5, 0], [7, 0], [7, 1], [6, 1], [6, 2], [5, 2]]}
+robots: {count: 7, radius_m: 0.1, speed_max_mps: 1, placement_gap_m: 0.3}
+start:
+  - {mean_m: [3, 5], covariance_m2: [[1, 0.1], [0.1, 1.5]], weight: 0.3}
+  - {mean_m: [2, 8], covariance_m2: [[0.5, 0], [0, 0.5]], weight: 0.7}
+goal: [{mean_m: [17, 5], covariance_m2: [[1, 0], [0, 1]], weight: 1}]
+planner:
+  method: swarmprm
+  samples: 77
+  risk_alpha: 0.1
+  sigma_min_m: 0.3
+  speed_mps: 0.9
+control: {rate_hz: 20, cruise_mps: 0.95, look_ahead_s: 3.3}
+safety: {gap_share: 0.5, follow_share: 0.1}
+link: {cell_size_m: 12, send_error_m: 0.01}
+timing: {heartbeat_hz: 10}
+launcher: {quorum_share: 0.9, respawn_agent_max: 2}
+script:
+  - {at_s: 5, action: pause}
+  - {at_s: 7.25, action: resume}
+  - {at_s: 60, action: stop}
+)";
+
+void expect_same(const Mixture& a, const Mixture& b) {
+  ASSERT_EQ(a.components().size(), b.components().size());
+  for (std::size_t i = 0; i < a.components().size(); ++i) {
+    const auto& [weight, gaussian] = a.components()[i];
+    // Weights are divided by their sum once more: one rounding.
+    EXPECT_NEAR(weight, b.components()[i].weight, 1e-15);
+    EXPECT_EQ(gaussian.mean_m(), b.components()[i].gaussian.mean_m());
+    EXPECT_EQ(gaussian.covariance_m2(), b.components()[i].gaussian.covariance_m2());
+  }
+}
+
+void expect_same(const World& a, const World& b) {
+  EXPECT_EQ(a.bounds_m().min_m, b.bounds_m().min_m);
+  EXPECT_EQ(a.bounds_m().max_m, b.bounds_m().max_m);
+  ASSERT_EQ(a.obstacles().size(), b.obstacles().size());
+  for (std::size_t i = 0; i < a.obstacles().size(); ++i) {
+    ASSERT_EQ(a.obstacles()[i].index(), b.obstacles()[i].index());
+    if (const auto* circle = std::get_if<Circle>(&a.obstacles()[i])) {
+      EXPECT_EQ(circle->center_m, std::get<Circle>(b.obstacles()[i]).center_m);
+      EXPECT_EQ(circle->radius_m, std::get<Circle>(b.obstacles()[i]).radius_m);
+    } else {
+      EXPECT_EQ(std::get<Polygon>(a.obstacles()[i]).vertices_m(),
+                std::get<Polygon>(b.obstacles()[i]).vertices_m());
+    }
+  }
+}
+
+/// Converts to anything: counts the members of an aggregate.
+struct Anything {
+  template <class T>
+  operator T() const;  // NOLINT: implicit on purpose
+};
+
+template <class Aggregate, class... Members>
+constexpr std::size_t members_of() {
+  if constexpr (requires { Aggregate{Members{}..., Anything{}}; }) {
+    return members_of<Aggregate, Members..., Anything>();
+  } else {
+    return sizeof...(Members);
+  }
+}
+
+template <class Section, std::size_t N>
+void expect_same(const Section& a, const Section& b,
+                 const std::array<mission_fields::Field<Section>, N>& fields) {
+  // The tables are all that reader and writer know: a member without a row would be lost.
+  constexpr std::size_t kTexts = std::is_same_v<Section, PlannerSpec> ? 1 : 0;
+  static_assert(members_of<Section>() == N + kTexts);
+  for (const auto& field : fields) {
+    std::visit([&](auto member) { EXPECT_EQ(a.*member, b.*member) << field.key; }, field.member);
+  }
+}
+
+void expect_same(const Mission& a, const Mission& b) {
+  EXPECT_EQ(a.name, b.name);
+  expect_same(a.world, b.world);
+  expect_same(a.start, b.start);
+  expect_same(a.goal, b.goal);
+  EXPECT_EQ(a.planner.method, b.planner.method);
+  expect_same(a.robots, b.robots, mission_fields::kRobots);
+  expect_same(a.planner, b.planner, mission_fields::kPlanner);
+  expect_same(a.control, b.control, mission_fields::kControl);
+  expect_same(a.safety, b.safety, mission_fields::kSafety);
+  expect_same(a.link, b.link, mission_fields::kLink);
+  expect_same(a.timing, b.timing, mission_fields::kTiming);
+  expect_same(a.launcher, b.launcher, mission_fields::kLauncher);
+  ASSERT_EQ(a.script.size(), b.script.size());
+  for (std::size_t i = 0; i < a.script.size(); ++i) {
+    EXPECT_EQ(a.script[i].at_s, b.script[i].at_s);
+    EXPECT_EQ(a.script[i].action, b.script[i].action);
+  }
+}
+
+std::vector<std::filesystem::path> shipped_missions() {
+  std::vector<std::filesystem::path> files;
+  for (const auto& entry : std::filesystem::directory_iterator(
+           std::filesystem::path(SWARM_SOURCE_DIR) / "deploy/missions")) {
+    files.push_back(entry);
+  }
+  return files;
+}
+
+TEST(MissionFile, FillsInTheDefaults) {
+  const auto mission = parse_mission(kLeast, "least");
+
+  ASSERT_TRUE(mission.has_value()) << mission.error().message;
+  expect_same(mission->robots, RobotsSpec{}, mission_fields::kRobots);
+  expect_same(mission->link, LinkSpec{}, mission_fields::kLink);
+  EXPECT_EQ(mission->planner.method, PlannerSpec{}.method);
+  EXPECT_TRUE(mission->script.empty());
+}
+
+TEST(MissionFile, HasDefaultsInTheirOwnRanges) {
+  const auto mission = parse_mission(kLeast, "least");
+  ASSERT_TRUE(mission.has_value());
+
+  const auto again = parse_mission(to_yaml(*mission), "again");
+
+  ASSERT_TRUE(again.has_value()) << again.error().message;
+}
+
+TEST(MissionFile, ReadsEverySection) {
+  const auto mission = parse_mission(kFull, "full");
+
+  ASSERT_TRUE(mission.has_value()) << mission.error().message;
+  EXPECT_EQ(mission->name, "full-1");
+  EXPECT_EQ(mission->world.bounds_m().min_m, Vec2(-10, 0));
+  EXPECT_EQ(mission->world.obstacles().size(), 3U);
+  EXPECT_EQ(mission->robots.count, 7U);
+  EXPECT_EQ(mission->start.components().size(), 2U);
+  EXPECT_EQ(mission->control.rate_hz, 20.0);
+  EXPECT_EQ(mission->launcher.respawn_agent_max, 2U);
+  ASSERT_EQ(mission->script.size(), 3U);
+  EXPECT_EQ(mission->script[1].at_s, 7.25);
+  EXPECT_EQ(mission->script[2].action, ScriptAction::kStop);
+}
+
+TEST(MissionFile, ReadsBackWhatItWrote) {
+  for (const char* text : {kLeast, kFull}) {
+    const auto mission = parse_mission(text, "first");
+    ASSERT_TRUE(mission.has_value()) << mission.error().message;
+
+    const auto again = parse_mission(to_yaml(*mission), "again");
+
+    ASSERT_TRUE(again.has_value()) << again.error().message << "\n" << to_yaml(*mission);
+    expect_same(*mission, *again);
+  }
+}
+
+TEST(MissionFile, ReportsAllViolationsInOrderOfTheFile) {
+  const auto mission = parse_mission(
+      "version: 3\n"
+      "world: {bounds_m: [0, 0, 20, 10]}\n"
+      "robots: {count: 0, radius_m: x, wheels: 4}\n"
+      "start: [{mean_m: [30, 5], covariance_m2: [[1, 0], [0, 1]], weight: 1}]\n",
+      "m.yaml");
+
+  ASSERT_FALSE(mission.has_value());
+  const std::string& message = mission.error().message;
+  EXPECT_EQ(std::count(message.begin(), message.end(), '\n') + 1, 6) << message;
+  std::size_t from = 0;
+  for (const char* place : {"m.yaml:1:1: goal is missing", "m.yaml:1:10:", "m.yaml:3:17:",
+                            "m.yaml:3:30:", "m.yaml:3:33:", "m.yaml:4:18:"}) {
+    const std::size_t at = message.find(place, from);
+    ASSERT_NE(at, std::string::npos) << place << " after byte " << from << " of\n" << message;
+    from = at;
+  }
+}
+
+TEST(MissionFile, SaysWhichFileCannotBeRead) {
+  const auto missing = load_mission("/nowhere/at all.yaml");
+  const auto folder = load_mission("/");
+
+  ASSERT_FALSE(missing.has_value());
+  EXPECT_NE(missing.error().message.find("/nowhere/at all.yaml"), std::string::npos);
+  ASSERT_FALSE(folder.has_value());
+}
+
+TEST(MissionFile, SurvivesAliasBombs) {
+  std::string bomb = "a: &a0 [x, x, x, x, x, x, x, x, x]\n";
+  for (int i = 1; i < 30; ++i) {
+    bomb += "b" + std::to_string(i) + ": &a" + std::to_string(i) + " [";
+    for (int j = 0; j < 9; ++j) bomb += "*a" + std::to_string(i - 1) + ", ";
+    bomb += "]\n";
+  }
+
+  EXPECT_FALSE(parse_mission(bomb, "bomb").has_value());
+}
+
+TEST(MissionFile, SurvivesDepthAndSizeBombs) {
+  const std::size_t large = kMaxMissionBytes;
+  for (const std::string& unit :
+       {std::string("["),     std::string("{"),     std::string("- "),     std::string("? "),
+        std::string("a: "),   std::string("\n"),    std::string("#"),      std::string("\""),
+        std::string("'"),     std::string("!"),     std::string("&"),      std::string("*"),
+        std::string("%"),     std::string("- a\n"), std::string("a: 1\n"), std::string("[a: "),
+        std::string("{a: {"), std::string("\xff"),  std::string("\0", 1),  std::string("|\n"),
+        std::string(" ")}) {
+    std::string bomb;
+    bomb.reserve(large);
+    while (bomb.size() + unit.size() <= large / 16) bomb += unit;
+
+    EXPECT_FALSE(parse_mission(bomb, "bomb").has_value()) << unit;
+  }
+  EXPECT_FALSE(parse_mission(std::string(large + 1, ' '), "too large").has_value());
+}
+
+TEST(MissionFile, BoundsTheNumberOfVertices) {
+  std::string text = kLeast;
+  text.erase(text.find('}'), 1);
+  const std::string triangle = "{polygon_m: [[8, 2], [9, 2], [9, 3]]}, ";
+  std::string obstacles = ", obstacles: [";
+  for (int i = 0; i < 10'001; ++i) obstacles += triangle;
+  text.insert(text.find("10]") + 3, obstacles + "]}");
+
+  const auto mission = parse_mission(text, "many");
+
+  ASSERT_FALSE(mission.has_value());
+  EXPECT_NE(mission.error().message.find("10001 items; must have between 0 and 10000"),
+            std::string::npos)
+      << mission.error().message.substr(0, 500);
+}
+
+TEST(MissionFile, LoadsEveryShippedMission) {
+  const auto files = shipped_missions();
+  ASSERT_GE(files.size(), 2U);
+  for (const auto& file : files) {
+    const auto mission = load_mission(file);
+
+    ASSERT_TRUE(mission.has_value()) << mission.error().message;
+    EXPECT_EQ(mission->name, file.stem().string());
+  }
+}
+
+TEST(MissionFile, ShipsMissionsWhoseStartAndGoalKeepTheRiskPromise) {
+  for (const auto& file : shipped_missions()) {
+    const auto mission = load_mission(file);
+    ASSERT_TRUE(mission.has_value()) << mission.error().message;
+    const double k = cvar_coefficient(mission->planner.risk_alpha);
+
+    for (const Mixture* mixture : {&mission->start, &mission->goal}) {
+      for (const auto& [weight, gaussian] : mixture->components()) {
+        EXPECT_TRUE(in_free(gaussian, mission->world, k, mission->planner.risk_delta_m))
+            << file << " at " << gaussian.mean_m().transpose() << ", CVaR "
+            << max_cvar_m(gaussian, mission->world, k);
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace swarm
