@@ -1,0 +1,11 @@
+#!/bin/sh
+# Installs what is missing, builds and runs all tests; ends with ctest's closing line.
+#   tests/run.sh [release|asan|tsan]      (default: release)
+set -eu
+root=$(cd "$(dirname "$0")/.." && pwd)
+preset=${1:-release}
+cd "$root"
+deploy/install_packages.sh
+cmake --preset "$preset" -DSWARM_BUILD_TESTS=ON
+cmake --build --preset "$preset"
+ctest --preset "$preset"
