@@ -22,10 +22,10 @@ TEST(Pursuit, AimsOnlyAtWhatItSees) {
   const World world = corner_world();
   Pursuit sut(Polyline({{0, 0}, {20, 0}, {20, 20}}), options());
 
-  const auto aim = sut.update({12, 0}, world);
+  const auto aim = sut.update({11, 0}, world);
 
   EXPECT_TRUE(aim.visible);
-  EXPECT_TRUE(world.segment_is_free({12, 0}, aim.point_m, 0.2));
+  EXPECT_TRUE(world.segment_is_free({11, 0}, aim.point_m, 0.2));
   EXPECT_GT(aim.point_m.x(), 15.0);
 }
 
