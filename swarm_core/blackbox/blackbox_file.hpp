@@ -13,12 +13,14 @@ namespace swarm::blackbox {
 /// `blackbox/robot-00042.bbox` inside a run directory.
 std::filesystem::path file_of(const std::filesystem::path& run_dir, RobotId robot);
 
-/// Appends records. Layout: magic "SWBBOX1\n", then records of (u8 kind, u8 zero, u16 size,
-/// u32 CRC-32 of the payload, payload), little-endian. Every record is one write(2), so a killed
-/// process loses at most the record it was writing. A failing disk never stops the robot: the record
-/// is dropped and counted.
+/// Appends records to one robot's file, of which it is the only writer. Layout: magic "SWBBOX1\n",
+/// then records of (u8 kind, u8 zero, u16 size, u32 CRC-32 of the payload, payload), little-endian.
+/// Every record is one write(2), so a killed process loses at most the record it was writing. A
+/// failing disk never stops the robot: the record is dropped and counted. A respawned robot's
+/// process appends to the same file.
 class Writer {
  public:
+  /// Creates the file and its folder if need be.
   static Result<Writer> open(const std::filesystem::path& file);
   Writer(Writer&& other) noexcept;
   Writer& operator=(Writer&& other) noexcept;
@@ -36,9 +38,11 @@ class Writer {
 
 struct File {
   std::vector<Record> records;
-  std::uint64_t damaged = 0;  ///< records whose checksum or size is wrong; reading goes on if it can
+  std::uint64_t damaged = 0;  ///< stretches of bytes that are no record; reading goes on after them
   bool truncated = false;     ///< the last record is incomplete (the process was killed)
 };
+
+/// Reads what is readable. Fails only if the file cannot be read or is no black box at all.
 
 Result<File> read_file(const std::filesystem::path& file);
 

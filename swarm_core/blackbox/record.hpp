@@ -13,8 +13,8 @@
 #include "swarm_core/base/time.hpp"
 #include "swarm_core/metrics/histogram.hpp"
 
-/// The black box of one robot: a file of its own that it alone appends to, at control rate. Audits and
-/// reports are computed from these files and nothing else.
+/// The black box of one robot: a file of its own that it alone appends to, at control rate. Audits
+/// and reports are computed from these files and nothing else.
 namespace swarm::blackbox {
 
 /// Start of a life of this robot's process (a respawned robot has several in one file).
@@ -30,11 +30,11 @@ struct Header {
 struct Step {
   UtcTime stamp{};
   Vec2 position_m = Vec2::Zero();
-  Vec2 velocity_mps = Vec2::Zero();      ///< commanded
-  std::int32_t lateness_us = 0;          ///< actual minus scheduled start of the tick
-  std::uint8_t mode = 0;                 ///< link::RobotMode
-  std::uint8_t goal = kNoGoal;           ///< sink of the plan this robot goes to
-  std::uint16_t neighbours = 0;          ///< robots it believed near
+  Vec2 velocity_mps = Vec2::Zero();  ///< commanded
+  std::int32_t lateness_us = 0;      ///< actual minus scheduled start of the tick
+  std::uint8_t mode = 0;             ///< link::RobotMode
+  std::uint8_t goal = kNoGoal;       ///< sink of the plan this robot goes to
+  std::uint16_t neighbours = 0;      ///< robots it believed near
   static constexpr std::uint8_t kNoGoal = 255;
 };
 
@@ -44,13 +44,13 @@ struct LinkStats {
   std::uint32_t states_sent = 0;
   std::uint32_t states_received = 0;
   std::vector<std::uint32_t> refused{};  ///< by link::RefusalReason
-  Histogram state_age;                 ///< written → used by the controller
+  Histogram state_age{};                 ///< written → used by the controller
 };
 
 /// Something that happened to this robot.
 struct Note {
   UtcTime stamp{};
-  UtcTime caused{};  ///< stamp of the message that caused it; 0 if none
+  UtcTime caused{};    ///< stamp of the message that caused it; 0 if none
   std::string code{};  ///< as link::EventMessage::code
   std::string text{};
 };

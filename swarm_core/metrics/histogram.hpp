@@ -8,19 +8,26 @@
 namespace swarm {
 
 /// Log-linear histogram of microseconds: 16 linear bins per power of two, relative error ≤ 6.25 %,
-/// from 1 µs to 2³² µs (71 minutes; larger values land in the last bin). Fixed memory, mergeable.
+/// from 0 to 2³² µs (71 minutes; larger values land in the last bin). Fixed memory, mergeable.
 class Histogram {
  public:
   static constexpr std::size_t kBins = 16 + (32 - 4) * 16;
 
   void add(std::int64_t value_us);  ///< negative values count as 0
   void merge(const Histogram& other);
+
+  /// Adds samples known only by their bin; max_us() then is the top of that bin, at most 6.25 %
+  /// high. \pre bin < kBins; asserted
   void add_bin(std::size_t bin, std::uint64_t count);
+
+  /// Largest value that falls into a bin [µs]. \pre bin < kBins; asserted
+  static std::int64_t top_us(std::size_t bin);
 
   std::uint64_t count() const { return count_; }
   std::uint64_t bin(std::size_t i) const { return bins_[i]; }
 
-  /// Smallest value v such that at least q of all samples are ≤ the top of v's bin [µs]; 0 if empty.
+  /// The top of the first bin up to which at least q of all samples lie, and never more than
+  /// max_us() [µs]; 0 if empty.
   std::int64_t quantile_us(double q) const;
   std::int64_t max_us() const { return max_us_; }
 
