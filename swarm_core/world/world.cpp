@@ -156,7 +156,7 @@ Result<World> World::make(Box bounds_m, std::vector<Obstacle> obstacles) {
                                 i, circle->radius_m));
       }
       world.boxes_.push_back(box_of(*circle));
-      world.convex_obstacles_.push_back({{}, *circle, world.boxes_.back()});
+      world.convex_obstacles_.push_back({{}, *circle, world.boxes_.back(), i});
       continue;
     }
     const Polygon& polygon = std::get<Polygon>(obstacles[i]);
@@ -166,7 +166,7 @@ Result<World> World::make(Box bounds_m, std::vector<Obstacle> obstacles) {
     world.boxes_.push_back(box_of(polygon.vertices_m()));
     for (std::vector<Vec2>& part : decompose_convex(polygon)) {
       const Box box = box_of(part);
-      world.convex_obstacles_.push_back({std::move(part), {}, box});
+      world.convex_obstacles_.push_back({std::move(part), {}, box, i});
     }
   }
   world.obstacles_ = std::move(obstacles);

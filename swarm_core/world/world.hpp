@@ -43,6 +43,7 @@ struct ConvexObstacle {
   std::vector<Vec2> vertices_m;  ///< counter-clockwise; empty for a circle
   Circle circle;                 ///< used when `vertices_m` is empty
   Box box;
+  std::size_t obstacle = 0;  ///< index into World::obstacles() of what this is a part of
   SignedDistance signed_distance(const Vec2& point_m) const;
 };
 

@@ -1,0 +1,71 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "planner_service/roadmap/edge_check.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace swarm::planner {
+
+EdgeChecker::EdgeChecker(const World& world, const RiskLimit& risk)
+    : world_(&world), k_(cvar_coefficient(risk.alpha)), delta_m_(risk.delta_m) {}
+
+EdgeChecker::Sample EdgeChecker::sample(const Geodesic& geodesic, double t) const {
+  const Gaussian g = geodesic.at(t);
+  Sample sample{t, std::numeric_limits<double>::infinity(),
+                std::numeric_limits<double>::infinity()};
+  for (const ConvexObstacle* obstacle : near_) {
+    const SignedDistance at_mean = obstacle->signed_distance(g.mean_m());
+    sample.slack_m = std::min(sample.slack_m, delta_m_ - obstacle_cvar_m(g, at_mean, k_));
+    sample.distance_m = std::min(sample.distance_m, at_mean.distance_m);
+  }
+  return sample;
+}
+
+bool EdgeChecker::is_free(const Gaussian& a, const Gaussian& b, double tolerance_m) {
+  const double sigma_max_m = std::max(a.max_sigma_m(), b.max_sigma_m());
+  const double sigma_min_m = std::min(a.min_sigma_m(), b.min_sigma_m());
+  // Along a W₂ geodesic σ_max is convex and σ_min concave: the ends bound both. An obstacle whose
+  // box is farther from the box of the way than the widest spread cannot come into play.
+  const double reach_m = k_ * sigma_max_m - delta_m_;
+  const Box way{a.mean_m().cwiseMin(b.mean_m()), a.mean_m().cwiseMax(b.mean_m())};
+  near_.clear();
+  for (const ConvexObstacle& obstacle : world_->convex_obstacles()) {
+    const Vec2 gap =
+        (obstacle.box.min_m - way.max_m).cwiseMax(way.min_m - obstacle.box.max_m).cwiseMax(0.0);
+    if (gap.squaredNorm() < reach_m * reach_m) near_.push_back(&obstacle);
+  }
+  if (near_.empty()) return true;
+
+  const double length_m = wasserstein2(a, b);
+  const double mean_way_m = (b.mean_m() - a.mean_m()).norm();
+  const double shape_way_m =
+      std::sqrt(std::max(0.0, length_m * length_m - mean_way_m * mean_way_m));
+  const double straight_rate_m = mean_way_m + k_ * shape_way_m;
+  const double turn_rate_m2 = k_ * (sigma_max_m - sigma_min_m) * mean_way_m;
+  // Where the limit holds, s ≥ kσ_min − δ.
+  const double distance_min_m = k_ * sigma_min_m - delta_m_;
+
+  const Geodesic geodesic(a, b);
+  open_.clear();
+  open_.push_back({sample(geodesic, 0.0), sample(geodesic, 1.0)});
+  if (open_[0].from.slack_m < 0.0 || open_[0].to.slack_m < 0.0) return false;
+  // First in, first out: the whole edge is looked at coarsely before any part of it finely, and
+  // most edges that are not free fall at once.
+  for (std::size_t i = 0; i < open_.size(); ++i) {
+    const auto [from, to] = open_[i];
+    const double share = to.t - from.t;
+    const double distance_m =
+        std::max(distance_min_m, 0.5 * (from.distance_m + to.distance_m - share * mean_way_m));
+    const double rate_m = straight_rate_m + turn_rate_m2 / distance_m;
+    if (from.slack_m + to.slack_m + 2.0 * tolerance_m >= rate_m * share) continue;
+    const Sample middle = sample(geodesic, 0.5 * (from.t + to.t));
+    if (middle.slack_m < 0.0) return false;
+    open_.push_back({from, middle});
+    open_.push_back({middle, to});
+  }
+  return true;
+}
+
+}  // namespace swarm::planner

@@ -1,0 +1,53 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "swarm_core/gmm/wasserstein.hpp"
+#include "swarm_core/risk/cvar.hpp"
+#include "swarm_core/world/world.hpp"
+
+namespace swarm::planner {
+
+/// COLLISIONFREE of SwarmPRM, Alg. 1: whether every Gaussian on the W₂ geodesic keeps CVaR ≤ δ.
+///
+/// Instead of a fixed grid, an interval of the edge is halved until its two ends prove it: the
+/// slack δ − CVaR changes along the edge at most by
+///
+///   L = |Δμ| + k √(W₂² − |Δμ|²) + k (σ_max − σ_min) |Δμ| / s
+///
+/// (way of the mean, change of shape, turn of the normal at distance s from a corner), so slacks a
+/// and b at the ends of an interval of length h prove that CVaR ≤ δ + tolerance on it when a + b +
+/// 2 · tolerance ≥ L h. Nothing between the samples is taken on trust.
+///
+/// Keeps scratch memory: one checker per thread.
+class EdgeChecker {
+ public:
+  /// Keeps a reference to the world.
+  EdgeChecker(const World& world, const RiskLimit& risk);
+
+  /// True proves CVaR ≤ δ + tolerance on the whole edge; false means a point with CVaR > δ. Cost
+  /// grows with 1/tolerance where the edge runs along the limit.
+  bool is_free(const Gaussian& a, const Gaussian& b, double tolerance_m);
+
+ private:
+  struct Sample {
+    double t = 0.0;
+    double slack_m = 0.0;
+    double distance_m = 0.0;
+  };
+  struct Interval {
+    Sample from, to;
+  };
+
+  Sample sample(const Geodesic& geodesic, double t) const;
+
+  const World* world_;
+  double k_;
+  double delta_m_;
+  std::vector<const ConvexObstacle*> near_;
+  std::vector<Interval> open_;
+};
+
+}  // namespace swarm::planner

@@ -1,0 +1,20 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "swarm_core/gmm/mixture.hpp"
+#include "swarm_core/risk/cvar.hpp"
+#include "swarm_core/world/world.hpp"
+
+namespace swarm::planner {
+
+/// One line for each component of a mixture that breaks the risk limit where it stands: which, at
+/// which obstacle, its CVaR against δ, and what would help. Empty when all keep it. `which` is
+/// "start" or "goal".
+std::string describe_violations(const Mixture& mixture, std::string_view which, const World& world,
+                                const RiskLimit& risk);
+
+}  // namespace swarm::planner

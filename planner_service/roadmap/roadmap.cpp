@@ -1,0 +1,44 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "planner_service/roadmap/roadmap.hpp"
+
+#include <limits>
+#include <utility>
+
+#include "planner_service/roadmap/neighbours.hpp"
+
+namespace swarm::planner {
+
+void Roadmap::close_edge(std::uint32_t a, std::uint32_t b) {
+  for (const auto& [node, other] : {std::pair{a, b}, std::pair{b, a}}) {
+    for (std::uint32_t i = arc_offset[node]; i < arc_offset[node + 1]; ++i) {
+      if (arcs[i].to == other) arcs[i].length_m = std::numeric_limits<double>::infinity();
+    }
+  }
+}
+
+Roadmap connect(std::vector<Gaussian> nodes, double radius_m, EdgeChecker& checker) {
+  Roadmap roadmap;
+  std::vector<NeighbourPair> edges = find_neighbours(nodes, radius_m);
+  std::erase_if(edges, [&](const NeighbourPair& edge) {
+    return !checker.is_free(nodes[edge.a], nodes[edge.b], kBuildTolerance_m);
+  });
+  roadmap.arc_offset.assign(nodes.size() + 1, 0);
+  for (const NeighbourPair& edge : edges) {
+    ++roadmap.arc_offset[edge.a + 1];
+    ++roadmap.arc_offset[edge.b + 1];
+  }
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    roadmap.arc_offset[i + 1] += roadmap.arc_offset[i];
+  }
+  roadmap.arcs.resize(2 * edges.size());
+  std::vector<std::uint32_t> fill(roadmap.arc_offset.begin(), roadmap.arc_offset.end() - 1);
+  for (const NeighbourPair& edge : edges) {
+    roadmap.arcs[fill[edge.a]++] = {edge.b, edge.distance_m};
+    roadmap.arcs[fill[edge.b]++] = {edge.a, edge.distance_m};
+  }
+  roadmap.nodes = std::move(nodes);
+  return roadmap;
+}
+
+}  // namespace swarm::planner

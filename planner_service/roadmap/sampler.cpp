@@ -1,0 +1,58 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "planner_service/roadmap/sampler.hpp"
+
+#include <cmath>
+#include <optional>
+
+#include "planner_service/roadmap/means.hpp"
+#include "planner_service/roadmap/squeeze.hpp"
+
+namespace swarm::planner {
+namespace {
+
+constexpr std::size_t kTriesPerSample = 200;
+
+Gaussian with_random_shape(const Vec2& mean_m, const SamplerOptions& options, Rng& rng) {
+  const double sigma1_m = uniform(rng, options.sigma_min_m, options.sigma_max_m);
+  const double sigma2_m = uniform(rng, options.sigma_min_m, options.sigma_max_m);
+  return Gaussian::from_parameters(mean_m, sigma1_m, sigma2_m,
+                                   uniform(rng, -options.rho_max, options.rho_max));
+}
+
+}  // namespace
+
+std::vector<Gaussian> sample_free(const World& world, const RiskLimit& risk,
+                                  const SamplerOptions& options, std::size_t count, Rng& rng) {
+  const double k = cvar_coefficient(risk.alpha);
+  const bool fit = options.kind == SamplerKind::kFit;
+  // The narrowest Gaussian that may be sampled needs this much room, so a mean nearer is no use.
+  const double clearance_m = k * options.sigma_min_m - risk.delta_m;
+  HaltonMeans halton(world.bounds_m(), rng);
+  std::vector<Gaussian> samples;
+  samples.reserve(count);
+  for (std::size_t i = 0; samples.size() < count && i < kTriesPerSample * count; ++i) {
+    std::optional<Vec2> mean;
+    // By the samples found, not by the tries: those near obstacles fail more often.
+    const auto found = static_cast<double>(samples.size());
+    if (std::floor((found + 1.0) * options.bridge_share) >
+            std::floor(found * options.bridge_share) &&
+        !world.obstacles().empty()) {
+      mean = near_obstacle_mean(world, options.bridge_sigma_m, clearance_m, rng);
+      if (!mean) continue;
+    } else {
+      mean = fit ? halton.next() : uniform_mean(world.bounds_m(), rng);
+    }
+    const Gaussian wished = with_random_shape(*mean, options, rng);
+    if (!fit) {
+      if (in_free(wished, world, k, risk.delta_m)) samples.push_back(wished);
+      continue;
+    }
+    const std::optional<Gaussian> fitting =
+        squeeze_into_free(wished, world, k, risk.delta_m, kSqueezeBelowMin * options.sigma_min_m);
+    if (fitting) samples.push_back(*fitting);
+  }
+  return samples;
+}
+
+}  // namespace swarm::planner

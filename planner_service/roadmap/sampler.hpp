@@ -1,0 +1,40 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "swarm_core/base/random.hpp"
+#include "swarm_core/gmm/gaussian.hpp"
+#include "swarm_core/risk/cvar.hpp"
+#include "swarm_core/world/world.hpp"
+
+namespace swarm::planner {
+
+/// How SAMPLEFREE finds Gaussians in free space.
+enum class SamplerKind {
+  kUniform,  ///< uniform means; a Gaussian that violates the risk limit is rejected (Alg. 1 as
+             ///< printed)
+  kFit,      ///< Halton means; it is squeezed along the obstacle's normal instead
+};
+
+struct SamplerOptions {
+  SamplerKind kind = SamplerKind::kFit;
+  double sigma_min_m = 1.0;  ///< range of σ₁ and σ₂
+  double sigma_max_m = 4.0;
+  double rho_max = 0.6;       ///< range of |ρ|
+  double bridge_share = 0.3;  ///< share of means drawn near obstacles, see near_obstacle_mean()
+  double bridge_sigma_m = 10.0;
+};
+
+/// A squeezed Gaussian may be this much narrower than σ_min before it counts as too narrow.
+inline constexpr double kSqueezeBelowMin = 0.8;
+
+/// SAMPLEFREE of SwarmPRM, Alg. 1: Gaussians [x, y, σ₁, σ₂, ρ] (eq. 8) that keep the risk limit
+/// (12). Returns fewer than `count` when free space is so scarce that 200 tries a sample do not
+/// find it.
+std::vector<Gaussian> sample_free(const World& world, const RiskLimit& risk,
+                                  const SamplerOptions& options, std::size_t count, Rng& rng);
+
+}  // namespace swarm::planner

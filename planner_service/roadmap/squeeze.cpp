@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "planner_service/roadmap/squeeze.hpp"
+
+#include <cmath>
+
+#include "swarm_core/risk/cvar.hpp"
+
+namespace swarm::planner {
+namespace {
+
+// Squeezing towards one obstacle may widen the Gaussian a little towards another; in a corner of
+// two walls three rounds settle it, more means a place too tight to be worth a sample.
+constexpr int kRounds = 8;
+// Aims a hair below the limit, so that rounding does not leave it a hair above.
+constexpr double kShy = 1.0 - 1e-9;
+
+}  // namespace
+
+std::optional<Gaussian> squeeze_into_free(const Gaussian& g, const World& world, double k,
+                                          double delta_m, double sigma_min_m) {
+  Gaussian squeezed = g;
+  for (int round = 0; round < kRounds; ++round) {
+    double worst_m = delta_m;
+    SignedDistance at_worst;
+    for (const ConvexObstacle& obstacle : world.convex_obstacles()) {
+      if (obstacle.box.distance_m(g.mean_m()) >= k * squeezed.max_sigma_m() - worst_m) continue;
+      const SignedDistance at_mean = obstacle.signed_distance(g.mean_m());
+      const double cvar_m = obstacle_cvar_m(squeezed, at_mean, k);
+      if (cvar_m > worst_m) {
+        worst_m = cvar_m;
+        at_worst = at_mean;
+      }
+    }
+    if (worst_m <= delta_m) return squeezed;
+    const double room_m = at_worst.distance_m + delta_m;
+    if (room_m <= 0.0) return std::nullopt;
+    const Vec2& n = at_worst.gradient;
+    const double q = kShy * room_m / (k * std::sqrt(squeezed.variance_along_m2(n)));
+    const Mat2 a = Mat2::Identity() - (1.0 - q) * n * n.transpose();
+    const Mat2 covariance = a * squeezed.covariance_m2() * a;
+    if (q < 1e-6) return std::nullopt;
+    squeezed = Gaussian::from_valid(squeezed.mean_m(), covariance);
+    if (squeezed.min_sigma_m() < sigma_min_m) return std::nullopt;
+  }
+  return std::nullopt;
+}
+
+}  // namespace swarm::planner

@@ -1,0 +1,21 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include "swarm_core/gmm/gaussian.hpp"
+#include "swarm_core/world/world.hpp"
+
+namespace swarm::planner {
+
+/// Makes a Gaussian keep CVaR ≤ δ at its place by narrowing it towards the obstacles only:
+///
+///   Σ' = AΣA,  A = I − (1−q)nnᵀ,  q = (s(μ) + δ) / (k σₙ)
+///
+/// for the obstacle that violates the limit most, until none does. Nothing when the mean itself is
+/// too near, or when a standard deviation would fall below `sigma_min_m`.
+std::optional<Gaussian> squeeze_into_free(const Gaussian& g, const World& world, double k,
+                                          double delta_m, double sigma_min_m);
+
+}  // namespace swarm::planner

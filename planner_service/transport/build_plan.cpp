@@ -1,0 +1,71 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "planner_service/transport/build_plan.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <utility>
+
+#include "swarm_core/base/assert.hpp"
+#include "swarm_core/gmm/wasserstein.hpp"
+
+namespace swarm::planner {
+namespace {
+
+// Legs must run forward in time even where nothing moves.
+constexpr double kShortestLeg_s = 1e-3;
+
+// A mean that stands still while its Gaussian changes shape still takes its robots along: the leg
+// then lasts as long as their mean way asks for.
+double leg_duration_s(const Gaussian& from, const Gaussian& to, double speed_mps) {
+  const double mean_way_m = (to.mean_m() - from.mean_m()).norm();
+  const double squared = wasserstein2_squared(from, to);
+  const double shape_way_m = std::sqrt(std::max(0.0, squared - mean_way_m * mean_way_m));
+  return std::max(std::max(mean_way_m, shape_way_m) / speed_mps, kShortestLeg_s);
+}
+
+std::vector<double> arrival_times_s(const Waypoints& waypoints, double speed_mps) {
+  std::vector<double> times_s{0.0};
+  for (std::size_t i = 1; i < waypoints.size(); ++i) {
+    times_s.push_back(times_s.back() + leg_duration_s(waypoints[i - 1], waypoints[i], speed_mps));
+  }
+  return times_s;
+}
+
+}  // namespace
+
+Result<FlowPlan> build_plan(std::span<const Route> routes, std::size_t starts, std::size_t goals,
+                            double speed_mps) {
+  SWARM_ASSERT(speed_mps > 0.0);
+  std::vector<PlanNode> nodes(starts + goals);
+  std::vector<std::vector<double>> times_s;
+  for (const Route& route : routes) {
+    SWARM_ASSERT(route.waypoints.size() >= 2 && route.from < starts && route.to < goals);
+    times_s.push_back(arrival_times_s(route.waypoints, speed_mps));
+    PlanNode& source = nodes[route.from];
+    PlanNode& sink = nodes[starts + route.to];
+    source.gaussian = route.waypoints.front();
+    source.mass += route.mass;
+    sink.gaussian = route.waypoints.back();
+    sink.mass += route.mass;
+    sink.time = std::max(sink.time, MissionTime(times_s.back().back()));
+  }
+  std::vector<PlanLeg> legs;
+  for (std::size_t r = 0; r < routes.size(); ++r) {
+    const Route& route = routes[r];
+    const auto sink = static_cast<std::uint32_t>(starts + route.to);
+    const double stretch = nodes[sink].time.count() / times_s[r].back();
+    auto previous = static_cast<std::uint32_t>(route.from);
+    for (std::size_t i = 1; i + 1 < route.waypoints.size(); ++i) {
+      const auto node = static_cast<std::uint32_t>(nodes.size());
+      nodes.push_back({route.waypoints[i], MissionTime(stretch * times_s[r][i]), route.mass});
+      legs.push_back({previous, node, route.mass});
+      previous = node;
+    }
+    legs.push_back({previous, sink, route.mass});
+  }
+  return FlowPlan::make(std::move(nodes), std::move(legs));
+}
+
+}  // namespace swarm::planner

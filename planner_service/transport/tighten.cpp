@@ -1,0 +1,87 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "planner_service/transport/tighten.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <utility>
+
+#include "planner_service/roadmap/roadmap.hpp"
+#include "planner_service/roadmap/squeeze.hpp"
+#include "swarm_core/gmm/wasserstein.hpp"
+
+namespace swarm::planner {
+namespace {
+
+constexpr double kWorthwhile_m = 1e-6;
+constexpr int kPushes = 3;
+
+Waypoints resampled(const Waypoints& waypoints, double spacing_m) {
+  Waypoints fine{waypoints.front()};
+  for (std::size_t i = 1; i < waypoints.size(); ++i) {
+    const double length_m = wasserstein2(waypoints[i - 1], waypoints[i]);
+    const auto parts = static_cast<int>(std::ceil(length_m / spacing_m));
+    const Geodesic geodesic(waypoints[i - 1], waypoints[i]);
+    for (int part = 1; part < parts; ++part) {
+      fine.push_back(geodesic.at(static_cast<double>(part) / parts));
+    }
+    fine.push_back(waypoints[i]);
+  }
+  return fine;
+}
+
+// Moves the mean away from the nearest obstacle until the narrowest Gaussian has room there.
+Gaussian pushed_out(const Gaussian& g, const World& world, double room_m) {
+  Vec2 mean_m = g.mean_m();
+  for (int push = 0; push < kPushes; ++push) {
+    double nearest_m = room_m;
+    Vec2 away = Vec2::Zero();
+    for (const ConvexObstacle& obstacle : world.convex_obstacles()) {
+      if (obstacle.box.distance_m(mean_m) >= nearest_m) continue;
+      const SignedDistance at_mean = obstacle.signed_distance(mean_m);
+      if (at_mean.distance_m < nearest_m) {
+        nearest_m = at_mean.distance_m;
+        away = at_mean.gradient;
+      }
+    }
+    if (nearest_m >= room_m) break;
+    mean_m += (room_m - nearest_m) * away;
+  }
+  return Gaussian::from_valid(mean_m, g.covariance_m2());
+}
+
+}  // namespace
+
+void tighten(Waypoints& waypoints, const World& world, const RiskLimit& risk,
+             const TightenOptions& options, EdgeChecker& checker) {
+  if (waypoints.size() < 3) return;
+  const double k = cvar_coefficient(risk.alpha);
+  // A hair more than σ_min needs, so that the squeeze that follows does not end below it.
+  const double room_m = k * options.sigma_min_m * (1.0 + 1e-6) - risk.delta_m;
+  Waypoints fine = resampled(waypoints, options.spacing_m);
+  for (std::uint32_t sweep = 0; sweep < options.sweeps; ++sweep) {
+    // Odd waypoints, then even ones: a waypoint moves between neighbours that stand still.
+    for (const std::size_t first : {std::size_t{1}, std::size_t{2}}) {
+      for (std::size_t i = first; i + 1 < fine.size(); i += 2) {
+        const Gaussian& before = fine[i - 1];
+        const Gaussian& after = fine[i + 1];
+        const Gaussian middle = pushed_out(Geodesic(before, after).at(0.5), world, room_m);
+        const std::optional<Gaussian> moved =
+            squeeze_into_free(middle, world, k, risk.delta_m, options.sigma_min_m);
+        if (!moved) continue;
+        const double now_m = wasserstein2(before, fine[i]) + wasserstein2(fine[i], after);
+        const double then_m = wasserstein2(before, *moved) + wasserstein2(*moved, after);
+        if (now_m - then_m < kWorthwhile_m) continue;
+        if (checker.is_free(before, *moved, kPlanTolerance_m) &&
+            checker.is_free(*moved, after, kPlanTolerance_m)) {
+          fine[i] = *moved;
+        }
+      }
+    }
+  }
+  waypoints = std::move(fine);
+}
+
+}  // namespace swarm::planner

@@ -1,0 +1,30 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace swarm::planner {
+
+/// Mass λᵢⱼ on the route from start component i to goal component j.
+struct Shipment {
+  std::size_t from = 0;
+  std::size_t to = 0;
+  double mass = 0.0;
+};
+
+/// Solves the transport problem                                                  [SwarmPRM, eq. 13]
+///
+///   min Σᵢⱼ λᵢⱼ Lᵢⱼ   s.t.  Σⱼ λᵢⱼ = ωᵢ,  Σᵢ λᵢⱼ = ω'ⱼ,  λᵢⱼ ≥ 0
+///
+/// exactly on masses in units of 1e-9 and costs in units of 1e-8 of the largest (network simplex);
+/// a basic solution, so at most supplies + demands − 1 shipments, ordered by (from, to). `costs_m`
+/// is row-major [supplies × demands], +∞ where no route exists. Nothing when no transport avoids
+/// those. \pre supplies and demands are positive and each sum to 1.
+std::optional<std::vector<Shipment>> solve_transport(std::span<const double> supplies,
+                                                     std::span<const double> demands,
+                                                     std::span<const double> costs_m);
+
+}  // namespace swarm::planner
