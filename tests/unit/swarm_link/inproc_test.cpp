@@ -1,0 +1,73 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+// What only the in-process bus promises; what it shares with DDS is in tests/conformance.
+#include <gtest/gtest.h>
+
+#include "swarm_link/inproc/inproc_bus.hpp"
+
+namespace swarm::link {
+namespace {
+
+EventMessage event(std::uint32_t source) { return {.source = source, .code = "test"}; }
+
+TEST(InprocBus, DeliversAtOnceInTheOrderOfWriting) {
+  InprocBus bus;
+  const auto a = bus.make_participant();
+  const auto b = bus.make_participant();
+  const auto reader = b->make_reader(event_topic()).value();
+  const auto from_a = a->make_writer(event_topic()).value();
+  const auto from_b = b->make_writer(event_topic()).value();
+
+  from_a->write(event(1));
+  from_b->write(event(2));
+  from_a->write(event(3));
+
+  std::vector<EventMessage> heard;
+  EXPECT_EQ(reader->take(heard), 3U);
+  EXPECT_EQ(heard, (std::vector{event(1), event(2), event(3)}));
+  EXPECT_EQ(reader->take(heard), 0U);
+}
+
+TEST(InprocBus, MayEndBeforeItsEndpoints) {
+  auto bus = std::make_unique<InprocBus>();
+  const auto participant = bus->make_participant();
+  const auto writer = participant->make_writer(event_topic()).value();
+  const auto reader = participant->make_reader(event_topic()).value();
+
+  bus.reset();
+
+  EXPECT_TRUE(writer->write(event(1)));
+  std::vector<EventMessage> heard;
+  EXPECT_EQ(reader->take(heard), 1U);
+}
+
+TEST(InprocBus, KeepsTopicsOfDifferentTypesApart) {
+  InprocBus bus;
+  const auto participant = bus.make_participant();
+  const auto reader =
+      participant->make_reader(Topic<CommandMessage>{.name = "same", .qos = {}}).value();
+  const auto writer =
+      participant->make_writer(Topic<EventMessage>{.name = "same", .qos = {}}).value();
+
+  EXPECT_EQ(reader->matched(), 0);
+  EXPECT_EQ(writer->matched(), 0);
+}
+
+TEST(InprocBus, GivesALateJoinerTheStrongestWritersPlan) {
+  InprocBus bus;
+  const auto weak = bus.make_participant(1);
+  const auto strong = bus.make_participant(2);
+  const auto from_weak = weak->make_writer(plan_topic()).value();
+  const auto from_strong = strong->make_writer(plan_topic()).value();
+  from_strong->write({.version = 7});
+  from_weak->write({.version = 8});
+
+  const auto late = weak->make_reader(plan_topic()).value();
+
+  std::vector<PlanMessage> plans;
+  ASSERT_EQ(late->take(plans), 1U);
+  EXPECT_EQ(plans[0].version, 7U);
+}
+
+}  // namespace
+}  // namespace swarm::link
