@@ -1,0 +1,105 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/conformance/bus.hpp"
+
+#include <chrono>
+#include <thread>
+#include <utility>
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "swarm_core/base/assert.hpp"
+#include "swarm_link/inproc/inproc_bus.hpp"
+
+namespace swarm::link::conformance {
+
+namespace {
+
+std::int64_t steady_ns() {
+  return std::chrono::steady_clock::now().time_since_epoch() / std::chrono::nanoseconds(1);
+}
+
+class TestInprocBus final : public Bus {
+ private:
+  std::unique_ptr<Participant> make(std::uint32_t ownership_strength) override {
+    return bus_.make_participant(ownership_strength);
+  }
+
+  InprocBus bus_;
+};
+
+class TestFastDdsBus final : public Bus {
+ public:
+  TestFastDdsBus(std::unique_ptr<DiscoveryServer> server, const DiscoveryAddress& discovery,
+                 bool receive_at_tick, std::uint32_t first_index)
+      : server_(std::move(server)),
+        discovery_(discovery),
+        receive_at_tick_(receive_at_tick),
+        next_index_(first_index) {}
+
+ private:
+  std::unique_ptr<Participant> make(std::uint32_t ownership_strength) override {
+    auto made = make_fastdds_participant({.name = "conformance",
+                                          .domain = test_domain(),
+                                          .index = next_index_++,
+                                          .discovery = discovery_,
+                                          .ownership_strength = ownership_strength,
+                                          .receive_at_tick = receive_at_tick_});
+    SWARM_ASSERT(made.has_value());
+    return *std::move(made);
+  }
+
+  std::unique_ptr<DiscoveryServer> server_;
+  DiscoveryAddress discovery_;
+  bool receive_at_tick_;
+  std::uint32_t next_index_;
+};
+
+}  // namespace
+
+Bus::Hang::Hang() : deadline_ns_(steady_ns() + 30'000'000'000) {}
+bool Bus::Hang::over() const { return steady_ns() > deadline_ns_; }
+
+void Bus::rest() { std::this_thread::sleep_for(std::chrono::milliseconds(2)); }
+
+Participant& Bus::participant(std::uint32_t ownership_strength) {
+  return *participants_.emplace_back(make(ownership_strength));
+}
+
+void Bus::pump() {
+  for (const auto& participant : participants_) participant->receive();
+}
+
+void Bus::settle() {
+  for (int i = 0; i < 50; ++i) {
+    pump();
+    rest();
+  }
+}
+
+std::uint32_t test_domain() { return 10 + static_cast<std::uint32_t>(::getpid()) % 80; }
+
+std::unique_ptr<Bus> make_inproc_bus() { return std::make_unique<TestInprocBus>(); }
+
+std::unique_ptr<Bus> make_fastdds_bus(bool receive_at_tick) {
+  auto server = make_discovery_server(test_domain(), 0);
+  SWARM_ASSERT(server.has_value());
+  const auto discovery = (*server)->address();
+  return std::make_unique<TestFastDdsBus>(*std::move(server), discovery, receive_at_tick, 0);
+}
+
+std::unique_ptr<Bus> join_fastdds_bus(const DiscoveryAddress& discovery,
+                                      std::uint32_t first_index) {
+  return std::make_unique<TestFastDdsBus>(nullptr, discovery, true, first_index);
+}
+
+const std::vector<Back>& backs() {
+  static const std::vector<Back> all = {
+      {"inproc", [] { return make_inproc_bus(); }},
+      {"fastdds_at_tick", [] { return make_fastdds_bus(true); }},
+      {"fastdds_threads", [] { return make_fastdds_bus(false); }}};
+  return all;
+}
+
+}  // namespace swarm::link::conformance

@@ -1,0 +1,76 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "swarm_link/fastdds/fastdds_participant.hpp"
+#include "swarm_link/port.hpp"
+
+/// What the conformance suite runs against: each back behind the same few functions.
+namespace swarm::link::conformance {
+
+class Bus {
+ public:
+  virtual ~Bus() = default;
+
+  /// Lives as long as the bus.
+  Participant& participant(std::uint32_t ownership_strength = 0);
+
+  /// One tick of everybody.
+  void pump();
+
+  /// Ticks until the condition holds. The deadline only guards against hanging.
+  template <class Condition>
+  bool eventually(Condition condition) {
+    for (const Hang guard; !guard.over(); rest()) {
+      pump();
+      if (condition()) return true;
+    }
+    return false;
+  }
+
+  /// Ticks for a while, for what must not arrive. Too short a while can only hide a fault.
+  void settle();
+
+ protected:
+  virtual std::unique_ptr<Participant> make(std::uint32_t ownership_strength) = 0;
+
+ private:
+  class Hang {
+   public:
+    Hang();
+    bool over() const;
+
+   private:
+    std::int64_t deadline_ns_;
+  };
+  static void rest();
+
+  std::vector<std::unique_ptr<Participant>> participants_;
+};
+
+/// DDS domain of this test process, so that processes side by side do not hear each other. Low
+/// enough for the ports to stay below the kernel's ephemeral ones.
+std::uint32_t test_domain();
+
+std::unique_ptr<Bus> make_inproc_bus();
+std::unique_ptr<Bus> make_fastdds_bus(bool receive_at_tick = true);
+
+/// A bus on a discovery server that somebody else runs.
+std::unique_ptr<Bus> join_fastdds_bus(const DiscoveryAddress& discovery, std::uint32_t first_index);
+
+using MakeBus = std::unique_ptr<Bus> (*)();
+struct Back {
+  const char* name;
+  MakeBus make;
+};
+const std::vector<Back>& backs();
+inline std::string name_of(const testing::TestParamInfo<Back>& back) { return back.param.name; }
+
+}  // namespace swarm::link::conformance

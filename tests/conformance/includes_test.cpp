@@ -1,0 +1,95 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+// Vendor headers lie on the default include path, so the compiler does not keep them where they
+// belong: this does.
+#include <filesystem>
+#include <fstream>
+#include <regex>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path kRoot = SWARM_SOURCE_DIR;
+
+bool is_source(const fs::path& file) {
+  const auto extension = file.extension();
+  return extension == ".hpp" || extension == ".cpp" || extension == ".h" || extension == ".c";
+}
+
+bool may_include_vendor(const std::string& file) {
+  if (file == "swarm_link/fastdds/fastdds_participant.hpp") return false;  // its public face
+  return file.starts_with("swarm_link/fastdds/") || file.starts_with("swarm_link/cyclone/") ||
+         file.starts_with("tests/conformance/hostile/");
+}
+
+std::vector<std::string> includes_of(const fs::path& file) {
+  static const std::regex kInclude(R"re(^\s*#\s*include\s*[<"]([^>"]+)[>"])re");
+  std::vector<std::string> includes;
+  std::ifstream in(file);
+  std::smatch match;
+  for (std::string line; std::getline(in, line);) {
+    if (std::regex_search(line, match, kInclude)) includes.push_back(match[1]);
+  }
+  return includes;
+}
+
+template <class Check>
+int for_each_include(const std::vector<std::string>& folders, Check check) {
+  int files = 0;
+  for (const auto& folder : folders) {
+    if (!fs::exists(kRoot / folder)) continue;
+    for (const auto& entry : fs::recursive_directory_iterator(kRoot / folder)) {
+      if (!entry.is_regular_file() || !is_source(entry.path())) continue;
+      ++files;
+      const auto name = fs::relative(entry.path(), kRoot).generic_string();
+      for (const auto& include : includes_of(entry.path())) check(name, include);
+    }
+  }
+  return files;
+}
+
+const std::vector<std::string> kSources = {"swarm_core",  "swarm_link",    "planner_service",
+                                           "robot_agent", "swarm_monitor", "swarm_launcher",
+                                           "tests"};
+
+TEST(Includes, OfVendorsStayInTheirAdapters) {
+  static const std::regex kVendor(
+      R"re(^(fastdds/|fastrtps/|fastcdr/|dds/|ddsc/|foonathan/|swarmPubSubTypes\.h$|swarm\.h$|ddsc?\.h$|hostile(PubSubTypes)?\.h$))re");
+  const int files = for_each_include(kSources, [](const auto& file, const auto& include) {
+    EXPECT_TRUE(may_include_vendor(file) || !std::regex_search(include, kVendor))
+        << file << " includes " << include;
+  });
+  EXPECT_GT(files, 20);
+}
+
+TEST(Includes, PointDownwardsOnly) {
+  const auto knows_only = [](const std::string& folder, const std::vector<std::string>& allowed) {
+    for_each_include({folder}, [&](const auto& file, const auto& include) {
+      for (const auto& other : kSources) {
+        if (!include.starts_with(other + "/")) continue;
+        EXPECT_NE(std::find(allowed.begin(), allowed.end(), other), allowed.end())
+            << file << " includes " << include;
+      }
+    });
+  };
+  knows_only("swarm_core", {"swarm_core"});
+  knows_only("swarm_link", {"swarm_core", "swarm_link"});
+  knows_only("planner_service", {"swarm_core", "swarm_link", "planner_service"});
+  knows_only("robot_agent", {"swarm_core", "swarm_link", "robot_agent"});
+}
+
+TEST(Includes, MixNoVendorsInOneFolder) {
+  for_each_include({"swarm_link/fastdds"}, [](const auto& file, const auto& include) {
+    EXPECT_FALSE(include.starts_with("dds/") || include.starts_with("ddsc")) << file;
+  });
+  for_each_include({"swarm_link/cyclone"}, [](const auto& file, const auto& include) {
+    EXPECT_FALSE(include.starts_with("fast")) << file << " includes " << include;
+  });
+}
+
+}  // namespace

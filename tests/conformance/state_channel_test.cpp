@@ -1,0 +1,114 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+// The topic channel over every back: joins, leaves, hears.
+#include "swarm_link/state_channel.hpp"
+
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "tests/conformance/bus.hpp"
+
+namespace swarm::link::conformance {
+namespace {
+
+class StateChannels : public testing::TestWithParam<Back> {
+ protected:
+  struct Robot {
+    std::unique_ptr<StateChannel> channel;
+    RobotStateMessage state;
+    std::set<std::uint32_t> heard{};
+
+    void tick() {
+      const Vec2 position_m(state.x_m, state.y_m);
+      channel->listen_around({&position_m, 1});
+      channel->publish({&state, 1});
+      std::vector<CellStatesMessage> batches;
+      channel->take(batches);
+      for (const auto& batch : batches) {
+        for (const auto& other : batch.states) heard.insert(other.robot_id);
+      }
+    }
+  };
+
+  Robot robot(std::uint32_t id, double x_m, double y_m) {
+    return {.channel = make_topic_channel(bus->participant(), {}),
+            .state = {.robot_id = id, .x_m = x_m, .y_m = y_m}};
+  }
+
+  std::unique_ptr<Bus> bus = GetParam().make();
+};
+
+INSTANTIATE_TEST_SUITE_P(Backs, StateChannels, testing::ValuesIn(backs()), name_of);
+
+TEST_P(StateChannels, HearNeighboursAcrossACellBorder) {
+  Robot left = robot(1, 18.0, 10.0);
+  Robot right = robot(2, 22.0, 10.0);
+  EXPECT_TRUE(bus->eventually([&] {
+    left.tick();
+    right.tick();
+    return left.heard.contains(2) && right.heard.contains(1);
+  }));
+  EXPECT_EQ(left.channel->undecodable(), 0U);
+}
+
+TEST_P(StateChannels, HearTheirOwnProcessToo) {
+  Robot alone = robot(1, 5.0, 5.0);
+  EXPECT_TRUE(bus->eventually([&] { return alone.tick(), alone.heard.contains(1); }));
+}
+
+TEST_P(StateChannels, LoseAndFindEachOtherAsTheyMove) {
+  Robot stays = robot(1, 10.0, 10.0);
+  Robot roams = robot(2, 10.0, 10.0);
+  const auto both_tick = [&] {
+    stays.tick();
+    roams.tick();
+  };
+  ASSERT_TRUE(bus->eventually([&] { return both_tick(), stays.heard.contains(2); }));
+
+  roams.state.x_m = 110.0;
+  both_tick();
+  bus->settle();  // what was on its way
+  both_tick();
+  stays.heard.clear();
+  roams.heard.clear();
+  ASSERT_TRUE(bus->eventually([&] { return both_tick(), roams.heard.contains(2); }));
+  EXPECT_FALSE(stays.heard.contains(2));
+  EXPECT_FALSE(roams.heard.contains(1));
+
+  roams.state.x_m = 12.0;
+  EXPECT_TRUE(bus->eventually(
+      [&] { return both_tick(), stays.heard.contains(2) && roams.heard.contains(1); }));
+}
+
+TEST_P(StateChannels, HearARobotFromItsFirstStateInANewCell) {
+  Robot left = robot(1, 18.0, 10.0);
+  Robot right = robot(2, 24.0, 10.0);
+  // Wait at the border until both cells' endpoints have found each other …
+  left.state.x_m = 19.5;
+  Participant& probe = bus->participant();
+  const auto readers_of_right_cell = probe.make_writer(cell_topic({1, 0})).value();
+  const auto writers_in_right_cell = probe.make_reader(cell_topic({1, 0})).value();
+  ASSERT_TRUE(bus->eventually([&] {
+    left.tick();
+    right.tick();
+    return right.heard.contains(1) && readers_of_right_cell->matched() == 3 &&
+           writers_in_right_cell->matched() == 3;
+  }));
+  bus->settle();
+  std::vector<CellStatesMessage> before;
+  writers_in_right_cell->take(before);
+
+  left.state.x_m = 20.5;  // … and cross it.
+  left.state.sequence_number = 1;
+  left.tick();
+
+  std::vector<CellStatesMessage> heard;
+  ASSERT_TRUE(bus->eventually([&] { return writers_in_right_cell->take(heard) > 0; }));
+  ASSERT_EQ(heard[0].states.size(), 1U);
+  EXPECT_EQ(heard[0].states[0].robot_id, 1U);
+  EXPECT_EQ(heard[0].states[0].sequence_number, 1U);
+}
+
+}  // namespace
+}  // namespace swarm::link::conformance
