@@ -11,7 +11,9 @@
 namespace swarm::planner {
 namespace {
 
-constexpr std::size_t kTriesPerSample = 200;
+constexpr std::size_t kTriesPerSample = 2000;
+// Where obstacles are small, few pairs straddle a border: then a plain mean takes the place.
+constexpr std::size_t kBridgeTries = 1000;
 
 Gaussian with_random_shape(const Vec2& mean_m, const SamplerOptions& options, Rng& rng) {
   const double sigma1_m = uniform(rng, options.sigma_min_m, options.sigma_max_m);
@@ -31,26 +33,29 @@ std::vector<Gaussian> sample_free(const World& world, const RiskLimit& risk,
   HaltonMeans halton(world.bounds_m(), rng);
   std::vector<Gaussian> samples;
   samples.reserve(count);
-  for (std::size_t i = 0; samples.size() < count && i < kTriesPerSample * count; ++i) {
+  for (std::size_t tries = 0; samples.size() < count && tries < kTriesPerSample; ++tries) {
     std::optional<Vec2> mean;
-    // By the samples found, not by the tries: those near obstacles fail more often.
+    // Decided by the samples found, not by the tries: those near obstacles fail more often.
     const auto found = static_cast<double>(samples.size());
-    if (std::floor((found + 1.0) * options.bridge_share) >
-            std::floor(found * options.bridge_share) &&
-        !world.obstacles().empty()) {
+    const bool bridge_turn =
+        std::floor((found + 1.0) * options.bridge_share) > std::floor(found * options.bridge_share);
+    if (bridge_turn && tries < kBridgeTries && !world.obstacles().empty()) {
       mean = near_obstacle_mean(world, options.bridge_sigma_m, clearance_m, rng);
       if (!mean) continue;
     } else {
       mean = fit ? halton.next() : uniform_mean(world.bounds_m(), rng);
     }
     const Gaussian wished = with_random_shape(*mean, options, rng);
-    if (!fit) {
-      if (in_free(wished, world, k, risk.delta_m)) samples.push_back(wished);
-      continue;
+    std::optional<Gaussian> sample;
+    if (fit) {
+      sample =
+          squeeze_into_free(wished, world, k, risk.delta_m, kSqueezeBelowMin * options.sigma_min_m);
+    } else if (in_free(wished, world, k, risk.delta_m)) {
+      sample = wished;
     }
-    const std::optional<Gaussian> fitting =
-        squeeze_into_free(wished, world, k, risk.delta_m, kSqueezeBelowMin * options.sigma_min_m);
-    if (fitting) samples.push_back(*fitting);
+    if (!sample) continue;
+    samples.push_back(*sample);
+    tries = 0;
   }
   return samples;
 }

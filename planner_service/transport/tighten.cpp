@@ -3,6 +3,7 @@
 #include "planner_service/transport/tighten.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <optional>
@@ -17,6 +18,7 @@ namespace {
 
 constexpr double kWorthwhile_m = 1e-6;
 constexpr int kPushes = 3;
+constexpr std::array kSteps{1.0, 0.5};
 
 Waypoints resampled(const Waypoints& waypoints, double spacing_m) {
   Waypoints fine{waypoints.front()};
@@ -67,16 +69,23 @@ void tighten(Waypoints& waypoints, const World& world, const RiskLimit& risk,
       for (std::size_t i = first; i + 1 < fine.size(); i += 2) {
         const Gaussian& before = fine[i - 1];
         const Gaussian& after = fine[i + 1];
-        const Gaussian middle = pushed_out(Geodesic(before, after).at(0.5), world, room_m);
-        const std::optional<Gaussian> moved =
-            squeeze_into_free(middle, world, k, risk.delta_m, options.sigma_min_m);
-        if (!moved) continue;
+        const Gaussian middle = Geodesic(before, after).at(0.5);
+        const Geodesic move(fine[i], middle);
         const double now_m = wasserstein2(before, fine[i]) + wasserstein2(fine[i], after);
-        const double then_m = wasserstein2(before, *moved) + wasserstein2(*moved, after);
-        if (now_m - then_m < kWorthwhile_m) continue;
-        if (checker.is_free(before, *moved, kPlanTolerance_m) &&
-            checker.is_free(*moved, after, kPlanTolerance_m)) {
+        // A whole step may cost more shape than it saves way; half of it often does not.
+        for (const double step : kSteps) {
+          const std::optional<Gaussian> moved =
+              squeeze_into_free(pushed_out(move.at(step), world, room_m), world, k, risk.delta_m,
+                                options.sigma_min_m);
+          if (!moved) continue;
+          const double then_m = wasserstein2(before, *moved) + wasserstein2(*moved, after);
+          if (now_m - then_m < kWorthwhile_m) continue;
+          if (!checker.is_free(before, *moved, kPlanTolerance_m) ||
+              !checker.is_free(*moved, after, kPlanTolerance_m)) {
+            continue;
+          }
           fine[i] = *moved;
+          break;
         }
       }
     }
