@@ -1,0 +1,225 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "swarm_monitor/audit.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <set>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+
+#include "swarm_core/metrics/geodesic_bound.hpp"
+#include "swarm_core/shell/run_directory.hpp"
+
+namespace swarm::monitor {
+namespace {
+
+constexpr std::size_t kMaxSummaryBytes = 16U << 20U;
+
+/// `3, 7, 12 and 40 more`
+std::string list(const std::vector<std::string>& words) {
+  constexpr std::size_t kShown = 10;
+  const std::vector<std::string> first(
+      words.begin(), words.begin() + static_cast<std::ptrdiff_t>(std::min(words.size(), kShown)));
+  std::string text = fmt::format("{}", fmt::join(first, ", "));
+  if (words.size() > kShown) text += fmt::format(" and {} more", words.size() - kShown);
+  return text;
+}
+
+/// First point of the robot's last stay in arrival. Holding and stopping are rest: they do not end
+/// it.
+std::optional<double> stays_arrived_from(const Track& track) {
+  std::optional<double> since;
+  for (const TrackPoint& point : track.points) {
+    if (point.mode == RobotMode::kArrived) {
+      if (!since) since = point.time_s;
+    } else if (point.mode == RobotMode::kMoving || point.mode == RobotMode::kWaiting) {
+      since.reset();
+    }
+  }
+  return since;
+}
+
+RobotAudit audit_robot(const Track& track, const Mission& mission) {
+  RobotAudit result{.robot = track.robot};
+  result.lost = !track.ended_gracefully || track.points.empty();
+  if (track.points.empty()) return result;
+  for (std::size_t k = 1; k < track.points.size(); ++k) {
+    result.path_m += (track.points[k].position_m - track.points[k - 1].position_m).norm();
+  }
+  result.left_bounds =
+      std::any_of(track.points.begin(), track.points.end(), [&](const TrackPoint& point) {
+        return !mission.world.bounds_m().contains(point.position_m);
+      });
+  const TrackPoint& last = track.points.back();
+  if (last.goal < mission.goal.components().size()) result.goal = last.goal;
+  result.arrived = !result.lost && result.goal &&
+                   mission.goal.components()[*result.goal].gaussian.contains_99(last.position_m);
+  result.arrived_at_s = stays_arrived_from(track);
+  return result;
+}
+
+std::optional<double> mission_duration_s(const RecordedRun& run, const Audit& audit) {
+  std::optional<double> first_motion;
+  double last_step = 0.0;
+  double last_arrival = 0.0;
+  bool all_arrived = true;
+  for (std::size_t i = 0; i < run.tracks.size(); ++i) {
+    const Track& track = run.tracks[i];
+    for (const TrackPoint& point : track.points) {
+      if (point.mode != RobotMode::kMoving) continue;
+      first_motion = std::min(first_motion.value_or(point.time_s), point.time_s);
+      break;
+    }
+    if (!track.points.empty()) last_step = std::max(last_step, track.points.back().time_s);
+    const RobotAudit& robot = audit.by_robot[i];
+    all_arrived = all_arrived && robot.arrived && robot.arrived_at_s;
+    last_arrival = std::max(last_arrival, robot.arrived_at_s.value_or(0.0));
+  }
+  if (!first_motion) return std::nullopt;
+  return std::max(0.0, (all_arrived ? last_arrival : last_step) - *first_motion);
+}
+
+void count_robots(const RecordedRun& run, Audit& audit) {
+  std::set<std::uint32_t> processes;
+  std::uint64_t steps = 0;
+  std::uint64_t late = 0;
+  Histogram age;
+  audit.robots = static_cast<std::uint32_t>(run.tracks.size());
+  audit.arrived_per_goal.assign(run.mission.goal.components().size(), 0);
+  for (const Track& track : run.tracks) {
+    const RobotAudit robot = audit_robot(track, run.mission);
+    if (robot.lost) audit.lost.push_back(robot.robot);
+    if (robot.arrived) {
+      ++audit.arrived;
+      ++audit.arrived_per_goal[*robot.goal];
+    }
+    if (robot.left_bounds) ++audit.outside_bounds;
+    audit.by_robot.push_back(robot);
+    processes.insert(track.processes.begin(), track.processes.end());
+    steps += track.points.size();
+    late += track.late_steps;
+    age.merge(track.state_age);
+    audit.refused_messages += track.refused;
+    audit.damaged_records += track.damaged;
+  }
+  audit.processes = static_cast<std::uint32_t>(processes.size());
+  if (steps > 0) audit.deadline_miss_ratio = static_cast<double>(late) / static_cast<double>(steps);
+  if (age.count() > 0) {
+    const auto ms = [](std::int64_t us) { return static_cast<double>(us) / 1000.0; };
+    audit.state_age = StateAge{.p50_ms = ms(age.quantile_us(0.5)),
+                               .p99_ms = ms(age.quantile_us(0.99)),
+                               .p999_ms = ms(age.quantile_us(0.999)),
+                               .max_ms = ms(age.max_us())};
+  }
+}
+
+void measure_paths(const RecordedRun& run, Audit& audit) {
+  std::vector<Vec2> starts, ends;
+  double sum = 0.0;
+  for (std::size_t i = 0; i < run.tracks.size(); ++i) {
+    if (audit.by_robot[i].lost) continue;
+    starts.push_back(run.tracks[i].points.front().position_m);
+    ends.push_back(run.tracks[i].points.back().position_m);
+    sum += audit.by_robot[i].path_m;
+  }
+  if (starts.empty()) return;
+  audit.mean_path_m = sum / static_cast<double>(starts.size());
+  const double bound =
+      geodesic_bound_m(run.mission.world, run.mission.robots.radius_m, starts, ends);
+  if (!std::isfinite(bound)) return;
+  audit.geodesic_bound_m = bound;
+  if (bound > 0.0) audit.path_ratio = *audit.mean_path_m / bound;
+}
+
+void judge(const AuditedRun& audited, Audit& audit) {
+  if (!audit.lost.empty()) {
+    std::vector<std::string> ids;
+    for (const RobotId id : audit.lost) ids.push_back(fmt::format("{}", id.value()));
+    audit.reasons.push_back(fmt::format("{} lost: robot {}", ids.size(), list(ids)));
+  }
+  std::vector<std::string> absent;
+  for (const RobotAudit& robot : audit.by_robot) {
+    if (!robot.lost && !robot.arrived) absent.push_back(fmt::format("{}", robot.robot.value()));
+  }
+  if (!absent.empty()) {
+    audit.reasons.push_back(fmt::format("{} not arrived: robot {}", absent.size(), list(absent)));
+  }
+  std::vector<std::string> pairs;
+  for (const Approach& contact : audited.robots.contacts) {
+    pairs.push_back(fmt::format("{}-{}", contact.robot, contact.other));
+  }
+  if (!pairs.empty()) {
+    audit.reasons.push_back(fmt::format("{} pairs touched: {}", pairs.size(), list(pairs)));
+  }
+  if (audit.collisions_obstacle > 0) {
+    audit.reasons.push_back(fmt::format("{} robots touched obstacles", audit.collisions_obstacle));
+  }
+  const auto& goals = audited.run.mission.goal.components();
+  const double tolerance = std::max(2.0, 0.02 * audit.robots);
+  for (std::size_t g = 0; g < goals.size(); ++g) {
+    const double wanted = goals[g].weight * audit.robots;
+    if (std::abs(audit.arrived_per_goal[g] - wanted) <= tolerance) continue;
+    audit.reasons.push_back(fmt::format("goal {} got {} robots, its weight is {:.1f}", g,
+                                        audit.arrived_per_goal[g], wanted));
+  }
+}
+
+/// What the launcher measured stays as it said; anything else in its summary is not believed.
+void carry_over(const std::filesystem::path& file, Audit& audit) {
+  const auto text = shell::read_file(file, kMaxSummaryBytes);
+  if (!text) return;
+  const auto json = nlohmann::json::parse(*text, nullptr, false);
+  if (!json.is_object()) return;
+  const auto take = [&](const char* key, std::optional<double>& value) {
+    if (const auto it = json.find(key); it != json.end() && it->is_number())
+      value = it->get<double>();
+  };
+  take("plan_ms", audit.plan_ms);
+  take("discovery_s", audit.discovery_s);
+  take("cpu_s", audit.cpu_s);
+  take("max_rss_mb", audit.max_rss_mb);
+}
+
+}  // namespace
+
+AuditedRun audit_recorded(RecordedRun recorded) {
+  AuditedRun audited{.run = std::move(recorded)};
+  const RecordedRun& run = audited.run;
+  audited.robots = robot_clearance(run.tracks);
+  audited.obstacles = obstacle_clearance(run.tracks, run.mission.world);
+  Audit& audit = audited.audit;
+  count_robots(run, audit);
+  measure_paths(run, audit);
+  audit.mission_s = mission_duration_s(run, audit);
+  audit.collisions_robot = static_cast<std::uint32_t>(audited.robots.contacts.size());
+  std::set<std::uint32_t> touching;
+  for (const Approach& contact : audited.obstacles.contacts) touching.insert(contact.robot);
+  audit.collisions_obstacle = static_cast<std::uint32_t>(touching.size());
+  const auto known = [](double gap) {
+    return std::isfinite(gap) ? std::optional<double>(gap) : std::nullopt;
+  };
+  audit.min_robot_gap_m = known(audited.robots.nearest.gap_m);
+  audit.min_obstacle_gap_m = known(audited.obstacles.nearest.gap_m);
+  judge(audited, audit);
+  return audited;
+}
+
+Result<AuditedRun> audit_run_fully(const std::filesystem::path& run_dir) {
+  auto run = read_run(run_dir);
+  if (!run) return tl::unexpected(run.error());
+  AuditedRun audited = audit_recorded(std::move(*run));
+  carry_over(run_dir / shell::kSummaryFile, audited.audit);
+  return audited;
+}
+
+Result<Audit> audit_run(const std::filesystem::path& run_dir) {
+  auto audited = audit_run_fully(run_dir);
+  if (!audited) return tl::unexpected(audited.error());
+  return std::move(audited->audit);
+}
+
+}  // namespace swarm::monitor

@@ -1,0 +1,85 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "swarm_monitor/clearance.hpp"
+#include "swarm_monitor/recorded_run.hpp"
+
+namespace swarm::monitor {
+
+/// Quantiles of how old neighbours' states were when the controllers used them.
+struct StateAge {
+  double p50_ms = 0.0, p99_ms = 0.0, p999_ms = 0.0, max_ms = 0.0;
+};
+
+/// One robot's part in an audit.
+struct RobotAudit {
+  RobotId robot{};
+  bool lost = false;     ///< no black box, or it ends without the note "exit"
+  bool arrived = false;  ///< not lost, and its last position lies in the 99 % ellipse of its goal
+  std::optional<std::size_t> goal{};     ///< index into Mission::goal, of its last step
+  std::optional<double> arrived_at_s{};  ///< time from which on it stayed arrived
+  double path_m = 0.0;
+  bool left_bounds = false;
+};
+
+/// What a run achieved, computed from its mission and black boxes alone.
+struct Audit {
+  std::vector<std::string> reasons;  ///< why the outcome is not "ok"; empty if it is
+  std::uint32_t robots = 0;
+  std::uint32_t processes = 0;  ///< distinct process ids
+  std::uint32_t arrived = 0;
+  std::vector<std::uint32_t> arrived_per_goal;
+  std::vector<RobotId> lost;
+  std::uint32_t collisions_robot = 0;     ///< pairs that ever touched
+  std::uint32_t collisions_obstacle = 0;  ///< robots that ever touched an obstacle
+  std::optional<double> min_robot_gap_m;  ///< surface to surface; empty with fewer than two robots
+  std::optional<double> min_obstacle_gap_m;
+  std::optional<double> mean_path_m;       ///< over robots that are not lost
+  std::optional<double> geodesic_bound_m;  ///< over their own first and last positions
+  std::optional<double> path_ratio;
+  std::optional<double> mission_s;  ///< first step in motion to the last arrival, else to the end
+  std::optional<StateAge> state_age;
+  double deadline_miss_ratio = 0.0;  ///< share of control steps that began over 20 ms late
+  std::uint64_t refused_messages = 0;
+  std::uint32_t outside_bounds = 0;  ///< robots that ever left the world's rectangle
+  std::uint64_t damaged_records = 0;
+
+  /// Measured by the launcher, carried over from its summary.
+  std::optional<double> plan_ms, discovery_s, cpu_s, max_rss_mb;
+
+  std::vector<RobotAudit> by_robot;  ///< not part of the JSON document
+
+  bool ok() const { return reasons.empty(); }
+};
+
+/// Everything the audit found, for the report.
+struct AuditedRun {
+  RecordedRun run;
+  Clearance robots{};
+  Clearance obstacles{};
+  Audit audit{};
+};
+
+/// The pure part: judges a recorded run.
+AuditedRun audit_recorded(RecordedRun run);
+
+/// Reads a run directory and audits it, with the launcher's measurements if its summary is there.
+Result<AuditedRun> audit_run_fully(const std::filesystem::path& run_dir);
+
+/// The same, without what only the report needs. Fails (kEnvironment) if the directory is
+/// unreadable.
+Result<Audit> audit_run(const std::filesystem::path& run_dir);
+
+/// The audit as a JSON document; unknown values are null.
+std::string to_json(const Audit& audit);
+
+/// The audit in a few lines for people.
+std::string to_text(const Audit& audit);
+
+}  // namespace swarm::monitor

@@ -1,0 +1,65 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "swarm_core/blackbox/record.hpp"
+#include "swarm_core/mission/mission.hpp"
+#include "swarm_core/mission/phase.hpp"
+#include "swarm_core/plan/flow_plan.hpp"
+
+namespace swarm::monitor {
+
+/// Where a robot was at a time, and what it was doing from then on.
+struct TrackPoint {
+  double time_s = 0.0;  ///< since RecordedRun::begin
+  Vec2 position_m = Vec2::Zero();
+  RobotMode mode = RobotMode::kWaiting;
+  std::uint8_t goal = blackbox::Step::kNoGoal;
+};
+
+/// Everything one robot's black box says. Between two points a robot moves in a straight line at
+/// constant speed, also from the end of one life of its process to the begin of the next.
+struct Track {
+  RobotId robot{};
+  double radius_m = 0.0;
+  std::vector<TrackPoint> points{};        ///< times strictly increasing
+  std::vector<std::uint32_t> processes{};  ///< one a life
+  bool ended_gracefully = false;           ///< the last life noted "exit"
+  std::string unreadable{};                ///< why there is no black box; empty if there is one
+  std::uint64_t damaged = 0;  ///< stretches of the file that are no record, and steps back in time
+  std::uint64_t late_steps = 0;  ///< later than kLate_us
+  std::uint64_t refused = 0;     ///< messages, over all lives
+  Histogram state_age{};         ///< over all lives
+  std::vector<blackbox::Note> notes{};
+
+  static constexpr std::int32_t kLate_us = 20'000;
+};
+
+/// A line of events.jsonl.
+struct RunEvent {
+  double time_s = 0.0;
+  std::string source, severity, code, text;
+};
+
+/// A run directory, read. Audits and reports are pure functions of it.
+struct RecordedRun {
+  Mission mission;
+  std::optional<FlowPlan> plan{};
+  UtcTime begin{};              ///< first step in any black box
+  std::vector<Track> tracks{};  ///< by robot id, mission.robots.count of them
+  std::vector<RunEvent> events{};
+};
+
+/// Fails (kEnvironment) if there is no readable mission or no black box at all. What single robots
+/// lack is told by their tracks; a missing plan or event log is no error.
+Result<RecordedRun> read_run(const std::filesystem::path& run_dir);
+
+/// The track that the records of one black box make, with times since `begin`.
+Track make_track(RobotId robot, const std::vector<blackbox::Record>& records, UtcTime begin);
+
+}  // namespace swarm::monitor

@@ -1,0 +1,90 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "swarm_monitor/recorded_run.hpp"
+
+#include <gtest/gtest.h>
+
+#include "synthetic_run.hpp"
+
+namespace swarm::monitor {
+namespace {
+
+TEST(RecordedRun, CountsTimeFromTheFirstStepOfAll) {
+  SyntheticRun files(2);
+  files.write(0, {.positions_m = straight({5, 5}, {6, 5}, 10), .begin_s = 2.0});
+  files.write(1, {.positions_m = straight({5, 9}, {6, 9}, 10), .begin_s = 0.5});
+
+  const auto run = read_run(files.dir());
+
+  ASSERT_TRUE(run.has_value()) << run.error().message;
+  EXPECT_EQ(run->begin, at_s(0.5));
+  EXPECT_NEAR(run->tracks[0].points.front().time_s, 1.5, 1e-9);
+  EXPECT_EQ(run->tracks[1].points.front().time_s, 0.0);
+}
+
+TEST(RecordedRun, JoinsTheLivesOfARobot) {
+  SyntheticRun files(1);
+  files.write(0, {.positions_m = straight({5, 5}, {6, 5}, 10),
+                  .graceful = false,
+                  .process_id = 7,
+                  .refused = {1, 2},
+                  .ages_us = {10, 20}});
+  files.write(0, {.positions_m = straight({6, 5}, {8, 5}, 10),
+                  .begin_s = 3.0,
+                  .process_id = 8,
+                  .refused = {0, 4},
+                  .ages_us = {30}});
+
+  const auto run = read_run(files.dir());
+
+  ASSERT_TRUE(run.has_value());
+  const Track& track = run->tracks[0];
+  EXPECT_EQ(track.points.size(), 22U);
+  EXPECT_EQ(track.processes, (std::vector<std::uint32_t>{7, 8}));
+  EXPECT_TRUE(track.ended_gracefully);
+  EXPECT_EQ(track.refused, 7U);
+  EXPECT_EQ(track.state_age.count(), 3U);
+}
+
+TEST(RecordedRun, LeavesOutStepsBackInTime) {
+  const std::vector<blackbox::Record> records{
+      blackbox::Step{.stamp = at_s(0.0)}, blackbox::Step{.stamp = at_s(0.2)},
+      blackbox::Step{.stamp = at_s(0.1)}, blackbox::Step{.stamp = at_s(0.3)}};
+
+  const Track track = make_track(RobotId(0), records, at_s(0.0));
+
+  EXPECT_EQ(track.points.size(), 3U);
+  EXPECT_EQ(track.damaged, 1U);
+}
+
+TEST(RecordedRun, ReadsEventsAndLeavesOutWhatIsNone) {
+  SyntheticRun files(1);
+  files.write(0, {.positions_m = straight({5, 5}, {6, 5}, 10)});
+  const std::string stamp = std::to_string(at_s(1.5).time_since_epoch().count());
+  files.write_file("events.jsonl",
+                   "{\"utc_ns\":" + stamp +
+                       ",\"source\":\"planner\",\"severity\":\"info\",\"code\":\"plan\","
+                       "\"text\":\"done\"}\nnot json\n[1]\n{\"utc_ns\":\"x\"}\n{\"utc_ns\": 1");
+
+  const auto run = read_run(files.dir());
+
+  ASSERT_TRUE(run.has_value());
+  ASSERT_EQ(run->events.size(), 1U);
+  EXPECT_NEAR(run->events[0].time_s, 1.5, 1e-9);
+  EXPECT_EQ(run->events[0].code, "plan");
+}
+
+TEST(RecordedRun, NeedsAMissionAndABlackBox) {
+  SyntheticRun files(1);
+  const auto without_boxes = read_run(files.dir());
+  ASSERT_FALSE(without_boxes.has_value());
+  EXPECT_EQ(without_boxes.error().code, ErrorCode::kEnvironment);
+
+  std::filesystem::remove(files.dir() / "mission.resolved.yaml");
+  const auto without_mission = read_run(files.dir());
+  ASSERT_FALSE(without_mission.has_value());
+  EXPECT_EQ(without_mission.error().code, ErrorCode::kEnvironment);
+}
+
+}  // namespace
+}  // namespace swarm::monitor
