@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "program.hpp"
+
+namespace swarm::test {
+
+inline const std::string kSmallMission =
+    std::string(SWARM_SOURCE_DIR) + "/deploy/missions/small.yaml";
+
+/// `swarm_launcher run` of the small mission in a folder of its own.
+class FlownRun {
+ public:
+  explicit FlownRun(const std::vector<std::string>& more = {},
+                    const std::string& mission = kSmallMission) {
+    std::vector<std::string> arguments = {"run", mission, "--json", "--out", dir().string()};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    launcher_ = std::make_unique<Program>("swarm_launcher", arguments);
+  }
+
+  std::filesystem::path dir() const { return folder_.path() / "run"; }
+  Program& launcher() { return *launcher_; }
+
+  bool mission_started() const {
+    return eventually([this] { return has_event(dir(), "command"); });
+  }
+
+  std::vector<pid_t> agents() const { return children_of(launcher_->pid(), "robot_agent"); }
+  std::vector<pid_t> planners() const { return children_of(launcher_->pid(), "planner_service"); }
+
+  nlohmann::json summary() const {
+    return nlohmann::json::parse(read_text(dir() / "summary.json"), nullptr, false);
+  }
+
+ private:
+  TemporaryFolder folder_;
+  std::unique_ptr<Program> launcher_;
+};
+
+}  // namespace swarm::test

@@ -1,0 +1,147 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+// Somebody publishes rubbish on the bus of a flying swarm. (Samples that only a foreign writer can
+// make, too long for the contract, are in tests/conformance.)
+#include <chrono>
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "flown_run.hpp"
+#include "swarm_core/shell/run_directory.hpp"
+#include "swarm_link/fastdds/fastdds_participant.hpp"
+#include "swarm_link/topics.hpp"
+
+namespace swarm::test {
+namespace {
+
+using namespace swarm::link;
+
+std::int64_t utc_ns() {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(
+             std::chrono::system_clock::now().time_since_epoch())
+      .count();
+}
+
+/// A well-formed plan of one leg; every test case spoils it in one way.
+PlanMessage decent_plan() {
+  const PlanNodeMessage from{.mean_x_m = 10,
+                             .mean_y_m = 10,
+                             .covariance_xx_m2 = 4,
+                             .covariance_yy_m2 = 4,
+                             .time_s = 0,
+                             .mass = 1};
+  PlanNodeMessage to = from;
+  to.mean_x_m = 30;
+  to.time_s = 10;
+  return {.version = 1,
+          .epoch = static_cast<std::uint64_t>(utc_ns()),
+          .nodes = {from, to},
+          .legs = {{0, 1, 1.0}}};
+}
+
+CellStatesMessage decent_batch(std::uint32_t robot, const Cell& cell) {
+  static std::uint32_t sequence = 1'000'000;
+  return {.cell_x = cell.x,
+          .cell_y = cell.y,
+          .states = {{.robot_id = robot,
+                      .sequence_number = ++sequence,
+                      .stamp_utc_ns = utc_ns(),
+                      .x_m = 10,
+                      .y_m = 10}}};
+}
+
+TEST(HostileBus, RubbishIsRefusedCountedAndHarmless) {
+  FlownRun run;
+  ASSERT_TRUE(run.mission_started());
+  const auto info = shell::read_run_info(run.dir());
+  ASSERT_TRUE(info.has_value());
+  auto participant =
+      make_fastdds_participant({.name = "hostile",
+                                .domain = info->domain,
+                                .index = 60,
+                                .discovery = {info->discovery_host, info->discovery_port},
+                                .ownership_strength = 1000});
+  ASSERT_TRUE(participant.has_value()) << participant.error().message;
+  auto plans = (*participant)->make_writer(plan_topic());
+  auto heartbeats = (*participant)->make_writer(heartbeat_topic());
+  auto commands = (*participant)->make_writer(command_topic());
+  ASSERT_TRUE(plans && heartbeats && commands);
+  std::vector<WriterPtr<CellStatesMessage>> cells;
+  std::vector<Cell> where;
+  for (int x = 0; x < 3; ++x) {
+    for (int y = 0; y < 2; ++y) {
+      where.push_back({x, y});
+      auto writer = (*participant)->make_writer(cell_topic({x, y}));
+      ASSERT_TRUE(writer.has_value());
+      cells.push_back(std::move(*writer));
+    }
+  }
+  ASSERT_TRUE(
+      eventually([&] { return (*plans)->matched() >= 12 && (*commands)->matched() >= 12; }));
+
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const std::vector<std::function<void(PlanMessage&)>> spoiled_plans = {
+      [&](PlanMessage& p) { p.nodes[1].mean_x_m = nan; },
+      [](PlanMessage& p) { p.nodes[0].covariance_xy_m2 = 100; },  // not positive definite
+      [](PlanMessage& p) { p.nodes[1].mass = p.legs[0].mass = 7; },
+      [](PlanMessage& p) { p.schema_version = 99; },
+      [](PlanMessage& p) { p.legs[0].to_node = 4000; },
+      [](PlanMessage& p) { p.epoch = 1; },  // stale
+      [](PlanMessage& p) {
+        p.epoch = std::numeric_limits<std::uint64_t>::max();
+      },  // from the future
+  };
+  for (const auto& spoil : spoiled_plans) {
+    PlanMessage plan = decent_plan();
+    spoil(plan);
+    (*plans)->write(plan);
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));  // keep-last 1: let each be taken
+  }
+  const std::vector<std::function<void(RobotStateMessage&)>> spoiled_states = {
+      [&](RobotStateMessage& s) { s.x_m = nan; },
+      [](RobotStateMessage& s) { s.x_m = 1e7; },
+      [](RobotStateMessage& s) { s.vx_mps = 50; },
+      [](RobotStateMessage& s) { s.robot_id = 4'000'000'000; },
+      [](RobotStateMessage& s) { s.stamp_utc_ns -= 60'000'000'000; },
+      [](RobotStateMessage& s) { s.mode = static_cast<RobotMode>(200); },
+  };
+  for (int round = 0; round < 20; ++round) {
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      for (const auto& spoil : spoiled_states) {
+        CellStatesMessage batch = decent_batch(3, where[i]);
+        spoil(batch.states[0]);
+        cells[i]->write(batch);
+      }
+      for (std::uint32_t robot = 0; robot < 12; ++robot) {
+        CellStatesMessage impostor = decent_batch(robot, where[i]);
+        impostor.states[0].x_m = 39;  // far from everyone: who believes it is not harmed
+        impostor.states[0].y_m = 29;
+        cells[i]->write(impostor);
+      }
+    }
+    (*heartbeats)
+        ->write({.epoch = std::numeric_limits<std::uint64_t>::max(), .sequence_number = 1});
+    (*heartbeats)->write({.epoch = 5, .sequence_number = 1, .mission_time_s = nan});
+    (*commands)->write(
+        {.kind = static_cast<CommandKind>(77), .command_id = static_cast<std::uint64_t>(utc_ns())});
+    (*commands)->write({.kind = CommandKind::kPause, .command_id = 1});
+    (*commands)->write(
+        {.kind = CommandKind::kPause, .command_id = std::numeric_limits<std::uint64_t>::max()});
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
+
+  EXPECT_EQ(run.launcher().wait(), 0) << run.launcher().err();
+  const auto summary = run.summary();
+  EXPECT_EQ(summary["arrived"], 12);
+  EXPECT_EQ(summary["collisions_robot"], 0);
+  EXPECT_GT(summary["refused_messages"], 100);
+  const std::string events = read_text(run.dir() / "events.jsonl");
+  for (const char* reason : {"not-finite", "bad-gaussian", "bad-mass", "schema", "out-of-range",
+                             "stale", "clock-skew", "forged"}) {
+    EXPECT_NE(events.find(std::string("message(s): ") + reason), std::string::npos) << reason;
+  }
+}
+
+}  // namespace
+}  // namespace swarm::test

@@ -1,0 +1,78 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+// A mission from the file to the audited report, with real processes on real DDS.
+#include "flown_run.hpp"
+
+namespace swarm::test {
+namespace {
+
+TEST(Mission, FliesAndIsAudited) {
+  FlownRun run;
+
+  ASSERT_EQ(run.launcher().wait(), 0) << run.launcher().err();
+
+  const auto summary = run.summary();
+  EXPECT_EQ(summary["outcome"], "ok");
+  EXPECT_EQ(summary["robots"], 12);
+  EXPECT_EQ(summary["processes"], 12);
+  EXPECT_EQ(summary["arrived"], 12);
+  EXPECT_TRUE(summary["lost"].empty());
+  EXPECT_EQ(summary["collisions_robot"], 0);
+  EXPECT_EQ(summary["collisions_obstacle"], 0);
+  EXPECT_GT(summary["min_robot_gap_m"], 0.0);
+  EXPECT_GT(summary["min_obstacle_gap_m"], 0.0);
+  EXPECT_GE(summary["path_ratio"], 1.0);
+  EXPECT_LT(summary["path_ratio"], 1.3);
+  EXPECT_EQ(summary["refused_messages"], 0);
+  EXPECT_GE(summary["discovery_s"], 0.0);
+  for (const char* key : {"mean_path_m", "geodesic_bound_m", "mission_s", "plan_ms",
+                          "deadline_miss_ratio", "cpu_s", "max_rss_mb"}) {
+    EXPECT_TRUE(summary[key].is_number()) << key;
+  }
+  for (const char* key : {"p50", "p99", "p999", "max"})
+    EXPECT_TRUE(summary["state_age_ms"][key].is_number()) << key;
+  for (const char* file :
+       {"summary.json", "mission.resolved.yaml", "plan.json", "events.jsonl", "report.html",
+        "paths.svg", "logs/planner.log", "blackbox/robot-00000.bbox"}) {
+    EXPECT_TRUE(std::filesystem::exists(run.dir() / file)) << file;
+  }
+  EXPECT_EQ(nlohmann::json::parse(run.launcher().out()), summary);
+}
+
+TEST(Mission, AuditOfItsDirectoryAgreesWithTheSummary) {
+  FlownRun run({"--robots", "6"});
+  ASSERT_EQ(run.launcher().wait(), 0) << run.launcher().err();
+
+  Program audit("swarm_monitor", {"audit", run.dir().string(), "--json"});
+
+  ASSERT_EQ(audit.wait(), 0) << audit.err();
+  const auto audited = nlohmann::json::parse(audit.out());
+  for (const char* key :
+       {"arrived", "collisions_robot", "min_robot_gap_m", "mean_path_m", "path_ratio"}) {
+    EXPECT_EQ(audited[key], run.summary()[key]) << key;
+  }
+}
+
+TEST(Mission, PacksSeveralRobotsIntoAProcess) {
+  FlownRun run({"--per-process", "5"});
+
+  ASSERT_EQ(run.launcher().wait(), 0) << run.launcher().err();
+
+  EXPECT_EQ(run.summary()["processes"], 3);
+  EXPECT_EQ(run.summary()["arrived"], 12);
+}
+
+TEST(Mission, TwoRunsAtOnceDoNotHearEachOther) {
+  FlownRun one({"--robots", "6", "--seed", "1"});
+  FlownRun two({"--robots", "6", "--seed", "2"});
+
+  EXPECT_EQ(one.launcher().wait(), 0) << one.launcher().err();
+  EXPECT_EQ(two.launcher().wait(), 0) << two.launcher().err();
+
+  // Robots of both runs carry the same ids: heard ones would be refused as forged.
+  EXPECT_EQ(one.summary()["refused_messages"], 0);
+  EXPECT_EQ(two.summary()["refused_messages"], 0);
+}
+
+}  // namespace
+}  // namespace swarm::test

@@ -1,0 +1,102 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "program.hpp"
+
+#include <csignal>
+#include <fstream>
+#include <sstream>
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace swarm::test {
+
+Program::Program(const std::string& name, const std::vector<std::string>& arguments) {
+  std::string pattern = (std::filesystem::temp_directory_path() / "swarmflow-XXXXXX").string();
+  folder_ = ::mkdtemp(pattern.data());
+  std::vector<std::string> words = {std::string(SWARM_BIN_DIR) + "/" + name};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  std::vector<char*> argv;
+  for (std::string& word : words) argv.push_back(word.data());
+  argv.push_back(nullptr);
+  const std::string out = folder_ / "out";
+  const std::string err = folder_ / "err";
+  pid_ = ::fork();
+  if (pid_ == 0) {
+    ::dup2(::open(out.c_str(), O_WRONLY | O_CREAT, 0600), STDOUT_FILENO);
+    ::dup2(::open(err.c_str(), O_WRONLY | O_CREAT, 0600), STDERR_FILENO);
+    ::execv(argv[0], argv.data());
+    ::_exit(127);
+  }
+}
+
+Program::~Program() {
+  if (!ended_ && pid_ > 0) {
+    ::kill(pid_, SIGKILL);
+    ::waitpid(pid_, nullptr, 0);
+  }
+  std::error_code ignored;
+  std::filesystem::remove_all(folder_, ignored);
+}
+
+void Program::signal(int number) const { ::kill(pid_, number); }
+
+int Program::wait(std::chrono::seconds guard) {
+  int status = 0;
+  const bool ended = eventually([&] { return ::waitpid(pid_, &status, WNOHANG) == pid_; }, guard);
+  if (!ended) {
+    ADD_FAILURE() << "still running; stderr so far:\n" << err();
+    return -1;
+  }
+  ended_ = true;
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+std::string Program::out() const { return read_text(folder_ / "out"); }
+std::string Program::err() const { return read_text(folder_ / "err"); }
+
+TemporaryFolder::TemporaryFolder() {
+  std::string pattern = (std::filesystem::temp_directory_path() / "swarmflow-XXXXXX").string();
+  path_ = ::mkdtemp(pattern.data());
+}
+
+TemporaryFolder::~TemporaryFolder() {
+  if (::testing::Test::HasFailure()) return;
+  std::error_code ignored;
+  std::filesystem::remove_all(path_, ignored);
+}
+
+std::vector<Child> children_of(pid_t parent) {
+  const std::string pid = std::to_string(parent);
+  std::ifstream in("/proc/" + pid + "/task/" + pid + "/children");
+  std::vector<Child> children;
+  for (pid_t child = 0; in >> child;) {
+    std::error_code gone;
+    const auto exe = std::filesystem::read_symlink("/proc/" + std::to_string(child) + "/exe", gone);
+    if (!gone) children.push_back({child, exe.filename()});
+  }
+  return children;
+}
+
+std::vector<pid_t> children_of(pid_t parent, const std::string& program) {
+  std::vector<pid_t> pids;
+  for (const Child& child : children_of(parent)) {
+    if (child.program == program) pids.push_back(child.pid);
+  }
+  return pids;
+}
+
+std::string read_text(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+bool has_event(const std::filesystem::path& run_dir, const std::string& code) {
+  return read_text(run_dir / "events.jsonl").find("\"code\":\"" + code + "\"") != std::string::npos;
+}
+
+}  // namespace swarm::test

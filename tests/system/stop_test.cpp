@@ -1,0 +1,92 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+// Ending a run: Ctrl-C at any moment, and the emergency stop.
+#include <csignal>
+
+#include "flown_run.hpp"
+
+namespace swarm::test {
+namespace {
+
+void expect_all_gone_and_summarised(FlownRun& run, const std::vector<Child>& children) {
+  EXPECT_EQ(run.launcher().wait(), 1) << run.launcher().err();
+  for (const Child& child : children) {
+    EXPECT_NE(::kill(child.pid, 0), 0) << child.program << " " << child.pid;
+  }
+  EXPECT_EQ(run.summary()["outcome"], "interrupted");
+}
+
+TEST(Interrupt, WhileStartingEndsEverything) {
+  FlownRun run;
+  ASSERT_TRUE(eventually([&] { return run.agents().size() >= 2; }));
+  const auto children = children_of(run.launcher().pid());
+
+  run.launcher().signal(SIGINT);
+
+  expect_all_gone_and_summarised(run, children);
+}
+
+TEST(Interrupt, InFlightEndsEverything) {
+  FlownRun run;
+  ASSERT_TRUE(run.mission_started());
+  const auto children = children_of(run.launcher().pid());
+
+  run.launcher().signal(SIGINT);
+
+  expect_all_gone_and_summarised(run, children);
+}
+
+TEST(Interrupt, EndsAgentsThatDoNotAnswer) {
+  FlownRun run;
+  ASSERT_TRUE(run.mission_started());
+  const auto children = children_of(run.launcher().pid());
+  ::kill(run.agents().front(), SIGSTOP);
+
+  run.launcher().signal(SIGINT);
+
+  expect_all_gone_and_summarised(run, children);
+}
+
+TEST(EmergencyStop, IsObeyedByEveryRobotAlsoWithoutAPlanner) {
+  FlownRun run;
+  ASSERT_TRUE(run.mission_started());
+  for (const pid_t planner : run.planners())
+    ::kill(planner, SIGSTOP);  // dead to the swarm, not restarted
+
+  Program command("swarm_launcher", {"command", run.dir().string(), "stop"});
+
+  EXPECT_EQ(command.wait(), 0) << command.err();
+  EXPECT_NE(command.out().find("12 robots confirmed"), std::string::npos) << command.out();
+  for (const pid_t planner : run.planners()) ::kill(planner, SIGCONT);
+  EXPECT_EQ(run.launcher().wait(), 1);
+  EXPECT_EQ(run.summary()["outcome"], "stopped");
+}
+
+TEST(EmergencyStop, NamesWhoHasNotConfirmed) {
+  FlownRun run;
+  ASSERT_TRUE(run.mission_started());
+  const pid_t deaf = run.agents().at(4);
+  ::kill(deaf, SIGSTOP);
+
+  Program command("swarm_launcher", {"command", run.dir().string(), "stop"});
+
+  EXPECT_EQ(command.wait(), 1);
+  EXPECT_NE(command.out().find("not confirmed by robots 4"), std::string::npos) << command.out();
+  ::kill(deaf, SIGCONT);
+  EXPECT_EQ(run.launcher().wait(), 1);
+}
+
+TEST(Command, PausesAndResumes) {
+  FlownRun run;
+  ASSERT_TRUE(run.mission_started());
+
+  Program pause("swarm_launcher", {"command", run.dir().string(), "pause"});
+  EXPECT_EQ(pause.wait(), 0) << pause.err();
+  Program resume("swarm_launcher", {"command", run.dir().string(), "resume"});
+  EXPECT_EQ(resume.wait(), 0) << resume.err();
+
+  EXPECT_EQ(run.launcher().wait(), 0) << run.launcher().err();
+}
+
+}  // namespace
+}  // namespace swarm::test
