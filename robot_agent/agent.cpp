@@ -133,7 +133,7 @@ AgentOutput Agent::tick(const AgentInput& input) {
   }
   out.settled = out.mode == RobotMode::kArrived && out.velocity_mps.norm() < kAtRest_mps;
 
-  out.say = say_.must_say(input.now, input.position_m, out.nearest_gap_m);
+  out.say = say_.must_say(input.now, input.position_m, out.velocity_mps, out.nearest_gap_m);
   if (out.say) say_.said(input.now, input.position_m, out.velocity_mps);
   return out;
 }

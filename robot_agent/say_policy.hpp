@@ -10,7 +10,7 @@ namespace swarm::agent {
 struct SayOptions {
   double error_m = 0.05;    ///< speak when others' extrapolation of us is off by more
   Duration interval_max{};  ///< or when we have been silent this long
-  double near_m = 1.5;      ///< or at every tick while a neighbour's surface is nearer than this
+  double near_m = 1.0;      ///< or at every tick while it moves and a neighbour's surface is nearer
 };
 
 /// When a robot speaks (dead reckoning): others extrapolate its last state linearly, it does the
@@ -19,10 +19,12 @@ class SayPolicy {
  public:
   explicit SayPolicy(const SayOptions& options) : options_(options) {}
 
-  bool must_say(SteadyTime now, const Vec2& position_m, double nearest_gap_m) const {
+  bool must_say(SteadyTime now, const Vec2& position_m, const Vec2& velocity_mps,
+                double nearest_gap_m) const {
     if (!said_) return true;
     if (now - at_ >= options_.interval_max) return true;
-    if (nearest_gap_m < options_.near_m) return true;
+    const bool stands = velocity_mps == velocity_mps_ && velocity_mps.norm() < kStands_mps;
+    if (nearest_gap_m < options_.near_m && !stands) return true;
     const Vec2 believed = position_m_ + to_seconds(now - at_) * velocity_mps_;
     return (believed - position_m).norm() > options_.error_m;
   }
@@ -35,6 +37,8 @@ class SayPolicy {
   }
 
  private:
+  static constexpr double kStands_mps = 0.01;
+
   SayOptions options_;
   bool said_ = false;
   SteadyTime at_;

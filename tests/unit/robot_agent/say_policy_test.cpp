@@ -9,30 +9,31 @@ namespace {
 
 using std::chrono::milliseconds;
 SteadyTime at(int ms) { return SteadyTime(milliseconds(ms)); }
-SayOptions options() { return {.error_m = 0.05, .interval_max = milliseconds(500), .near_m = 1.5}; }
+SayOptions options() { return {.error_m = 0.05, .interval_max = milliseconds(500), .near_m = 1.0}; }
 
 TEST(SayPolicy, StaysSilentWhileOthersExtrapolateRight) {
   SayPolicy sut(options());
-  EXPECT_TRUE(sut.must_say(at(0), {0, 0}, 10.0));
+  EXPECT_TRUE(sut.must_say(at(0), {0, 0}, {1, 0}, 10.0));
   sut.said(at(0), {0, 0}, {1, 0});
 
-  EXPECT_FALSE(sut.must_say(at(400), {0.4, 0.04}, 10.0));
-  EXPECT_TRUE(sut.must_say(at(400), {0.4, 0.06}, 10.0));
+  EXPECT_FALSE(sut.must_say(at(400), {0.4, 0.04}, {1, 0}, 10.0));
+  EXPECT_TRUE(sut.must_say(at(400), {0.4, 0.06}, {1, 0}, 10.0));
 }
 
 TEST(SayPolicy, SpeaksAtLeastEveryInterval) {
   SayPolicy sut(options());
   sut.said(at(0), {0, 0}, {0, 0});
 
-  EXPECT_FALSE(sut.must_say(at(499), {0, 0}, 10.0));
-  EXPECT_TRUE(sut.must_say(at(500), {0, 0}, 10.0));
+  EXPECT_FALSE(sut.must_say(at(499), {0, 0}, {0, 0}, 10.0));
+  EXPECT_TRUE(sut.must_say(at(500), {0, 0}, {0, 0}, 10.0));
 }
 
-TEST(SayPolicy, SpeaksAtEveryTickNearOthers) {
+TEST(SayPolicy, SpeaksAtEveryTickNearOthersUnlessItStands) {
   SayPolicy sut(options());
   sut.said(at(0), {0, 0}, {0, 0});
 
-  EXPECT_TRUE(sut.must_say(at(100), {0, 0}, 1.49));
+  EXPECT_TRUE(sut.must_say(at(100), {0, 0}, {0.5, 0}, 0.99));
+  EXPECT_FALSE(sut.must_say(at(100), {0, 0}, {0, 0}, 0.99));
 }
 
 }  // namespace
