@@ -14,8 +14,6 @@ done
 
 "$root/deploy/install_packages.sh"
 cd "$root"
-cmake --preset release -DSWARM_BUILD_TESTS=OFF >build-quickstart.log 2>&1 ||
-  { cat build-quickstart.log >&2; exit 2; }
-rm -f build-quickstart.log
-cmake --build --preset release
+cmake --preset release
+cmake --build --preset release --target planner_service robot_agent swarm_launcher swarm_monitor
 exec build/release/bin/swarm_launcher run deploy/missions/swarmprm_standin.yaml --robots "$robots"
