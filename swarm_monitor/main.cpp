@@ -5,7 +5,7 @@
 #include <CLI/CLI.hpp>
 
 #include "swarm_core/shell/program.hpp"
-#include "swarm_monitor/audit.hpp"
+#include "swarm_monitor/report.hpp"
 
 namespace {
 
@@ -19,13 +19,21 @@ Result<ExitCode> audit(const std::filesystem::path& run_dir, bool json) {
   return result->ok() ? ExitCode::kOk : ExitCode::kCriteriaNotMet;
 }
 
+Result<ExitCode> report(const std::filesystem::path& run_dir) {
+  const auto result = swarm::monitor::write_report(run_dir);
+  if (!result) return tl::unexpected(result.error());
+  std::printf("%s\n%s\n", (run_dir / "report.html").c_str(), (run_dir / "paths.svg").c_str());
+  return ExitCode::kOk;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   return swarm::shell::run_main("swarm_monitor", [&]() -> Result<ExitCode> {
     CLI::App app(
         "Judges a flown mission by the robots' black boxes.\n"
-        "  swarm_monitor audit RUN_DIR    exits with 0 if the mission met its criteria, else 1",
+        "  swarm_monitor audit RUN_DIR    exits with 0 if the mission met its criteria, else 1\n"
+        "  swarm_monitor report RUN_DIR   writes report.html and paths.svg into it",
         "swarm_monitor");
     app.require_subcommand(1);
     swarm::shell::add_common_options(app);
@@ -34,10 +42,12 @@ int main(int argc, char** argv) {
     CLI::App* audit_command = app.add_subcommand("audit", "Recompute all results of a run");
     audit_command->add_option("run_dir", run_dir, "Directory of the run")->required();
     audit_command->add_flag("--json", json, "Print a JSON document");
+    CLI::App* report_command = app.add_subcommand("report", "Write the run's report and map");
+    report_command->add_option("run_dir", run_dir, "Directory of the run")->required();
 
     const auto done = swarm::shell::parse(app, argc, argv);
     if (!done) return tl::unexpected(done.error());
     if (*done) return **done;
-    return audit(run_dir, json);
+    return report_command->parsed() ? report(run_dir) : audit(run_dir, json);
   });
 }

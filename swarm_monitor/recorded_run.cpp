@@ -3,6 +3,8 @@
 #include "swarm_monitor/recorded_run.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <numeric>
 #include <sstream>
 
@@ -20,16 +22,8 @@ namespace {
 constexpr std::size_t kMaxEventsBytes = 256U << 20U;
 constexpr std::size_t kMaxPlanBytes = 64U << 20U;
 
-template <class... Handlers>
-struct Overloaded : Handlers... {
-  using Handlers::operator()...;
-};
-
-std::optional<UtcTime> first_stamp(const std::vector<blackbox::Record>& records) {
-  for (const auto& record : records) {
-    if (const auto* step = std::get_if<blackbox::Step>(&record)) return step->stamp;
-  }
-  return std::nullopt;
+UtcTime stamp_of(const blackbox::Record& record) {
+  return std::visit([](const auto& r) { return r.stamp; }, record);
 }
 
 std::vector<RunEvent> read_events(const std::filesystem::path& file, UtcTime begin) {
@@ -59,42 +53,44 @@ std::vector<RunEvent> read_events(const std::filesystem::path& file, UtcTime beg
 
 }  // namespace
 
-Track make_track(RobotId robot, const std::vector<blackbox::Record>& records, UtcTime begin) {
-  Track track{.robot = robot};
-  blackbox::LinkStats life;  // newest counters of the current life
-  const auto close_life = [&] {
-    track.state_age.merge(life.state_age);
-    track.refused += std::accumulate(life.refused.begin(), life.refused.end(), std::uint64_t{0});
-    life = {};
-  };
-  const auto add_step = [&](const blackbox::Step& step) {
-    if (step.lateness_us > Track::kLate_us) ++track.late_steps;
-    const double time_s = to_seconds(step.stamp - begin);
-    if (!track.points.empty() && time_s <= track.points.back().time_s) {
-      ++track.damaged;
-      return;
-    }
-    track.points.push_back({.time_s = time_s,
-                            .position_m = step.position_m,
-                            .mode = static_cast<RobotMode>(step.mode),
-                            .goal = step.goal});
-  };
-  for (const auto& record : records) {
-    std::visit(Overloaded{[&](const blackbox::Header& header) {
-                            close_life();
-                            track.radius_m = header.radius_m;
-                            track.processes.push_back(header.process_id);
-                            track.ended_gracefully = false;
-                          },
-                          add_step, [&](const blackbox::LinkStats& stats) { life = stats; },
-                          [&](const blackbox::Note& note) {
-                            track.notes.push_back(note);
-                            if (note.code == "exit") track.ended_gracefully = true;
-                          }},
-               record);
-  }
+void TrackMaker::add(const blackbox::Record& record) {
+  std::visit([this](const auto& r) { take(r); }, record);
+}
+
+void TrackMaker::take(const blackbox::Header& header) {
   close_life();
-  return track;
+  track_.radius_m = header.radius_m;
+  track_.processes.push_back(header.process_id);
+  track_.ended_gracefully = false;
+}
+
+void TrackMaker::take(const blackbox::Step& step) {
+  if (step.lateness_us > Track::kLate_us) ++track_.late_steps;
+  const double time_s = to_seconds(step.stamp - origin_);
+  if (!track_.points.empty() && time_s <= track_.points.back().time_s) {
+    ++track_.damaged;
+    return;
+  }
+  track_.points.push_back({.time_s = time_s,
+                           .position_m = step.position_m,
+                           .mode = static_cast<RobotMode>(step.mode),
+                           .goal = step.goal});
+}
+
+void TrackMaker::take(const blackbox::Note& note) {
+  track_.notes.push_back(note);
+  if (note.code == "exit") track_.ended_gracefully = true;
+}
+
+void TrackMaker::close_life() {
+  track_.state_age.merge(life_.state_age);
+  track_.refused += std::accumulate(life_.refused.begin(), life_.refused.end(), std::uint64_t{0});
+  life_ = {};
+}
+
+Track TrackMaker::finish() {
+  close_life();
+  return std::move(track_);
 }
 
 Result<RecordedRun> read_run(const std::filesystem::path& run_dir) {
@@ -104,33 +100,38 @@ Result<RecordedRun> read_run(const std::filesystem::path& run_dir) {
                                                      run_dir.string(), mission.error().message));
   }
   RecordedRun run{.mission = std::move(*mission)};
-  std::vector<Result<blackbox::File>> files;
-  std::optional<UtcTime> begin;
+  std::optional<UtcTime> origin;  // any stamp near the run: seconds since 1970 would be too coarse
   for (std::uint32_t i = 0; i < run.mission.robots.count; ++i) {
-    files.push_back(blackbox::read_file(blackbox::file_of(run_dir, RobotId(i))));
-    if (!files.back()) continue;
-    const auto stamp = first_stamp(files.back()->records);
-    if (stamp && (!begin || *stamp < *begin)) begin = stamp;
+    std::optional<TrackMaker> maker;
+    const auto damage =
+        blackbox::read_records(blackbox::file_of(run_dir, RobotId(i)), [&](const auto& record) {
+          if (!origin) origin = stamp_of(record);
+          if (!maker) maker.emplace(RobotId(i), *origin);
+          maker->add(record);
+        });
+    Track track = maker ? maker->finish() : Track{.robot = RobotId(i)};
+    if (damage) {
+      track.damaged += damage->damaged;
+    } else {
+      track.unreadable = damage.error().message;
+    }
+    // A box without a header tells no radius: take the mission's.
+    if (track.processes.empty()) track.radius_m = run.mission.robots.radius_m;
+    run.tracks.push_back(std::move(track));
   }
-  if (!begin) {
+  double begin_s = std::numeric_limits<double>::infinity();
+  for (const Track& track : run.tracks) {
+    if (!track.points.empty()) begin_s = std::min(begin_s, track.points.front().time_s);
+  }
+  if (!std::isfinite(begin_s)) {
     return fail(
         ErrorCode::kEnvironment,
         fmt::format("{}: no black box holds a step; did any robot start?", run_dir.string()));
   }
-  run.begin = *begin;
-  for (std::uint32_t i = 0; i < run.mission.robots.count; ++i) {
-    if (!files[i]) {
-      run.tracks.push_back({.robot = RobotId(i),
-                            .radius_m = run.mission.robots.radius_m,
-                            .unreadable = files[i].error().message});
-      continue;
-    }
-    run.tracks.push_back(make_track(RobotId(i), files[i]->records, run.begin));
-    run.tracks.back().damaged += files[i]->damaged;
-    // A box without a header tells no radius: take the mission's.
-    if (run.tracks.back().processes.empty())
-      run.tracks.back().radius_m = run.mission.robots.radius_m;
+  for (Track& track : run.tracks) {
+    for (TrackPoint& point : track.points) point.time_s -= begin_s;
   }
+  run.begin = *origin + from_seconds(begin_s);
   if (const auto text = shell::read_file(run_dir / shell::kPlanFile, kMaxPlanBytes)) {
     if (auto plan = plan_from_json(*text)) run.plan = std::move(*plan);
   }

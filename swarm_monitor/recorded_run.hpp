@@ -59,7 +59,24 @@ struct RecordedRun {
 /// lack is told by their tracks; a missing plan or event log is no error.
 Result<RecordedRun> read_run(const std::filesystem::path& run_dir);
 
-/// The track that the records of one black box make, with times since `begin`.
-Track make_track(RobotId robot, const std::vector<blackbox::Record>& records, UtcTime begin);
+/// Makes a track of the records of one black box, with times since `origin`.
+class TrackMaker {
+ public:
+  TrackMaker(RobotId robot, UtcTime origin) : origin_(origin) { track_.robot = robot; }
+
+  void add(const blackbox::Record& record);
+  Track finish();
+
+ private:
+  void take(const blackbox::Header& header);
+  void take(const blackbox::Step& step);
+  void take(const blackbox::LinkStats& stats) { life_ = stats; }
+  void take(const blackbox::Note& note);
+  void close_life();
+
+  UtcTime origin_;
+  Track track_{};
+  blackbox::LinkStats life_{};  // newest counters of the current life
+};
 
 }  // namespace swarm::monitor

@@ -157,10 +157,11 @@ void Writer::append(const Record& record) {
     const int ignored = ::ftruncate(fd_, status.st_size);
 }
 
-Result<File> read_file(const std::filesystem::path& file) {
+Result<Damage> read_records(const std::filesystem::path& file,
+                            const std::function<void(const Record&)>& take) {
   const auto bytes = bytes_of(file);
   if (!bytes) return tl::unexpected(bytes.error());
-  File result;
+  Damage result;
   std::span<const unsigned char> rest(*bytes);
   if (rest.empty()) {
     result.truncated = true;
@@ -174,8 +175,8 @@ Result<File> read_file(const std::filesystem::path& file) {
   bool in_damage = false;
   while (!rest.empty()) {
     std::size_t length = 0;
-    if (auto record = record_at(rest, length)) {
-      result.records.push_back(std::move(*record));
+    if (const auto record = record_at(rest, length)) {
+      take(*record);
       rest = rest.subspan(length);
       in_damage = false;
       continue;
@@ -194,6 +195,15 @@ Result<File> read_file(const std::filesystem::path& file) {
   }
   if (result.truncated && in_damage) --result.damaged;
   if (!in_damage) result.truncated = false;
+  return result;
+}
+
+Result<File> read_file(const std::filesystem::path& file) {
+  File result;
+  const auto damage =
+      read_records(file, [&](const Record& record) { result.records.push_back(record); });
+  if (!damage) return tl::unexpected(damage.error());
+  static_cast<Damage&>(result) = *damage;
   return result;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <vector>
 
 #include "swarm_core/base/result.hpp"
@@ -36,13 +37,22 @@ class Writer {
   std::vector<unsigned char> buffer_;
 };
 
-struct File {
-  std::vector<Record> records;
+struct Damage {
   std::uint64_t damaged = 0;  ///< stretches of bytes that are no record; reading goes on after them
   bool truncated = false;     ///< the last record is incomplete (the process was killed)
 };
 
-/// Reads what is readable. Fails only if the file cannot be read or is no black box at all.
+/// Hands over every readable record in turn. Fails only if the file cannot be read or is no black
+/// box at all.
+Result<Damage> read_records(const std::filesystem::path& file,
+                            const std::function<void(const Record&)>& take);
+
+struct File : Damage {
+  std::vector<Record> records;
+};
+
+/// Reads all records at once. A Record is as large as its largest kind (4 kB): for many robots use
+/// read_records().
 
 Result<File> read_file(const std::filesystem::path& file);
 

@@ -47,11 +47,12 @@ TEST(RecordedRun, JoinsTheLivesOfARobot) {
 }
 
 TEST(RecordedRun, LeavesOutStepsBackInTime) {
-  const std::vector<blackbox::Record> records{
-      blackbox::Step{.stamp = at_s(0.0)}, blackbox::Step{.stamp = at_s(0.2)},
-      blackbox::Step{.stamp = at_s(0.1)}, blackbox::Step{.stamp = at_s(0.3)}};
+  TrackMaker maker(RobotId(0), at_s(0.0));
+  for (const double time_s : {0.0, 0.2, 0.1, 0.3}) {
+    maker.add(blackbox::Step{.stamp = at_s(time_s)});
+  }
 
-  const Track track = make_track(RobotId(0), records, at_s(0.0));
+  const Track track = maker.finish();
 
   EXPECT_EQ(track.points.size(), 3U);
   EXPECT_EQ(track.damaged, 1U);

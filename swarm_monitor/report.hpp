@@ -1,0 +1,22 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "swarm_monitor/audit.hpp"
+
+namespace swarm::monitor {
+
+/// The map of a run: obstacles, start and goal, plan, every robot's path in its goal's colour,
+/// contacts.
+std::string paths_svg(const AuditedRun& audited);
+
+/// A run on one page that needs nothing else: no network, no other file.
+std::string report_html(const AuditedRun& audited);
+
+/// Audits a run and writes report.html and paths.svg into its directory.
+Result<AuditedRun> write_report(const std::filesystem::path& run_dir);
+
+}  // namespace swarm::monitor
