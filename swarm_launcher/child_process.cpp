@@ -16,6 +16,7 @@
 namespace swarm::launcher {
 namespace {
 
+constexpr int kUrgentNice = -10;
 constexpr int kChildNice = 5;
 constexpr int kExecFailed = 127;
 
@@ -24,6 +25,8 @@ double seconds(const timeval& t) {
 }
 
 }  // namespace
+
+void become_urgent() { ::setpriority(PRIO_PROCESS, 0, kUrgentNice); }
 
 Result<pid_t> start_process(const std::vector<std::string>& command_line,
                             const std::filesystem::path& log) {

@@ -14,6 +14,11 @@
 
 namespace swarm::launcher {
 
+/// Asks for a higher priority of this process (root gets it, others go on without): the discovery
+/// server lives here, and one that is starved by hundreds of starting agents answers late, is asked
+/// again, and never catches up. Call it before any thread is started.
+void become_urgent();
+
 /// Starts a program with stdout and stderr appended to `log`. The child
 ///  - is in a process group of its own, so that Ctrl-C at the terminal reaches the launcher alone,
 ///  - is told to end (SIGTERM) by the kernel when the launcher dies, so that nothing is orphaned,

@@ -31,6 +31,7 @@ namespace swarm::launcher {
 namespace {
 
 constexpr Duration kStep = std::chrono::milliseconds(20);
+constexpr std::uint32_t kPlannerStrength = 100;
 constexpr std::uint32_t kFirstAgentIndex = 2;  // DDS participants 0 and 1: launcher and planner
 
 UtcTime utc_now() {
@@ -120,6 +121,7 @@ class Run {
   std::vector<link::EventMessage> heard_events_;
   SteadyTime shown_at_;
   int interrupts_seen_ = 0;
+  std::uint32_t planner_starts_ = 0;
 };
 
 Result<std::unique_ptr<Run>> Run::make(const RunOptions& options) {
@@ -195,7 +197,10 @@ Result<void> Run::start(ProcessIndex process) {
   std::vector<std::string> command_line;
   std::string log;
   if (process == kPlanner) {
-    command_line = {sibling_program("planner_service"), "--run", dir_.string(), "--index", "1"};
+    command_line = {sibling_program("planner_service"), "--run", dir_.string(), "--index", "1",
+                    // A killed planner keeps the plan topic until its lease ends, unless its
+                    // successor is stronger.
+                    "--strength", fmt::format("{}", kPlannerStrength + planner_starts_++)};
     log = "planner.log";
   } else {
     const auto [first, count] = supervisor_->robots_of(process);
@@ -360,6 +365,7 @@ std::string Run::planner_complaint() const {
 }  // namespace
 
 Result<ExitCode> run_mission(const RunOptions& options) {
+  become_urgent();
   const auto run = Run::make(options);
   if (!run) return tl::unexpected(run.error());
   std::fprintf(stderr, "run directory: %s\n", (*run)->dir().c_str());
