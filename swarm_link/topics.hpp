@@ -61,7 +61,10 @@ inline Topic<StatusMessage> status_topic() {
 }
 
 inline Topic<EventMessage> event_topic() {
-  return {"swarm/event", {.reliability = Reliability::kReliable, .depth = 64}};
+  return {"swarm/event",
+          {.reliability = Reliability::kReliable,
+           .durability = Durability::kTransientLocal,
+           .depth = 64}};
 }
 
 }  // namespace swarm::link

@@ -38,8 +38,8 @@ dds::DomainParticipantQos common_qos(std::shared_ptr<ReceiveSockets> sockets, in
   builtin.avoid_builtin_multicast = true;
   builtin.use_WriterLivelinessProtocol = false;  // 12 % of the discovery traffic, unused by us
   auto& discovery = builtin.discovery_config;
-  discovery.leaseDuration = {15, 0};
-  discovery.leaseDuration_announcementperiod = {3, 0};
+  discovery.leaseDuration = {40, 0};
+  discovery.leaseDuration_announcementperiod = {8, 0};
   return qos;
 }
 
