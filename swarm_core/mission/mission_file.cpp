@@ -38,12 +38,6 @@ bool is_good_name(std::string_view name) {
          });
 }
 
-/// Error messages of constructors may hold several lines; a violation is one.
-std::string one_line(std::string text) {
-  std::replace(text.begin(), text.end(), '\n', ' ');
-  return text;
-}
-
 class MissionReader {
  public:
   explicit MissionReader(yaml::Violations& violations) : violations_(violations) {}
@@ -148,7 +142,7 @@ class MissionReader {
     if (!bounds) return;
     auto world = World::make(*bounds, std::move(obstacles));
     if (!world) {
-      violations_.add(node.at, fmt::format("world: {}", one_line(world.error().message)));
+      violations_.add(node.at, fmt::format("world: {}", world.error().message));
       return;
     }
     mission_.world = std::move(*world);
@@ -210,7 +204,7 @@ class MissionReader {
     if (polygon) {
       obstacles.emplace_back(std::move(*polygon));
     } else {
-      violations_.add(node.at, fmt::format("{}: {}", path, one_line(polygon.error().message)));
+      violations_.add(node.at, fmt::format("{}: {}", path, polygon.error().message));
     }
   }
 
@@ -244,7 +238,7 @@ class MissionReader {
     if (components.size() != items->size()) return {};
     auto mixture = Mixture::make(std::move(components));
     if (!mixture) {
-      violations_.add(node->at, fmt::format("{}: {}", key, one_line(mixture.error().message)));
+      violations_.add(node->at, fmt::format("{}: {}", key, mixture.error().message));
       return {};
     }
     return std::move(*mixture);
@@ -271,8 +265,8 @@ class MissionReader {
     if (!mean || !covariance || !weight) return std::nullopt;
     auto gaussian = Gaussian::make({(*mean)[0], (*mean)[1]}, *covariance);
     if (!gaussian) {
-      violations_.add(covariance_node->at, fmt::format("{}.covariance_m2: {}", path,
-                                                       one_line(gaussian.error().message)));
+      violations_.add(covariance_node->at,
+                      fmt::format("{}.covariance_m2: {}", path, gaussian.error().message));
       return std::nullopt;
     }
     return WeightedGaussian{.weight = *weight, .gaussian = *gaussian};

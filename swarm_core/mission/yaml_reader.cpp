@@ -45,6 +45,10 @@ bool is_not_finite(std::string_view text) {
 }  // namespace
 
 void Violations::add(Position at, std::string what_and_what_instead) {
+  // Quoted pieces of the file must not break the line or steer the terminal.
+  for (char& c : what_and_what_instead) {
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) c = ' ';
+  }
   all_.emplace_back(at, std::move(what_and_what_instead));
 }
 

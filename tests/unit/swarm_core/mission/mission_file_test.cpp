@@ -200,6 +200,13 @@ TEST(MissionFile, ReportsAllViolationsInOrderOfTheFile) {
   }
 }
 
+TEST(MissionFile, KeepsAViolationOnOneLine) {
+  const auto mission = parse_mission(std::string(kLeast) + "name: \"a\\nb\\e[31m\"\n", "m");
+
+  ASSERT_FALSE(mission.has_value());
+  EXPECT_EQ(mission.error().message.find_first_of("\n\x1b"), std::string::npos);
+}
+
 TEST(MissionFile, SaysWhichFileCannotBeRead) {
   const auto missing = load_mission("/nowhere/at all.yaml");
   const auto folder = load_mission("/");
