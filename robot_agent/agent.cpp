@@ -49,7 +49,7 @@ AgentOptions agent_options(const Mission& mission, RobotId robot, std::uint64_t 
                .velocity_mps = c.kick_mps},
       .neighbours = {.radius_m = body.radius_m,
                      .speed_max_mps = body.speed_max_mps,
-                     .keep_radius_m = l.hear_radius_m + l.leave_margin_m,
+                     .keep_radius_m = 1.5 * l.hear_radius_m,
                      .expected_silence = from_seconds(l.send_interval_max_s) + 2 * period,
                      .forget_after = from_seconds(mission.timing.neighbour_forget_s)},
       .say = {.error_m = l.send_error_m,

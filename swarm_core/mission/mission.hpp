@@ -59,13 +59,13 @@ struct SafetySpec {
 };
 
 struct LinkSpec {
-  double cell_size_m = 20.0;
+  double cell_size_m = 40.0;
   double hear_radius_m = 4.0;        ///< states of robots this near must be heard
-  double join_margin_m = 1.5;        ///< a cell is joined this much before it is needed
-  double leave_margin_m = 3.0;       ///< and left this much after
+  double join_margin_m = 6.0;         ///< a cell is joined this much before it is needed
+  double leave_margin_m = 9.0;        ///< and left this much after
   double send_error_m = 0.05;        ///< dead reckoning: speak when extrapolation is off by this
   double send_interval_max_s = 0.5;  ///< … or this old
-  double send_near_m = 1.5;  ///< … or at every tick while a neighbour's surface is this near
+  double send_near_m = 1.0;  ///< … or at every tick while a neighbour's surface is this near
   double status_hz = 1.0;
 };
 
