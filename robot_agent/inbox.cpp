@@ -86,12 +86,11 @@ void Inbox::begin_states() {
 
 void Inbox::receive_state(const link::RobotStateMessage& state, SteadyTime steady_now,
                           UtcTime utc_now, const EchoGuard* own) {
-  if (own != nullptr && own->is_echo(state)) return;
   if (const auto ok = link::check_state(state, limits_, utc_now); !ok) {
     refused_.count(ok.error());
     return;
   }
-  if (own != nullptr) {
+  if (own != nullptr && !own->is_echo(state)) {
     refused_.count(RefusalReason::kForged);
     return;
   }

@@ -56,7 +56,8 @@ class Inbox {
   Inbox(Readers readers, link::StateChannel& states, const link::WireLimits& limits,
         Duration planner_silence);
 
-  /// Takes what arrived. `own(id)` names the guard of a robot of this process, or nullptr.
+  /// Takes what arrived. `own(id)` names the guard of a robot of this process, or nullptr. Robots
+  /// of one process hear each other over the bus like everyone else; a robot skips its own echo.
   template <class OwnGuard>
   void receive(SteadyTime steady_now, UtcTime utc_now, OwnGuard own) {
     receive_fixed_topics(steady_now, utc_now);

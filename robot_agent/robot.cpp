@@ -43,6 +43,7 @@ void Robot::step(const Tick& tick, const Inbox& inbox, const FlowPlan* new_plan)
     note(tick.utc_now, "plan", "took plan version " + std::to_string(inbox.plan_version()));
   }
   for (const HeardState& state : inbox.heard()) {
+    if (state.report.robot == id_) continue;  // our own echo
     if (agent_.hear(state.report, position_m_) == NeighbourTable::Outcome::kTaken) {
       state_age_.add(to_us(state.age));
       ++heard_;
