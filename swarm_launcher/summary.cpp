@@ -23,6 +23,20 @@ Json plan_ms(const std::filesystem::path& run_dir) {
   return stats.is_object() ? stats.value("total_ms", Json()) : Json();
 }
 
+/// The summary of a run that left nothing to audit: it ended before a robot made its first step.
+Json empty_summary(const Json& own, const std::string& why) {
+  Json summary = {
+      {"outcome", nullptr}, {"reasons", {why}}, {"arrived", 0}, {"lost", Json::array()}};
+  for (const char* key :
+       {"robots", "processes", "collisions_robot", "collisions_obstacle", "min_robot_gap_m",
+        "min_obstacle_gap_m", "mean_path_m", "geodesic_bound_m", "path_ratio", "mission_s",
+        "state_age_ms", "deadline_miss_ratio", "refused_messages"}) {
+    summary[key] = nullptr;
+  }
+  summary.update(own);
+  return summary;
+}
+
 ExitCode exit_code_of(Outcome outcome, bool audit_ok) {
   switch (outcome) {
     case Outcome::kCompleted:
@@ -32,6 +46,13 @@ ExitCode exit_code_of(Outcome outcome, bool audit_ok) {
     default:
       return ExitCode::kCriteriaNotMet;
   }
+}
+
+/// Where the report is, or why there is none.
+std::string write_report(const std::filesystem::path& run_dir, bool audited) {
+  if (!audited) return "none";
+  const auto written = monitor::write_report(run_dir);
+  return written ? (run_dir / "report.html").string() : "none: " + written.error().message;
 }
 
 }  // namespace
@@ -47,26 +68,23 @@ Result<ExitCode> summarise(const std::filesystem::path& run_dir, const Measureme
     return tl::unexpected(w.error());
   }
   const auto audit = monitor::audit_run(run_dir);  // carries over what was just written
-  if (!audit) return tl::unexpected(audit.error());
-
-  Json summary = Json::parse(monitor::to_json(*audit));
+  Json summary =
+      audit ? Json::parse(monitor::to_json(*audit)) : empty_summary(own, audit.error().message);
   if (measured.outcome != Outcome::kCompleted) summary["outcome"] = to_string(measured.outcome);
   summary["refused_by_launcher"] = measured.refused_by_launcher;
   const std::string text = summary.dump(2) + "\n";
   if (auto w = shell::write_file(run_dir / shell::kSummaryFile, text); !w) {
     return tl::unexpected(w.error());
   }
-  if (auto reported = monitor::write_report(run_dir); !reported) {
-    std::fprintf(stderr, "no report: %s\n", reported.error().message.c_str());
-  }
+  const std::string report = write_report(run_dir, audit.has_value());
   if (json) {
     std::fputs(text.c_str(), stdout);
   } else {
-    std::fputs(monitor::to_text(*audit).c_str(), stdout);
-    std::printf("%s  report: %s\n", std::string(to_string(measured.outcome)).c_str(),
-                (run_dir / "report.html").c_str());
+    std::fputs((audit ? monitor::to_text(*audit) : audit.error().message + "\n").c_str(), stdout);
+    std::printf("mission          %s\nreport           %s\n",
+                std::string(to_string(measured.outcome)).c_str(), report.c_str());
   }
-  return exit_code_of(measured.outcome, audit->ok());
+  return exit_code_of(measured.outcome, audit && audit->ok());
 }
 
 }  // namespace swarm::launcher
