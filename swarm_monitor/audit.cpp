@@ -43,7 +43,25 @@ std::optional<double> stays_arrived_from(const Track& track) {
   return since;
 }
 
-RobotAudit audit_robot(const Track& track, const Mission& mission) {
+/// From the stamp of the emergency stop that the robot noted as its cause to its last change of
+/// position.
+std::optional<double> stop_latency_ms(const Track& track, UtcTime begin) {
+  const auto stopped =
+      std::find_if(track.notes.begin(), track.notes.end(), [](const blackbox::Note& note) {
+        return note.code == "mode" && note.text == to_string(RobotMode::kStopped) &&
+               note.caused != UtcTime{};
+      });
+  if (stopped == track.notes.end() || track.points.empty()) return std::nullopt;
+  const Vec2& rest_m = track.points.back().position_m;
+  const auto moving =
+      std::find_if(track.points.rbegin(), track.points.rend(),
+                   [&](const TrackPoint& point) { return point.position_m != rest_m; });
+  if (moving == track.points.rbegin() || moving == track.points.rend()) return 0.0;
+  const double at_rest_s = std::prev(moving)->time_s;
+  return std::max(0.0, 1e3 * (at_rest_s - to_seconds(stopped->caused - begin)));
+}
+
+RobotAudit audit_robot(const Track& track, const Mission& mission, UtcTime begin) {
   RobotAudit result{.robot = track.robot};
   result.lost = !track.ended_gracefully || track.points.empty();
   if (track.points.empty()) return result;
@@ -59,6 +77,7 @@ RobotAudit audit_robot(const Track& track, const Mission& mission) {
   result.arrived = !result.lost && result.goal &&
                    mission.goal.components()[*result.goal].gaussian.contains_99(last.position_m);
   result.arrived_at_s = stays_arrived_from(track);
+  result.stop_ms = stop_latency_ms(track, begin);
   return result;
 }
 
@@ -87,17 +106,19 @@ void count_robots(const RecordedRun& run, Audit& audit) {
   std::set<std::uint32_t> processes;
   std::uint64_t steps = 0;
   std::uint64_t late = 0;
+  std::vector<double> stop_ms;
   Histogram age;
   audit.robots = static_cast<std::uint32_t>(run.tracks.size());
   audit.arrived_per_goal.assign(run.mission.goal.components().size(), 0);
   for (const Track& track : run.tracks) {
-    const RobotAudit robot = audit_robot(track, run.mission);
+    const RobotAudit robot = audit_robot(track, run.mission, run.begin);
     if (robot.lost) audit.lost.push_back(robot.robot);
     if (robot.arrived) {
       ++audit.arrived;
       ++audit.arrived_per_goal[*robot.goal];
     }
     if (robot.left_bounds) ++audit.outside_bounds;
+    if (robot.stop_ms) stop_ms.push_back(*robot.stop_ms);
     audit.by_robot.push_back(robot);
     processes.insert(track.processes.begin(), track.processes.end());
     steps += track.points.size();
@@ -108,6 +129,16 @@ void count_robots(const RecordedRun& run, Audit& audit) {
   }
   audit.processes = static_cast<std::uint32_t>(processes.size());
   if (steps > 0) audit.deadline_miss_ratio = static_cast<double>(late) / static_cast<double>(steps);
+  if (!stop_ms.empty()) {
+    std::sort(stop_ms.begin(), stop_ms.end());
+    const auto quantile = [&](double q) {
+      const auto rank =
+          static_cast<std::size_t>(std::ceil(q * static_cast<double>(stop_ms.size())));
+      return stop_ms[std::max<std::size_t>(rank, 1) - 1];
+    };
+    audit.stop =
+        StopLatency{.p50_ms = quantile(0.5), .p99_ms = quantile(0.99), .max_ms = stop_ms.back()};
+  }
   if (age.count() > 0) {
     const auto ms = [](std::int64_t us) { return static_cast<double>(us) / 1000.0; };
     audit.state_age = StateAge{.p50_ms = ms(age.quantile_us(0.5)),

@@ -17,6 +17,11 @@ struct StateAge {
   double p50_ms = 0.0, p99_ms = 0.0, p999_ms = 0.0, max_ms = 0.0;
 };
 
+/// How long robots took to come to rest after an emergency stop was commanded, over the robots.
+struct StopLatency {
+  double p50_ms = 0.0, p99_ms = 0.0, max_ms = 0.0;
+};
+
 /// One robot's part in an audit.
 struct RobotAudit {
   RobotId robot{};
@@ -26,6 +31,7 @@ struct RobotAudit {
   std::optional<double> arrived_at_s{};  ///< time from which on it stayed arrived
   double path_m = 0.0;
   bool left_bounds = false;
+  std::optional<double> stop_ms{};  ///< stamp of the stop it obeyed to its last change of position
 };
 
 /// What a run achieved, computed from its mission and black boxes alone.
@@ -45,6 +51,7 @@ struct Audit {
   std::optional<double> path_ratio;
   std::optional<double> mission_s;  ///< first step in motion to the last arrival, else to the end
   std::optional<StateAge> state_age;
+  std::optional<StopLatency> stop;   ///< empty if nobody was stopped
   double deadline_miss_ratio = 0.0;  ///< share of control steps that began over 20 ms late
   std::uint64_t refused_messages = 0;
   std::uint32_t outside_bounds = 0;  ///< robots that ever left the world's rectangle

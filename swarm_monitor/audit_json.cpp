@@ -29,6 +29,10 @@ std::string to_json(const Audit& audit) {
            {"p999", audit.state_age->p999_ms},
            {"max", audit.state_age->max_ms}};
   }
+  Json stop = nullptr;
+  if (audit.stop) {
+    stop = {{"p50", audit.stop->p50_ms}, {"p99", audit.stop->p99_ms}, {"max", audit.stop->max_ms}};
+  }
   const Json json = {{"outcome", audit.ok() ? "ok" : "criteria_not_met"},
                      {"reasons", audit.reasons},
                      {"robots", audit.robots},
@@ -45,6 +49,7 @@ std::string to_json(const Audit& audit) {
                      {"path_ratio", number(audit.path_ratio)},
                      {"mission_s", number(audit.mission_s)},
                      {"state_age_ms", age},
+                     {"stop_latency_ms", stop},
                      {"deadline_miss_ratio", audit.deadline_miss_ratio},
                      {"refused_messages", audit.refused_messages},
                      {"outside_bounds", audit.outside_bounds},
@@ -76,6 +81,10 @@ std::string to_text(const Audit& audit) {
     text += "\n";
   }
   if (audit.mission_s) text += fmt::format("  mission time     {:.1f} s\n", *audit.mission_s);
+  if (audit.stop) {
+    text += fmt::format("  stop to rest     {:.0f} ms (p50), {:.0f} (p99), {:.0f} (max)\n",
+                        audit.stop->p50_ms, audit.stop->p99_ms, audit.stop->max_ms);
+  }
   if (audit.state_age) {
     text += fmt::format("  age of states    {:.1f} ms (p50), {:.1f} (p99), {:.1f} (max)\n",
                         audit.state_age->p50_ms, audit.state_age->p99_ms, audit.state_age->max_ms);

@@ -60,6 +60,7 @@ TEST(EmergencyStop, IsObeyedByEveryRobotAlsoWithoutAPlanner) {
   for (const pid_t planner : run.planners()) ::kill(planner, SIGCONT);
   EXPECT_EQ(run.launcher().wait(), 1);
   EXPECT_EQ(run.summary()["outcome"], "stopped");
+  EXPECT_TRUE(run.summary()["stop_latency_ms"]["p99"].is_number());
 }
 
 TEST(EmergencyStop, NamesWhoHasNotConfirmed) {

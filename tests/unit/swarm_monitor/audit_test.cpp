@@ -143,6 +143,28 @@ TEST(Audit, MeasuresTheMissionFromFirstMotionToLastArrival) {
   EXPECT_NEAR(*audit_of(files).mission_s, 35.0 - 2.0, 1e-6);
 }
 
+TEST(Audit, MeasuresAStopFromItsStampToTheLastChangeOfPosition) {
+  SyntheticRun files(8);
+  files.write_good_run();
+  auto run = read_run(files.dir());
+  ASSERT_TRUE(run.has_value());
+  Track& track = run->tracks[2];
+  double at_rest_s = 0.0;
+  for (std::size_t i = 1; i < track.points.size(); ++i) {
+    if (track.points[i].position_m != track.points[i - 1].position_m)
+      at_rest_s = track.points[i].time_s;
+  }
+  const UtcTime commanded = run->begin + from_seconds(at_rest_s - 0.3);
+  track.notes.push_back(
+      {.stamp = commanded, .caused = commanded, .code = "mode", .text = "stopped"});
+
+  const Audit audit = audit_recorded(*run).audit;
+
+  ASSERT_TRUE(audit.stop.has_value());
+  EXPECT_NEAR(audit.stop->max_ms, 300.0, 1e-3);  // nanosecond stamps
+  EXPECT_FALSE(audit_of(files).stop.has_value());
+}
+
 TEST(Audit, CountsLateStepsAndRefusedMessages) {
   SyntheticRun files(2);
   files.write(
