@@ -1,0 +1,89 @@
+#!/bin/sh
+# The figures of docs/BENCHMARKS.md that need a hundred processes and real faults: too long for the test suite.
+# One JSON-ish line a case on stdout. About half an hour.   tests/bench/must_hold.sh [CASE …]
+#   cases: plan seeds more lost planner stop interrupt      (default: all)
+set -eu
+root=$(cd "$(dirname "$0")/../.." && pwd)
+bin=${SWARM_BIN:-$root/build/release/bin}
+mission=$root/deploy/missions/swarmprm_standin.yaml
+out=$(mktemp -d "${TMPDIR:-/tmp}/swarmflow-must-hold-XXXXXX")
+echo "runs in $out" >&2
+
+# report NAME EXIT: the interesting keys of a run's summary on one line
+report() {
+  printf '%s exit=%s ' "$1" "$2"
+  tr -d '\n' <"$out/$1/summary.json" | tr -s ' ' |
+    sed 's/"by_robot".*//' |
+    grep -oE '"(outcome|arrived|lost|collisions_robot|collisions_obstacle|min_robot_gap_m|path_ratio|mission_s|stop_latency_ms|deadline_miss_ratio|discovery_s|plan_ms|cpu_s)": ([^,[{]+|\[[^]]*\]|\{[^}]*\})' |
+    tr '\n' ' '
+  echo
+}
+
+# fly NAME [OPTIONS …]: a run in the foreground
+fly() {
+  name=$1
+  shift
+  code=0
+  "$bin/swarm_launcher" run "$mission" --out "$out/$name" --json "$@" >/dev/null 2>"$out/$name.log" || code=$?
+  report "$name" "$code"
+}
+
+# start NAME: a run in the background, until its mission has started and SECONDS have passed
+start() {
+  "$bin/swarm_launcher" run "$mission" --out "$out/$1" --json >/dev/null 2>"$out/$1.log" &
+  launcher=$!
+  until grep -qs '"text":"start"' "$out/$1/events.jsonl"; do sleep 0.2; done
+  sleep "$2"
+}
+
+# finish NAME: waits for it
+finish() {
+  code=0
+  wait "$launcher" || code=$?
+  report "$1" "$code"
+}
+
+children() { pgrep -P "$launcher" -x "$1"; }
+
+for case in ${*:-plan seeds more lost planner stop interrupt}; do
+  case $case in
+    plan) "$bin/swarm_launcher" plan "$mission" --repeat 31 ;;
+    seeds) for seed in 1 2 3 4 5; do fly "seed$seed" --seed "$seed"; done ;;
+    more) fly more --robots 120 ;;
+    lost)
+      start lost 60
+      children robot_agent | sed -n '11p;31p;51p;71p;91p' | xargs kill -9
+      finish lost
+      ;;
+    planner)
+      start planner 60
+      children planner_service | xargs kill -9
+      finish planner
+      ;;
+    stop)
+      start stop 60
+      children planner_service | xargs kill -STOP
+      "$bin/swarm_launcher" command "$out/stop" stop
+      children planner_service | xargs -r kill -CONT
+      finish stop
+      ;;
+    interrupt)
+      for after in 0.3 1.5 4 20; do
+        "$bin/swarm_launcher" run "$mission" --out "$out/interrupt$after" --json >/dev/null 2>&1 &
+        launcher=$!
+        sleep "$after"
+        begin=$(date +%s%N)
+        kill -INT "$launcher"
+        code=0
+        wait "$launcher" || code=$?
+        left=$(pgrep -cf "$out/interrupt$after" || true)
+        echo "interrupt after ${after} s: gone in $((($(date +%s%N) - begin) / 1000000)) ms, exit=$code," \
+          "left=$left, $(grep -o '"outcome": "[a-z_]*"' "$out/interrupt$after/summary.json")"
+      done
+      ;;
+    *)
+      echo "unknown case $case" >&2
+      exit 3
+      ;;
+  esac
+done
