@@ -135,7 +135,8 @@ Result<std::unique_ptr<Run>> Run::make(const RunOptions& options) {
       (mission->robots.count + options.per_process - 1) / options.per_process;
   auto lock = DomainLock::take(options.domain, agents + kFirstAgentIndex);
   if (!lock) return tl::unexpected(lock.error());
-  const auto dir = options.out.empty() ? default_run_dir(mission->name) : options.out;
+  const auto dir =
+      std::filesystem::absolute(options.out.empty() ? default_run_dir(mission->name) : options.out);
   if (const auto made = make_run_dir(dir); !made) return tl::unexpected(made.error());
   if (auto written = shell::write_file(dir / shell::kMissionFile, to_yaml(*mission)); !written) {
     return tl::unexpected(written.error());

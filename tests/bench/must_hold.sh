@@ -62,9 +62,8 @@ for case in ${*:-plan seeds more lost planner stop interrupt}; do
       ;;
     stop)
       start stop 60
-      children planner_service | xargs kill -STOP
+      children planner_service | xargs kill -9
       "$bin/swarm_launcher" command "$out/stop" stop
-      children planner_service | xargs -r kill -CONT
       finish stop
       ;;
     interrupt)
