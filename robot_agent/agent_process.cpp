@@ -63,6 +63,7 @@ struct AgentProcess::Impl {
   std::vector<link::RobotStateMessage> saying;
   std::vector<Vec2> positions;
   link::RefusalCounters reported;  // what was announced as an event already
+  std::uint32_t skewed_reported = 0;
   bool planner_was_alive = false;
   SteadyTime status_at;
 
@@ -210,6 +211,11 @@ void AgentProcess::Impl::report_health(const Robot::Tick& tick) {
   if (!periodic) return;
   status_at = tick.now;
   record_link_stats(tick.utc_now);
+  if (const std::uint32_t fresh = inbox->skewed() - skewed_reported; fresh > 0) {
+    skewed_reported += fresh;
+    announce(tick.utc_now, link::Severity::kWarning, "clock-skew",
+             fmt::format("{} state(s) from a clock that differs from ours", fresh));
+  }
   for (std::size_t i = 0; i < link::kRefusalReasons; ++i) {
     const auto reason = static_cast<link::RefusalReason>(i);
     const std::uint32_t fresh = inbox->refused()[reason] - reported[reason];

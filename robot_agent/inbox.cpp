@@ -9,6 +9,12 @@ namespace swarm::agent {
 
 using link::RefusalReason;
 
+namespace {
+
+constexpr Duration kLatePlausible = std::chrono::seconds(1);
+
+}  // namespace
+
 Inbox::Inbox(Readers readers, link::StateChannel& states, const link::WireLimits& limits,
              Duration planner_silence)
     : readers_(std::move(readers)), states_(states), limits_(limits), mission_(planner_silence) {}
@@ -94,14 +100,14 @@ void Inbox::receive_state(const link::RobotStateMessage& state, SteadyTime stead
     refused_.count(RefusalReason::kForged);
     return;
   }
-  // Ages are taken on our own clock; a sender whose clock is off by more than the warning threshold
-  // is believed to have spoken just now.
+  // A state may have waited in the socket since our last tick, however long ago that is, and have
+  // been late before that. What is older still, or comes from the future, has a clock that is off:
+  // the state counts as old as it may be.
+  const Duration waited = received_before_ ? steady_now - *received_before_ : Duration::zero();
   Duration age = utc_now - UtcTime(Duration(state.stamp_utc_ns));
-  if (age < -limits_.clock_skew_warn) ++skewed_;
-  if (std::chrono::abs(age) >
-      std::max(limits_.clock_skew_warn, Duration(std::chrono::seconds(1)))) {
+  if (age < -limits_.clock_skew_warn || age > waited + kLatePlausible) {
     ++skewed_;
-    age = Duration::zero();
+    age = waited;
   }
   age = std::max(age, Duration::zero());
   heard_.push_back({.report = {.robot = RobotId(state.robot_id),

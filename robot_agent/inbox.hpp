@@ -71,6 +71,7 @@ class Inbox {
         receive_state(state, steady_now, utc_now, own(RobotId(state.robot_id)));
       }
     }
+    received_before_ = steady_now;
   }
 
   std::span<const HeardState> heard() const { return heard_; }
@@ -108,6 +109,7 @@ class Inbox {
   std::uint32_t plan_version_ = 0;
   std::int64_t stop_stamp_utc_ns_ = 0;
   std::uint32_t skewed_ = 0;
+  std::optional<SteadyTime> received_before_;
   std::vector<HeardState> heard_;
   std::vector<link::PlanMessage> plans_;
   std::vector<link::HeartbeatMessage> heartbeats_;

@@ -72,7 +72,7 @@ struct LinkSpec {
 struct TimingSpec {
   double heartbeat_hz = 5.0;
   double planner_silence_s = 2.0;   ///< silent planner → hold, avoidance on
-  double neighbour_forget_s = 1.0;  ///< until then its radius grows by v_max · age
+  double neighbour_forget_s = 2.0;  ///< until then its radius grows by v_max · age
   double clock_skew_warn_s = 0.25;
   double clock_skew_refuse_s = 10.0;
 };
