@@ -165,8 +165,12 @@ void AgentProcess::Impl::tick(const Robot::Tick& tick) {
     if (robot.to_say()) saying.push_back(*robot.to_say());
     positions.push_back(robot.position_m());
   }
-  states->publish(saying);
-  states->listen_around(positions);
+  // Cell topics come after the plan: a start-up in which everyone discovers everything at once
+  // takes the discovery server several times as long, and nobody moves without a plan.
+  if (inbox->plan_version() > 0) {
+    states->publish(saying);
+    states->listen_around(positions);
+  }
   report_health(tick);
 }
 

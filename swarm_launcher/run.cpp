@@ -190,7 +190,7 @@ Result<void> Run::join() {
                                         .launcher = mission_.launcher,
                                         .script = mission_.script},
                       std::chrono::steady_clock::now());
-  view_ = SwarmView(mission_.robots.count);
+  view_ = SwarmView(mission_.robots.count, mission_.link.hear_radius_m);
   return {};
 }
 
@@ -266,10 +266,12 @@ void Run::read_bus() {
       refused_.count(ok.error());
       continue;
     }
-    supervisor_->on_status(
-        RobotId(status.robot_id),
-        {.has_plan = status.plan_version > 0, .mode = status.mode, .settled = status.settled});
     view_.take(status);
+    supervisor_->on_status(RobotId(status.robot_id),
+                           {.has_plan = status.plan_version > 0,
+                            .hears_neighbours = view_.hears_neighbours(status.robot_id),
+                            .mode = status.mode,
+                            .settled = status.settled});
   }
   heard_events_.clear();
   event_reader_->take(heard_events_);
@@ -354,6 +356,7 @@ Result<Measurements> Run::fly() {
   measurements_.cpu_s += static_cast<double>(own.ru_utime.tv_sec + own.ru_stime.tv_sec) +
                          1e-6 * static_cast<double>(own.ru_utime.tv_usec + own.ru_stime.tv_usec);
   measurements_.discovery_s = supervisor_->discovery_s();
+  measurements_.hearing_s = supervisor_->hearing_s();
   measurements_.refused_by_launcher = refused_.total();
   measurements_.outcome = supervisor_->outcome();
   return measurements_;

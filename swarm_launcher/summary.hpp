@@ -14,6 +14,7 @@ namespace swarm::launcher {
 struct Measurements {
   Outcome outcome = Outcome::kNone;
   double discovery_s = -1.0;  ///< negative: never complete
+  double hearing_s = -1.0;    ///< from then to everyone hearing its neighbours; negative: never
   double cpu_s = 0.0;         ///< of all processes of the run
   double max_rss_mb = 0.0;    ///< of the largest child
   std::uint64_t refused_by_launcher = 0;

@@ -154,13 +154,18 @@ void Supervisor::start_due(SteadyTime now, std::vector<Action>& actions) {
 
 void Supervisor::gather(SteadyTime now, std::vector<Action>& actions) {
   std::vector<RobotId> missing;
+  bool discovered = true;
   for (std::uint32_t i = 0; i < robots_.size(); ++i) {
-    if (!robots_[i].heard || !robots_[i].report.has_plan) missing.emplace_back(i);
+    const bool known = robots_[i].heard && robots_[i].report.has_plan;
+    discovered = discovered && known;
+    if (!known || !robots_[i].report.hears_neighbours) missing.emplace_back(i);
   }
+  const double waited_s = to_seconds(now - last_start_);
+  if (discovered && discovery_s_ < 0.0) discovery_s_ = waited_s;
   if (missing.empty()) {
-    discovery_s_ = to_seconds(now - last_start_);
+    hearing_s_ = waited_s - discovery_s_;
   } else {
-    if (to_seconds(now - last_start_) < options_.launcher.quorum_timeout_s) return;
+    if (waited_s < options_.launcher.quorum_timeout_s) return;
     const double ready = static_cast<double>(robots_.size() - missing.size());
     const bool enough =
         ready >= options_.launcher.quorum_share * static_cast<double>(robots_.size());
@@ -283,7 +288,7 @@ Supervisor::Counts Supervisor::counts() const {
       ++c.lost;
       continue;
     }
-    c.ready += r.heard && r.report.has_plan ? 1 : 0;
+    c.ready += r.heard && r.report.has_plan && r.report.hears_neighbours ? 1 : 0;
     c.arrived += r.report.mode == RobotMode::kArrived ? 1 : 0;
     c.settled += r.report.settled ? 1 : 0;
     c.stopped += r.report.mode == RobotMode::kStopped ? 1 : 0;

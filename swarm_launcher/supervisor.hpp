@@ -36,6 +36,7 @@ struct ProcessExit {
 /// What a robot's status said.
 struct RobotReport {
   bool has_plan = false;
+  bool hears_neighbours = false;  ///< everyone who stands within its hearing radius
   RobotMode mode = RobotMode::kWaiting;
   bool settled = false;
 };
@@ -74,6 +75,8 @@ std::string_view to_string(Outcome outcome);  ///< snake_case, as in summary.jso
 /// Decides when processes start, restart and end, and when the mission's commands go out. Pure:
 /// times and observations in, actions out.
 ///
+/// Ready is a robot that was heard, has the plan, and hears its neighbours.
+///
 ///   starting ──last start──▶ gathering ──everyone ready──▶ running ──settled, limit, stop──▶
 ///   ending ──▶ done
 ///      └──────────── interrupt, planner cannot plan, quorum time-out ─────────────────────────▲
@@ -107,8 +110,11 @@ class Supervisor {
   std::vector<RobotId> unstopped() const;
   std::vector<RobotId> lost() const;
 
-  /// From the last start of a process to everyone being ready; negative if that never happened.
+  /// From the last start of a process to everyone being heard and having the plan; negative if that
+  /// never happened.
   double discovery_s() const { return discovery_s_; }
+  /// From then on to everyone hearing its neighbours as well; negative if that never happened.
+  double hearing_s() const { return hearing_s_; }
   /// Mission time, 0 before the start.
   MissionTime mission_time(SteadyTime now) const;
 
@@ -149,6 +155,7 @@ class Supervisor {
   SteadyTime all_arrived_at_;
   bool all_arrived_ = false;
   double discovery_s_ = -1.0;
+  double hearing_s_ = -1.0;
   std::size_t next_script_ = 0;
   std::uint32_t stops_to_send_ = 0;
   SteadyTime next_stop_;

@@ -3,6 +3,7 @@
 #include "swarm_launcher/swarm_view.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include <fmt/format.h>
@@ -10,6 +11,16 @@
 namespace swarm::launcher {
 
 void SwarmView::take(const link::StatusMessage& status) { robots_.at(status.robot_id) = status; }
+
+bool SwarmView::hears_neighbours(std::uint32_t robot) const {
+  const link::StatusMessage& self = robots_.at(robot);
+  std::uint32_t near = 0;
+  for (const link::StatusMessage& other : robots_) {
+    if (other.ticks == 0 || other.robot_id == robot) continue;
+    if (std::hypot(other.x_m - self.x_m, other.y_m - self.y_m) <= hear_radius_m_) ++near;
+  }
+  return self.neighbours_heard >= near;
+}
 
 std::string SwarmView::describe(SteadyTime now) {
   Totals totals;

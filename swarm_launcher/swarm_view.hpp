@@ -10,13 +10,18 @@
 
 namespace swarm::launcher {
 
-/// What the robots' statuses say together, for the live line. Never part of an audit.
+/// What the robots' statuses say together, for the live line and the start. Never part of an audit.
 class SwarmView {
  public:
   SwarmView() = default;
-  explicit SwarmView(std::uint32_t robots) : robots_(robots) {}
+  SwarmView(std::uint32_t robots, double hear_radius_m)
+      : robots_(robots), hear_radius_m_(hear_radius_m) {}
 
   void take(const link::StatusMessage& status);
+
+  /// Whether a robot hears at least as many others as stand within the hearing radius, by all their
+  /// statuses.
+  bool hears_neighbours(std::uint32_t robot) const;
 
   /// "gap 0.31 m  states 320/s sent 2210/s heard  late 0.0 %"; rates since the previous call.
   std::string describe(SteadyTime now);
@@ -26,6 +31,7 @@ class SwarmView {
     std::uint64_t sent = 0, heard = 0, ticks = 0, late = 0;
   };
   std::vector<link::StatusMessage> robots_;
+  double hear_radius_m_ = 0.0;
   Totals before_;
   SteadyTime at_;
 };

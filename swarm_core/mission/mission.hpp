@@ -59,7 +59,7 @@ struct SafetySpec {
 };
 
 struct LinkSpec {
-  double cell_size_m = 40.0;
+  double cell_size_m = 100.0;
   double hear_radius_m = 4.0;        ///< states of robots this near must be heard
   double join_margin_m = 6.0;         ///< a cell is joined this much before it is needed
   double leave_margin_m = 9.0;        ///< and left this much after

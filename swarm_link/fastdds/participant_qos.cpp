@@ -11,6 +11,8 @@
 #include <fastrtps/xmlparser/XMLProfileManager.h>
 #include <fmt/format.h>
 
+#include "swarm_link/fastdds/cached_thread_id.hpp"
+
 namespace swarm::link::fastdds {
 
 namespace dds = eprosima::fastdds::dds;
@@ -103,6 +105,7 @@ dds::DomainParticipantQos server_qos(std::uint32_t domain, std::uint16_t port,
 void set_up_library() {
   static std::once_flag once;
   std::call_once(once, [] {
+    cache_thread_ids();
     dds::Log::ClearConsumers();
     dds::Log::RegisterConsumer(std::make_unique<dds::StdoutErrConsumer>());  // errors to stderr
     dds::Log::SetVerbosity(dds::Log::Kind::Error);

@@ -51,7 +51,7 @@ struct Bench {
 
   void report_all(RobotMode mode, bool settled = false) {
     for (std::uint32_t i = 0; i < options.robots; ++i)
-      sut->on_status(RobotId(i), {true, mode, settled});
+      sut->on_status(RobotId(i), {true, true, mode, settled});
   }
 
   bool logged(const std::string& fragment) const {
@@ -83,11 +83,28 @@ TEST(Supervisor, StartsTheMissionWhenEveryRobotIsReady) {
   EXPECT_GE(bench.sut->discovery_s(), 0.0);
 }
 
+TEST(Supervisor, WaitsUntilEveryRobotHearsItsNeighbours) {
+  Bench bench(3);
+  bench.run_for(seconds(1));
+  for (std::uint32_t i = 0; i < 3; ++i) {
+    bench.sut->on_status(RobotId(i), {true, i != 1, RobotMode::kWaiting, false});
+  }
+  bench.run_for(seconds(1));
+  EXPECT_TRUE(bench.commands.empty());
+  EXPECT_GE(bench.sut->discovery_s(), 0.0);
+
+  bench.report_all(RobotMode::kWaiting);
+  bench.run_for(milliseconds(100));
+
+  EXPECT_EQ(bench.commands.size(), 1U);
+  EXPECT_GE(bench.sut->hearing_s(), 0.9);
+}
+
 TEST(Supervisor, NamesWhoIsMissingAndGivesUp) {
   Bench bench(5);
   bench.run_for(seconds(1));
   for (const std::uint32_t i : {0U, 2U})
-    bench.sut->on_status(RobotId(i), {true, RobotMode::kWaiting, false});
+    bench.sut->on_status(RobotId(i), {true, true, RobotMode::kWaiting, false});
 
   bench.run_for(seconds(35));
 
@@ -102,7 +119,7 @@ TEST(Supervisor, GoesOnWithAQuorumAfterTheTimeOut) {
   bench.options.launcher.quorum_share = 0.8;
   bench.run_for(seconds(1));
   for (std::uint32_t i = 0; i < 4; ++i)
-    bench.sut->on_status(RobotId(i), {true, RobotMode::kWaiting, false});
+    bench.sut->on_status(RobotId(i), {true, true, RobotMode::kWaiting, false});
 
   bench.run_for(seconds(31));
 
@@ -176,7 +193,7 @@ TEST(Supervisor, RepeatsAStopAndNamesWhoHasNotConfirmed) {
   Running bench(4);
   bench.start();
   for (const std::uint32_t i : {0U, 1U, 3U})
-    bench.sut->on_status(RobotId(i), {true, RobotMode::kStopped, false});
+    bench.sut->on_status(RobotId(i), {true, true, RobotMode::kStopped, false});
 
   bench.sut->on_command(CommandKind::kStop, bench.now);
   bench.run_for(seconds(6));
