@@ -50,6 +50,8 @@ AgentOptions agent_options(const Mission& mission, RobotId robot, std::uint64_t 
       .neighbours = {.radius_m = body.radius_m,
                      .speed_max_mps = body.speed_max_mps,
                      .keep_radius_m = 1.5 * l.hear_radius_m,
+                     .near_m = l.send_near_m,
+                     .near_silence = 3 * period,
                      .expected_silence = from_seconds(l.send_interval_max_s) + 2 * period,
                      .forget_after = from_seconds(mission.timing.neighbour_forget_s)},
       .say = {.error_m = l.send_error_m,

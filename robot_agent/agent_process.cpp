@@ -3,6 +3,8 @@
 #include "robot_agent/agent_process.hpp"
 
 #include <cerrno>
+#include <cmath>
+#include <numbers>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -64,6 +66,7 @@ struct AgentProcess::Impl {
   std::vector<Vec2> positions;
   link::RefusalCounters reported;  // what was announced as an event already
   std::uint32_t skewed_reported = 0;
+  std::uint32_t plan_told = 0;
   bool planner_was_alive = false;
   SteadyTime status_at;
 
@@ -201,7 +204,10 @@ void AgentProcess::Impl::record_link_stats(UtcTime now) {
 }
 
 void AgentProcess::Impl::report_health(const Robot::Tick& tick) {
-  const bool periodic = tick.now - status_at >= from_seconds(1.0 / mission.link.status_hz);
+  // Everyone waits for everyone to have the plan: that is told at once.
+  const bool news = inbox->plan_version() != plan_told;
+  plan_told = inbox->plan_version();
+  const bool periodic = news || tick.now - status_at >= from_seconds(1.0 / mission.link.status_hz);
   for (const Robot& robot : robots) {
     if (periodic || robot.mode_changed()) status_writer->write(full_status(robot, tick.utc_now));
   }
@@ -253,8 +259,10 @@ Result<std::unique_ptr<AgentProcess>> AgentProcess::make(const ProcessOptions& o
 Result<void> AgentProcess::run() {
   Impl& p = *impl_;
   const Duration period = from_seconds(1.0 / p.mission.control.rate_hz);
-  // Processes tick out of step with each other, so that they do not all want the CPU at once.
-  const Duration phase = period * (p.options.first.value() * 7919 % 1000) / 1000;
+  // Processes tick out of step with each other, so that they do not all want the CPU at once:
+  // multiples of the golden ratio spread any number of them evenly over the period.
+  const double turn = p.options.first.value() * (std::numbers::phi - 1.0);
+  const Duration phase = from_seconds(to_seconds(period) * (turn - std::floor(turn)));
   const auto now = std::chrono::steady_clock::now();
   SteadyTime next = now - now.time_since_epoch() % period + period + phase;
   while (shell::stop_requests() == 0) {

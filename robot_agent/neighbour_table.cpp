@@ -41,11 +41,14 @@ std::span<const Neighbour> NeighbourTable::at(SteadyTime now, const Vec2& own_po
   for (const NeighbourReport& r : reports_) {
     const Duration age = std::max<Duration>(now - r.as_of, Duration::zero());
     const double overdue_s = std::max(0.0, to_seconds(age - options_.expected_silence));
-    const Vec2 position = r.position_m + to_seconds(age) * r.velocity_mps;
+    const double gap_m = (r.position_m - own_position_m).norm() - 2.0 * options_.radius_m;
+    const bool stalled = gap_m < options_.near_m && age > options_.near_silence;
+    const Duration ahead = stalled ? options_.near_silence : age;
+    const Vec2 position = r.position_m + to_seconds(ahead) * r.velocity_mps;
     if ((position - own_position_m).norm() > options_.keep_radius_m) continue;
     neighbours_.push_back({.robot = r.robot,
                            .position_m = position,
-                           .velocity_mps = r.velocity_mps,
+                           .velocity_mps = stalled ? Vec2::Zero() : r.velocity_mps,
                            .radius_m = options_.radius_m + options_.speed_max_mps * overdue_s});
   }
   return neighbours_;

@@ -33,13 +33,17 @@ struct NeighbourOptions {
   double radius_m = 0.2;
   double speed_max_mps = 1.5;
   double keep_radius_m = 6.0;   ///< robots farther than this are not kept
+  double near_m = 1.0;          ///< robots whose surface is this near speak at every tick …
+  Duration near_silence{};      ///< … so that one silent for longer has stalled
   Duration expected_silence{};  ///< a healthy robot speaks at least this often
   Duration forget_after{};
 };
 
 /// The robots near us, as far as the bus tells. Between two words of a robot its position is
-/// extrapolated; from `expected_silence` on its radius grows by v_max for every second more, and
-/// after `forget_after` it is forgotten. Sorted by id; no allocation once warm.
+/// extrapolated, but that of a near one only for `near_silence`: it would have spoken, so its
+/// process has stalled and its body has stopped by itself. From `expected_silence` on its radius
+/// grows by v_max for every second more, and after `forget_after` it is forgotten. Sorted by id; no
+/// allocation once warm.
 class NeighbourTable {
  public:
   explicit NeighbourTable(const NeighbourOptions& options);

@@ -15,6 +15,8 @@ NeighbourTable table() {
   return NeighbourTable({.radius_m = 0.2,
                          .speed_max_mps = 1.5,
                          .keep_radius_m = 6.0,
+                         .near_m = 1.0,
+                         .near_silence = milliseconds(300),
                          .expected_silence = milliseconds(700),
                          .forget_after = milliseconds(1000)});
 }
@@ -26,14 +28,25 @@ NeighbourReport report(std::uint32_t robot, std::uint32_t sequence, int ms, Vec2
 
 TEST(NeighbourTable, ExtrapolatesAlongTheLastVelocity) {
   auto sut = table();
-  sut.take(report(3, 1, 0, {1, 0}, {0.5, -1}), Vec2::Zero());
+  sut.take(report(3, 1, 0, {2, 0}, {0.5, -1}), Vec2::Zero());
 
   const auto now = sut.at(at(400), Vec2::Zero());
 
   ASSERT_EQ(now.size(), 1U);
-  EXPECT_NEAR(now[0].position_m.x(), 1.2, 1e-12);
+  EXPECT_NEAR(now[0].position_m.x(), 2.2, 1e-12);
   EXPECT_NEAR(now[0].position_m.y(), -0.4, 1e-12);
   EXPECT_DOUBLE_EQ(now[0].radius_m, 0.2);
+}
+
+TEST(NeighbourTable, TakesANearRobotThatFellSilentForStanding) {
+  auto sut = table();
+  sut.take(report(3, 1, 0, {1, 0}, {1, 0}), Vec2::Zero());
+
+  const auto now = sut.at(at(600), Vec2::Zero());
+
+  ASSERT_EQ(now.size(), 1U);
+  EXPECT_NEAR(now[0].position_m.x(), 1.3, 1e-12);  // where its watchdog stopped it, give or take
+  EXPECT_EQ(now[0].velocity_mps, Vec2::Zero());
 }
 
 TEST(NeighbourTable, GrowsARobotThatIsSilentForTooLong) {
