@@ -5,6 +5,16 @@
 #include <algorithm>
 
 namespace swarm::agent {
+namespace {
+
+Vec2 nearest_on_segment(const Vec2& point, const Vec2& from, const Vec2& to) {
+  const Vec2 along = to - from;
+  const double length_squared = along.squaredNorm();
+  if (length_squared < 1e-12) return from;
+  return from + std::clamp((point - from).dot(along) / length_squared, 0.0, 1.0) * along;
+}
+
+}  // namespace
 
 NeighbourTable::NeighbourTable(const NeighbourOptions& options) : options_(options) {
   reports_.reserve(128);
@@ -42,13 +52,16 @@ std::span<const Neighbour> NeighbourTable::at(SteadyTime now, const Vec2& own_po
     const Duration age = std::max<Duration>(now - r.as_of, Duration::zero());
     const double overdue_s = std::max(0.0, to_seconds(age - options_.expected_silence));
     const double gap_m = (r.position_m - own_position_m).norm() - 2.0 * options_.radius_m;
-    const bool stalled = gap_m < options_.near_m && age > options_.near_silence;
-    const Duration ahead = stalled ? options_.near_silence : age;
-    const Vec2 position = r.position_m + to_seconds(ahead) * r.velocity_mps;
+    const bool silent = gap_m < options_.near_m && age > options_.near_silence;
+    Vec2 position = r.position_m + to_seconds(age) * r.velocity_mps;
+    if (silent) {
+      const Vec2 stood = r.position_m + to_seconds(options_.near_silence) * r.velocity_mps;
+      position = nearest_on_segment(own_position_m, stood, position);
+    }
     if ((position - own_position_m).norm() > options_.keep_radius_m) continue;
     neighbours_.push_back({.robot = r.robot,
                            .position_m = position,
-                           .velocity_mps = stalled ? Vec2::Zero() : r.velocity_mps,
+                           .velocity_mps = silent ? Vec2::Zero() : r.velocity_mps,
                            .radius_m = options_.radius_m + options_.speed_max_mps * overdue_s});
   }
   return neighbours_;

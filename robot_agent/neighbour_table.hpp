@@ -40,10 +40,10 @@ struct NeighbourOptions {
 };
 
 /// The robots near us, as far as the bus tells. Between two words of a robot its position is
-/// extrapolated, but that of a near one only for `near_silence`: it would have spoken, so its
-/// process has stalled and its body has stopped by itself. From `expected_silence` on its radius
-/// grows by v_max for every second more, and after `forget_after` it is forgotten. Sorted by id; no
-/// allocation once warm.
+/// extrapolated. A near one that is silent for longer than `near_silence` may have stalled, so that
+/// its driver has stopped it, or may go on unheard: it is taken to stand at the nearest place
+/// between the two. From `expected_silence` on its radius grows by v_max for every second more, and
+/// after `forget_after` it is forgotten. Sorted by id; no allocation once warm.
 class NeighbourTable {
  public:
   explicit NeighbourTable(const NeighbourOptions& options);

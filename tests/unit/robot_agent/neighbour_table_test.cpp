@@ -38,15 +38,20 @@ TEST(NeighbourTable, ExtrapolatesAlongTheLastVelocity) {
   EXPECT_DOUBLE_EQ(now[0].radius_m, 0.2);
 }
 
-TEST(NeighbourTable, TakesANearRobotThatFellSilentForStanding) {
-  auto sut = table();
-  sut.take(report(3, 1, 0, {1, 0}, {1, 0}), Vec2::Zero());
+TEST(NeighbourTable, TakesANearRobotThatFellSilentForStandingWhereItIsNearest) {
+  auto ahead = table();
+  ahead.take(report(3, 1, 0, {1, 0}, {1, 0}), Vec2::Zero());
+  auto behind = table();
+  behind.take(report(3, 1, 0, {-1, 0}, {1, 0}), Vec2::Zero());
 
-  const auto now = sut.at(at(600), Vec2::Zero());
+  const auto stopped = ahead.at(at(600), Vec2::Zero());
+  const auto going_on = behind.at(at(600), Vec2::Zero());
 
-  ASSERT_EQ(now.size(), 1U);
-  EXPECT_NEAR(now[0].position_m.x(), 1.3, 1e-12);  // where its watchdog stopped it, give or take
-  EXPECT_EQ(now[0].velocity_mps, Vec2::Zero());
+  ASSERT_EQ(stopped.size(), 1U);
+  EXPECT_NEAR(stopped[0].position_m.x(), 1.3, 1e-12);  // where its driver stopped it, give or take
+  EXPECT_EQ(stopped[0].velocity_mps, Vec2::Zero());
+  ASSERT_EQ(going_on.size(), 1U);
+  EXPECT_NEAR(going_on[0].position_m.x(), -0.4, 1e-12);
 }
 
 TEST(NeighbourTable, GrowsARobotThatIsSilentForTooLong) {
