@@ -34,8 +34,8 @@ template <class M>
 class Reader {
  public:
   virtual ~Reader() = default;
-  /// Appends every message that arrived since the last call, oldest first; returns how many. Samples
-  /// that do not decode are dropped and counted in undecodable().
+  /// Appends every message that arrived since the last call, oldest first; returns how many.
+  /// Samples that do not decode are dropped and counted in undecodable().
   virtual std::size_t take(std::vector<M>& out) = 0;
   virtual int matched() const = 0;
   virtual std::uint64_t undecodable() const = 0;
@@ -66,7 +66,8 @@ class Participant {
   virtual Result<ReaderPtr<EventMessage>> make_reader(const Topic<EventMessage>&) = 0;
 
   /// Hands everything that waits in the sockets to the readers, in the caller's thread. Call it at
-  /// the start of a tick, before take(). Does nothing in backs that receive in threads of their own.
+  /// the start of a tick, before take(). Does nothing in backs that receive in threads of their
+  /// own.
   virtual void receive() = 0;
 
   /// Fails, saying why and how to mend it, when this participant could not hear its peers: no

@@ -40,10 +40,11 @@ struct CellOptions {
 };
 
 /// The `topics` channel: one ordinary topic per cell, endpoints made and discovered as robots move.
-/// Writers are made `join_margin_m` before a robot enters a cell, so that they are discovered when it
-/// does, and those of left cells linger (their discovery is dear, keeping them is not) up to a small
-/// number. Call participant.receive() before take(). An endpoint the bus refuses is tried again.
-/// Works over any participant. \pre participant outlives the channel
-std::unique_ptr<StateChannel> make_topic_channel(Participant& participant, const CellOptions& options);
+/// Writers are made `join_margin_m` before a robot enters a cell, so that they are discovered when
+/// it does, and those of left cells linger (their discovery is dear, keeping them is not) up to a
+/// small number. Call participant.receive() before take(). An endpoint the bus refuses is tried
+/// again. Works over any participant. \pre participant outlives the channel
+std::unique_ptr<StateChannel> make_topic_channel(Participant& participant,
+                                                 const CellOptions& options);
 
 }  // namespace swarm::link

@@ -20,7 +20,8 @@ struct Qos {
   Durability durability = Durability::kVolatile;
   int depth = 1;  ///< keep-last, per instance
   Ownership ownership = Ownership::kShared;
-  bool large = false;  ///< samples may exceed one datagram (64 KiB): fragmented, sent asynchronously
+  bool large =
+      false;  ///< samples may exceed one datagram (64 KiB): fragmented, sent asynchronously
   bool operator==(const Qos&) const = default;
 };
 

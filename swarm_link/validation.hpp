@@ -12,22 +12,22 @@
 #include "swarm_core/world/world.hpp"
 #include "swarm_link/messages.hpp"
 
-/// The edge: nothing received is trusted. Each check is a pure function; what it refuses is counted by
-/// reason and the last good value stays.
+/// The edge: nothing received is trusted. Each check is a pure function; what it refuses is counted
+/// by reason and the last good value stays.
 namespace swarm::link {
 
 enum class RefusalReason : std::uint8_t {
-  kUndecodable,    ///< bytes that are not a sample
-  kSchema,         ///< unknown schema version
-  kOversized,      ///< more elements than the contract allows
-  kNotFinite,      ///< NaN or infinity
-  kOutOfRange,     ///< id, enum, position or speed beyond its limits
-  kBadGaussian,    ///< covariance not symmetric positive definite
-  kBadMass,        ///< weights negative, over 1, not summing to 1, or not conserved
-  kStale,          ///< older epoch, version, sequence number or stamp than what is known
-  kDuplicate,      ///< seen before
-  kClockSkew,      ///< stamp further from our clock than timing.clock_skew_refuse_s
-  kForged,         ///< claims to be us, or somebody who cannot have sent it
+  kUndecodable,  ///< bytes that are not a sample
+  kSchema,       ///< unknown schema version
+  kOversized,    ///< more elements than the contract allows
+  kNotFinite,    ///< NaN or infinity
+  kOutOfRange,   ///< id, enum, position or speed beyond its limits
+  kBadGaussian,  ///< covariance not symmetric positive definite
+  kBadMass,      ///< weights negative, over 1, not summing to 1, or not conserved
+  kStale,        ///< older epoch, version, sequence number or stamp than what is known
+  kDuplicate,    ///< seen before
+  kClockSkew,    ///< stamp further from our clock than timing.clock_skew_refuse_s
+  kForged,       ///< claims to be us, or somebody who cannot have sent it
   kCount
 };
 
@@ -53,10 +53,10 @@ class RefusalCounters {
 
 /// What a well-formed message may say in this mission.
 struct WireLimits {
-  std::uint32_t robots = 0;          ///< ids are below this
-  Box bounds_m;                      ///< positions lie inside, plus `bounds_slack_m`
+  std::uint32_t robots = 0;  ///< ids are below this
+  Box bounds_m;              ///< positions lie inside, plus `bounds_slack_m`
   double bounds_slack_m = 5.0;
-  double speed_max_mps = 1.5;        ///< speeds are at most twice this
+  double speed_max_mps = 1.5;  ///< speeds are at most twice this
   Duration clock_skew_warn{};
   Duration clock_skew_refuse{};
 };
@@ -64,8 +64,8 @@ struct WireLimits {
 template <class T>
 using Checked = tl::expected<T, RefusalReason>;
 
-/// Schema, size and content of a plan (FlowPlan::make decides on Gaussians and masses; means must lie
-/// inside the bounds plus slack).
+/// Schema, size and content of a plan (FlowPlan::make decides on Gaussians and masses; means must
+/// lie inside the bounds plus slack).
 Checked<FlowPlan> check_plan(const PlanMessage& message, const WireLimits& limits);
 
 Checked<void> check_heartbeat(const HeartbeatMessage& message);

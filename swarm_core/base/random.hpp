@@ -12,7 +12,8 @@ namespace swarm {
 /// The generator passed into domain code. There is no global one.
 using Rng = std::mt19937_64;
 
-/// SplitMix64 finaliser: decorrelates seeds built from small integers (seed, robot id, plan version).
+/// SplitMix64 finaliser: decorrelates seeds built from small integers (seed, robot id, plan
+/// version).
 constexpr std::uint64_t mix_seed(std::uint64_t a, std::uint64_t b = 0) {
   std::uint64_t z = a + 0x9E3779B97F4A7C15ULL * (b + 1);
   z = (z ^ (z >> 30U)) * 0xBF58476D1CE4E5B9ULL;
@@ -27,7 +28,8 @@ inline double uniform(Rng& rng, double low, double high) {
   return low + (high - low) * uniform01(rng);
 }
 
-/// Standard normal by Box–Muller, the same on every standard library (std::normal_distribution is not).
+/// Standard normal by Box–Muller, the same on every standard library (std::normal_distribution is
+/// not).
 inline double standard_normal(Rng& rng) {
   const double u = 1.0 - uniform01(rng);
   return std::sqrt(-2.0 * std::log(u)) * std::cos(2.0 * std::numbers::pi * uniform01(rng));

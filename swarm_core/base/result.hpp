@@ -35,9 +35,12 @@ enum class ExitCode : int { kOk = 0, kCriteriaNotMet = 1, kEnvironment = 2, kUsa
 
 constexpr ExitCode exit_code(ErrorCode code) {
   switch (code) {
-    case ErrorCode::kBadInput: return ExitCode::kUsage;
-    case ErrorCode::kInfeasible: return ExitCode::kCriteriaNotMet;
-    case ErrorCode::kEnvironment: return ExitCode::kEnvironment;
+    case ErrorCode::kBadInput:
+      return ExitCode::kUsage;
+    case ErrorCode::kInfeasible:
+      return ExitCode::kCriteriaNotMet;
+    case ErrorCode::kEnvironment:
+      return ExitCode::kEnvironment;
   }
   return ExitCode::kEnvironment;
 }
