@@ -13,7 +13,6 @@ echo "runs in $out" >&2
 report() {
   printf '%s exit=%s ' "$1" "$2"
   tr -d '\n' <"$out/$1/summary.json" | tr -s ' ' |
-    sed 's/"by_robot".*//' |
     grep -oE '"(outcome|arrived|lost|collisions_robot|collisions_obstacle|min_robot_gap_m|path_ratio|mission_s|stop_latency_ms|deadline_miss_ratio|discovery_s|plan_ms|cpu_s)": ([^,[{]+|\[[^]]*\]|\{[^}]*\})' |
     tr '\n' ' '
   echo
