@@ -22,6 +22,7 @@ struct Qos {
   Ownership ownership = Ownership::kShared;
   bool large =
       false;  ///< samples may exceed one datagram (64 KiB): fragmented, sent asynchronously
+  bool crowd = false;  ///< many readers of each sample: one datagram to all of them where possible
   bool operator==(const Qos&) const = default;
 };
 
@@ -54,7 +55,7 @@ inline Topic<HeartbeatMessage> heartbeat_topic() {
 
 inline Topic<CellStatesMessage> cell_topic(Cell cell) {
   return {"swarm/cell/" + std::to_string(cell.x) + "_" + std::to_string(cell.y),
-          {.reliability = Reliability::kBestEffort, .depth = 64}};
+          {.reliability = Reliability::kBestEffort, .depth = 64, .crowd = true}};
 }
 
 inline Topic<StatusMessage> status_topic() {

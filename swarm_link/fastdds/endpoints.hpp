@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -14,6 +15,7 @@
 #include <fastdds/dds/subscriber/Subscriber.hpp>
 
 #include "swarm_link/fastdds/guarded_type.hpp"
+#include "swarm_link/fastdds/loopback_transport.hpp"
 #include "swarm_link/fastdds/topic_registry.hpp"
 #include "swarm_link/port.hpp"
 
@@ -54,13 +56,35 @@ class FastDdsWriter final : public Writer<M> {
   typename WireOf<M>::Type wire_;  // kept for its memory
 };
 
+/// A reader's hold on the multicast group it listens to.
+class GroupMembership {
+ public:
+  GroupMembership(std::shared_ptr<ReceiveSockets> sockets, const ReceiveSockets::Locator& group)
+      : sockets_(std::move(sockets)), group_(group), joined_(sockets_->join(group_)) {}
+  ~GroupMembership() {
+    if (joined_) sockets_->leave(group_);
+  }
+  GroupMembership(const GroupMembership&) = delete;
+  GroupMembership& operator=(const GroupMembership&) = delete;
+  bool joined() const { return joined_; }
+
+ private:
+  std::shared_ptr<ReceiveSockets> sockets_;
+  ReceiveSockets::Locator group_;
+  bool joined_;
+};
+
 template <class M>
 class FastDdsReader final : public Reader<M> {
  public:
   FastDdsReader(eprosima::fastdds::dds::Subscriber& subscriber,
                 eprosima::fastdds::dds::DataReader* reader, TopicRegistry& topics,
-                std::string topic)
-      : subscriber_(subscriber), reader_(reader), topics_(topics), topic_(std::move(topic)) {}
+                std::string topic, std::unique_ptr<GroupMembership> group)
+      : subscriber_(subscriber),
+        reader_(reader),
+        topics_(topics),
+        topic_(std::move(topic)),
+        group_(std::move(group)) {}
 
   ~FastDdsReader() override {
     subscriber_.delete_datareader(reader_);
@@ -96,7 +120,8 @@ class FastDdsReader final : public Reader<M> {
   eprosima::fastdds::dds::DataReader* reader_;
   TopicRegistry& topics_;
   std::string topic_;
-  typename WireOf<M>::Type wire_;  // kept for its memory
+  std::unique_ptr<GroupMembership> group_;  // null: hears at the participant's own address
+  typename WireOf<M>::Type wire_;           // kept for its memory
   std::uint64_t undecodable_ = 0;
 };
 

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "swarm_link/fastdds/entity_qos.hpp"
 
+#include <fastrtps/utils/IPLocator.h>
+
 namespace swarm::link::fastdds {
 
 namespace dds = eprosima::fastdds::dds;
@@ -45,9 +47,21 @@ dds::DataWriterQos writer_qos(const Qos& qos, std::uint32_t ownership_strength) 
   return out;
 }
 
-dds::DataReaderQos reader_qos(const Qos& qos) {
+rtps::Locator_t group_of(std::uint32_t domain, const std::string& topic) {
+  std::uint32_t hash = 2'166'136'261U;  // FNV-1a
+  for (const char c : topic) hash = (hash ^ static_cast<unsigned char>(c)) * 16'777'619U;
+  rtps::Locator_t group;
+  group.kind = LOCATOR_KIND_UDPv4;
+  group.port = 7401 + 250 * domain;  // the standard's port for user multicast
+  rtps::IPLocator::setIPv4(group, 239, 255, static_cast<rtps::octet>((hash >> 8U) & 0xFFU),
+                           static_cast<rtps::octet>(hash & 0xFFU));
+  return group;
+}
+
+dds::DataReaderQos reader_qos(const Qos& qos, const std::optional<rtps::Locator_t>& group) {
   dds::DataReaderQos out;
   translate(qos, out);
+  if (group) out.endpoint().multicast_locator_list.push_back(*group);
   return out;
 }
 

@@ -3,6 +3,7 @@
 #include "swarm_link/fastdds/fastdds_participant.hpp"
 
 #include <exception>
+#include <optional>
 #include <utility>
 
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
@@ -98,6 +99,13 @@ class FastDdsParticipant final : public Participant {
                               options_.domain, options_.index,
                               sockets_->hears_metatraffic() ? "data" : "discovery"));
     }
+    if (options_.receive_at_tick && !loopback_carries_multicast()) {
+      return fail(ErrorCode::kEnvironment,
+                  fmt::format("participant '{}' would not hear other robots: multicast sent to the "
+                              "loopback interface does not come back; run 'ip link set lo up' and "
+                              "let firewalls pass 239.255.0.0/16 on lo",
+                              options_.name));
+    }
     const int granted = granted_receive_buffer_bytes(options_.receive_buffer_bytes);
     if (granted < options_.receive_buffer_bytes / 2) {
       return fail(ErrorCode::kEnvironment,
@@ -140,10 +148,20 @@ class FastDdsParticipant final : public Participant {
     try {
       const auto vendor_topic = topics_.acquire(topic.name, type_name<M>());
       if (!vendor_topic) return tl::unexpected(vendor_topic.error());
-      auto* made = subscriber_->create_datareader(*vendor_topic, reader_qos(topic.qos), nullptr,
-                                                  dds::StatusMask::none());
+      std::optional<eprosima::fastrtps::rtps::Locator_t> group;
+      if (topic.qos.crowd && options_.receive_at_tick) group = group_of(options_.domain, topic.name);
+      auto* made = subscriber_->create_datareader(*vendor_topic, reader_qos(topic.qos, group),
+                                                  nullptr, dds::StatusMask::none());
       if (made == nullptr) return refused_endpoint("reader", topic.name);
-      return ReaderPtr<M>(new FastDdsReader<M>(*subscriber_, made, topics_, topic.name));
+      auto membership = group ? std::make_unique<GroupMembership>(sockets_, *group) : nullptr;
+      const bool deaf = membership && !membership->joined();
+      auto reader = std::make_unique<FastDdsReader<M>>(*subscriber_, made, topics_, topic.name,
+                                                       std::move(membership));
+      if (deaf) {
+        return fail(ErrorCode::kEnvironment,
+                    fmt::format("reader of '{}' cannot join a multicast group", topic.name));
+      }
+      return reader;
     } catch (const std::exception& e) {
       return fail(ErrorCode::kEnvironment, fmt::format("reader of '{}': {}", topic.name, e.what()));
     }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstring>
 #include <exception>
 
 #include <arpa/inet.h>
@@ -24,12 +25,33 @@ constexpr std::size_t kDatagramBytes = 65'536;
 constexpr std::size_t kBatch = 32;
 constexpr const char* kLoopback = "127.0.0.1";
 
+in_addr group_of(const rtps::Locator& locator) {
+  in_addr group{};
+  std::memcpy(&group.s_addr, IPLocator::getIPv4(locator), sizeof group.s_addr);
+  return group;
+}
+
+// A group's socket is bound to the group, not to every address: it hears nothing else.
 sockaddr_in to_address(const rtps::Locator& locator) {
   sockaddr_in address{};
   address.sin_family = AF_INET;
   address.sin_port = htons(IPLocator::getPhysicalPort(locator));
   address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  if (IPLocator::isMulticast(locator)) address.sin_addr = group_of(locator);
   return address;
+}
+
+bool same_channel(const rtps::Locator& a, const rtps::Locator& b) {
+  const bool multicast = IPLocator::isMulticast(a);
+  return a.port == b.port && multicast == IPLocator::isMulticast(b) &&
+         (!multicast || group_of(a).s_addr == group_of(b).s_addr);
+}
+
+bool set_membership(int fd, int option, const rtps::Locator& group) {
+  ip_mreqn request{};
+  request.imr_multiaddr = group_of(group);
+  request.imr_address.s_addr = htonl(INADDR_LOOPBACK);
+  return ::setsockopt(fd, IPPROTO_IP, option, &request, sizeof request) == 0;
 }
 
 rtps::Locator to_locator(const sockaddr_in& address) {
@@ -50,13 +72,13 @@ class LoopbackTransport final : public rtps::ChainingTransport {
   rtps::TransportDescriptorInterface* get_configuration() override { return &descriptor_; }
 
   bool IsInputChannelOpen(const rtps::Locator& locator) const override {
-    if (sockets().owns(locator.port)) return sockets().is_open(locator);
+    if (sockets().owns(locator)) return sockets().is_open(locator);
     return low_level_transport_->IsInputChannelOpen(locator);
   }
 
   bool OpenInputChannel(const rtps::Locator& locator, rtps::TransportReceiverInterface* receiver,
                         std::uint32_t max_message_size) override {
-    if (sockets().owns(locator.port)) return sockets().open(locator, receiver);
+    if (sockets().owns(locator)) return sockets().open(locator, receiver);
     // Straight to the low level: nothing is to be done to the bytes on their way.
     const bool opened = low_level_transport_->OpenInputChannel(locator, receiver, max_message_size);
     if (opened) sockets().note_opened(locator.port);
@@ -64,7 +86,7 @@ class LoopbackTransport final : public rtps::ChainingTransport {
   }
 
   bool CloseInputChannel(const rtps::Locator& locator) override {
-    if (sockets().owns(locator.port)) return sockets().close(locator);
+    if (sockets().owns(locator)) return sockets().close(locator);
     return low_level_transport_->CloseInputChannel(locator);
   }
 
@@ -111,35 +133,66 @@ bool ReceiveSockets::is_data_port(std::uint32_t port) const {
   return first_data_port_ != 0 && port >= first_data_port_ && (port - first_data_port_) % 2 == 0;
 }
 
+bool ReceiveSockets::owns(const Locator& locator) const {
+  return at_tick_ && (IPLocator::isMulticast(locator) || is_data_port(locator.port));
+}
+
+ReceiveSockets::Socket* ReceiveSockets::find(const Locator& locator) {
+  const auto it = std::find_if(sockets_.begin(), sockets_.end(),
+                               [&](const Socket& s) { return same_channel(s.locator, locator); });
+  return it == sockets_.end() ? nullptr : &*it;
+}
+
+const ReceiveSockets::Socket* ReceiveSockets::find(const Locator& locator) const {
+  return const_cast<ReceiveSockets*>(this)->find(locator);
+}
+
 bool ReceiveSockets::open(const Locator& locator, Receiver* receiver) {
   const int fd = ::socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
   if (fd < 0) return false;
   ::setsockopt(fd, SOL_SOCKET, SO_RCVBUF, &buffer_bytes_, sizeof buffer_bytes_);
+  if (const int yes = 1; IPLocator::isMulticast(locator)) {  // every process listens there
+    ::setsockopt(fd, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+  }
   const auto address = to_address(locator);
   if (::bind(fd, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
     ::close(fd);
     return false;
   }
   const std::lock_guard lock(mutex_);
-  sockets_.push_back({fd, locator, receiver});
-  opened_.push_back(locator.port);
+  sockets_.push_back({.fd = fd, .locator = locator, .receiver = receiver});
+  if (is_data_port(locator.port)) opened_.push_back(locator.port);
   return true;
 }
 
 bool ReceiveSockets::close(const Locator& locator) {
   const std::lock_guard lock(mutex_);
-  const auto it = std::find_if(sockets_.begin(), sockets_.end(),
-                               [&](const Socket& s) { return s.locator.port == locator.port; });
-  if (it == sockets_.end()) return false;
-  ::close(it->fd);
-  sockets_.erase(it);
+  const Socket* const socket = find(locator);
+  if (socket == nullptr) return false;
+  ::close(socket->fd);
+  sockets_.erase(sockets_.begin() + (socket - sockets_.data()));
   return true;
+}
+
+bool ReceiveSockets::join(const Locator& group) {
+  const std::lock_guard lock(mutex_);
+  Socket* const socket = find(group);
+  if (socket == nullptr) return false;
+  if (socket->members == 0 && !set_membership(socket->fd, IP_ADD_MEMBERSHIP, group)) return false;
+  ++socket->members;
+  return true;
+}
+
+void ReceiveSockets::leave(const Locator& group) {
+  const std::lock_guard lock(mutex_);
+  Socket* const socket = find(group);
+  if (socket == nullptr || socket->members == 0) return;
+  if (--socket->members == 0) set_membership(socket->fd, IP_DROP_MEMBERSHIP, group);
 }
 
 bool ReceiveSockets::is_open(const Locator& locator) const {
   const std::lock_guard lock(mutex_);
-  return std::any_of(sockets_.begin(), sockets_.end(),
-                     [&](const Socket& s) { return s.locator.port == locator.port; });
+  return find(locator) != nullptr;
 }
 
 void ReceiveSockets::note_opened(std::uint32_t port) {
@@ -207,6 +260,30 @@ int granted_receive_buffer_bytes(int asked_bytes) {
   ::getsockopt(fd, SOL_SOCKET, SO_RCVBUF, &granted, &size);
   ::close(fd);
   return granted / 2;  // the kernel reports twice what was asked, for its own bookkeeping
+}
+
+bool loopback_carries_multicast() {
+  const int fd = ::socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+  if (fd < 0) return false;
+  rtps::Locator group;
+  group.kind = LOCATOR_KIND_UDPv4;
+  IPLocator::setIPv4(group, 239, 255, 0, 0);
+  sockaddr_in address = to_address(group);  // port 0: any free one
+  socklen_t size = sizeof address;
+  const ip_mreqn through_loopback{.imr_multiaddr = {},
+                                  .imr_address = {htonl(INADDR_LOOPBACK)},
+                                  .imr_ifindex = 0};
+  const bool sent =
+      ::bind(fd, reinterpret_cast<const sockaddr*>(&address), size) == 0 &&
+      ::getsockname(fd, reinterpret_cast<sockaddr*>(&address), &size) == 0 &&
+      set_membership(fd, IP_ADD_MEMBERSHIP, group) &&
+      ::setsockopt(fd, IPPROTO_IP, IP_MULTICAST_IF, &through_loopback, sizeof through_loopback) ==
+          0 &&
+      ::sendto(fd, "?", 1, 0, reinterpret_cast<const sockaddr*>(&address), size) == 1;
+  char back = 0;
+  const bool heard = sent && ::recv(fd, &back, 1, 0) == 1;  // the loopback delivers while it sends
+  ::close(fd);
+  return heard;
 }
 
 LoopbackTransportDescriptor::LoopbackTransportDescriptor(

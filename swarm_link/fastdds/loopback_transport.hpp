@@ -27,13 +27,20 @@ class ReceiveSockets {
   ReceiveSockets& operator=(const ReceiveSockets&) = delete;
 
   bool is_data_port(std::uint32_t port) const;
-  bool owns(std::uint32_t port) const { return at_tick_ && is_data_port(port); }
 
   using Receiver = eprosima::fastdds::rtps::TransportReceiverInterface;
   using Locator = eprosima::fastdds::rtps::Locator;
+  /// Data ports and multicast groups are ours when drained at the tick.
+  bool owns(const Locator& locator) const;
   bool open(const Locator& locator, Receiver* receiver);
   bool close(const Locator& locator);
   bool is_open(const Locator& locator) const;
+
+  /// Hears what is sent to a multicast group, until as many calls of leave(). The vendor opens a
+  /// group's socket with its first reader and keeps it for ever: membership decides whether
+  /// anything arrives. Fails when the socket is not open or the kernel refuses.
+  bool join(const Locator& group);
+  void leave(const Locator& group);
 
   /// Remembers that the vendor's transport opened or closed a port.
   void note_opened(std::uint32_t port);
@@ -52,7 +59,10 @@ class ReceiveSockets {
     int fd;
     Locator locator;
     Receiver* receiver;
+    int members = 0;  // readers of a multicast group; 0: not joined
   };
+  Socket* find(const Locator& locator);
+  const Socket* find(const Locator& locator) const;
   int drain_socket(const Socket& socket);
 
   std::uint16_t first_data_port_;
@@ -66,6 +76,9 @@ class ReceiveSockets {
 
 /// Receive buffer the kernel really grants when `asked_bytes` are asked for.
 int granted_receive_buffer_bytes(int asked_bytes);
+
+/// Sends a datagram to a multicast group on the loopback interface and looks whether it comes back.
+bool loopback_carries_multicast();
 
 struct LoopbackTransportDescriptor : eprosima::fastdds::rtps::ChainingTransportDescriptor {
   explicit LoopbackTransportDescriptor(std::shared_ptr<ReceiveSockets> receive_sockets,
