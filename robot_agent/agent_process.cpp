@@ -21,6 +21,7 @@
 #include "swarm_core/shell/run_directory.hpp"
 #include "swarm_core/shell/stop_signal.hpp"
 #include "swarm_link/fastdds/fastdds_participant.hpp"
+#include "swarm_link/fastdds/group_channel.hpp"
 #include "swarm_link/topics.hpp"
 
 namespace swarm::agent {
@@ -104,10 +105,19 @@ Result<void> AgentProcess::Impl::join(const shell::RunInfo& run) {
   event_writer = std::move(*event);
 
   const LinkSpec& l = mission.link;
-  states = link::make_topic_channel(*participant, {.cell_size_m = l.cell_size_m,
-                                                   .hear_radius_m = l.hear_radius_m,
-                                                   .join_margin_m = l.join_margin_m,
-                                                   .leave_margin_m = l.leave_margin_m});
+  if (run.channel == shell::Channel::kGroups) {
+    link::GroupChannelOptions groups{.domain = run.domain};
+    groups.cells.cell_size_m = l.group_cell_size_m;
+    groups.cells.hear_radius_m = l.hear_radius_m;
+    auto channel = link::make_group_channel(groups);
+    if (!channel) return tl::unexpected(channel.error());
+    states = std::move(*channel);
+  } else {
+    states = link::make_topic_channel(*participant, {.cell_size_m = l.cell_size_m,
+                                                     .hear_radius_m = l.hear_radius_m,
+                                                     .join_margin_m = l.join_margin_m,
+                                                     .leave_margin_m = l.leave_margin_m});
+  }
   const link::WireLimits limits{
       .robots = mission.robots.count,
       .bounds_m = mission.world.bounds_m(),

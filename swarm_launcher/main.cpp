@@ -35,6 +35,15 @@ int main(int argc, char** argv) {
     run_command->add_option("--out", run.out, "Run directory (default: runs/<mission>-<time>)");
     run_command->add_option("--domain", run.domain, "DDS domain (default: a free one)")
         ->check(CLI::Range(0, 229));
+    const std::map<std::string, std::optional<shell::Channel>> channels = {
+        {"auto", std::nullopt},
+        {"topics", shell::Channel::kTopics},
+        {"groups", shell::Channel::kGroups}};
+    std::string channel = "auto";
+    run_command
+        ->add_option("--channel", channel,
+                     "What carries robot states: DDS topics, multicast groups, or auto")
+        ->check(CLI::IsMember(channels));
     run_command->add_flag("--json", run.json, "Print the summary as JSON");
 
     launcher::PlanCommandOptions plan;
@@ -65,6 +74,7 @@ int main(int argc, char** argv) {
     if (!done) return tl::unexpected(done.error());
     if (*done) return **done;
     shell::catch_stop_signals();
+    run.channel = channels.at(channel);
     if (run_command->parsed()) return launcher::run_mission(run);
     if (plan_command->parsed()) return launcher::plan_mission(plan);
     return launcher::command_mission(run_dir, kinds.at(kind));

@@ -60,6 +60,11 @@ Result<void> make_run_dir(const std::filesystem::path& dir) {
   return {};
 }
 
+// Beyond these, endpoints of moving robots cost more to discover than all else together
+// (docs/BENCHMARKS.md); a process of many robots listens nearly everywhere and gains nothing.
+constexpr std::uint32_t kTopicsAgentsMax = 32;
+constexpr std::uint32_t kGroupsPerProcessMax = 4;
+
 int number_of(EndSignal signal) {
   switch (signal) {
     case EndSignal::kInterrupt:
@@ -82,8 +87,10 @@ class Run {
   std::string planner_complaint() const;
 
  private:
-  Run(const RunOptions& options, Mission mission, std::filesystem::path dir, DomainLock lock)
+  Run(const RunOptions& options, Mission mission, std::filesystem::path dir, DomainLock lock,
+      ChannelChoice channel)
       : options_(options),
+        channel_(std::move(channel)),
         mission_(std::move(mission)),
         dir_(std::move(dir)),
         lock_(std::move(lock)),
@@ -99,6 +106,7 @@ class Run {
   void show(SteadyTime now);
 
   RunOptions options_;
+  ChannelChoice channel_;
   Mission mission_;
   std::filesystem::path dir_;
   DomainLock lock_;
@@ -141,7 +149,9 @@ Result<std::unique_ptr<Run>> Run::make(const RunOptions& options) {
   if (auto written = shell::write_file(dir / shell::kMissionFile, to_yaml(*mission)); !written) {
     return tl::unexpected(written.error());
   }
-  auto run = std::unique_ptr<Run>(new Run(options, std::move(*mission), dir, std::move(*lock)));
+  auto run = std::unique_ptr<Run>(new Run(options, std::move(*mission), dir, std::move(*lock),
+                                          choose_channel(options.channel, agents,
+                                                         options.per_process)));
   if (const auto joined = run->join(); !joined) return tl::unexpected(joined.error());
   return run;
 }
@@ -158,6 +168,7 @@ Result<void> Run::join() {
   if (auto written = shell::write_run_info(dir_, {.domain = lock_.domain(),
                                                   .discovery_host = address.host,
                                                   .discovery_port = address.port,
+                                                  .channel = channel_.channel,
                                                   .seed = options_.seed});
       !written) {
     return written;
@@ -190,6 +201,10 @@ Result<void> Run::join() {
                                         .launcher = mission_.launcher,
                                         .script = mission_.script},
                       std::chrono::steady_clock::now());
+  const std::string told =
+      fmt::format("robot states go by {}: {}", to_string(channel_.channel), channel_.reason);
+  events_.write(utc_now(), "launcher", link::Severity::kInfo, "channel", told);
+  std::fprintf(stderr, "%s\n", told.c_str());
   view_ = SwarmView(mission_.robots.count, mission_.link.hear_radius_m);
   return {};
 }
@@ -359,6 +374,7 @@ Result<Measurements> Run::fly() {
   measurements_.hearing_s = supervisor_->hearing_s();
   measurements_.refused_by_launcher = refused_.total();
   measurements_.outcome = supervisor_->outcome();
+  measurements_.channel = channel_.channel;
   return measurements_;
 }
 
@@ -367,6 +383,21 @@ std::string Run::planner_complaint() const {
 }
 
 }  // namespace
+
+ChannelChoice choose_channel(std::optional<shell::Channel> wanted, std::uint32_t agents,
+                             std::uint32_t per_process) {
+  if (wanted) return {*wanted, "as asked"};
+  if (agents <= kTopicsAgentsMax) {
+    return {shell::Channel::kTopics,
+            fmt::format("{} agent processes, at most {}", agents, kTopicsAgentsMax)};
+  }
+  if (per_process > kGroupsPerProcessMax) {
+    return {shell::Channel::kTopics, fmt::format("{} robots a process, more than {}", per_process,
+                                                 kGroupsPerProcessMax)};
+  }
+  return {shell::Channel::kGroups,
+          fmt::format("{} agent processes, more than {}", agents, kTopicsAgentsMax)};
+}
 
 Result<ExitCode> run_mission(const RunOptions& options) {
   become_urgent();

@@ -71,6 +71,7 @@ Result<ExitCode> summarise(const std::filesystem::path& run_dir, const Measureme
   Json summary =
       audit ? Json::parse(monitor::to_json(*audit)) : empty_summary(own, audit.error().message);
   if (measured.outcome != Outcome::kCompleted) summary["outcome"] = to_string(measured.outcome);
+  summary["channel"] = to_string(measured.channel);
   summary["hearing_s"] = measured.hearing_s < 0.0 ? Json() : Json(measured.hearing_s);
   summary["refused_by_launcher"] = measured.refused_by_launcher;
   const std::string text = summary.dump(2) + "\n";

@@ -2,10 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <map>
-#include <set>
 #include <utility>
 
-#include "swarm_core/base/assert.hpp"
+#include "swarm_link/cell_traffic.hpp"
 #include "swarm_link/state_channel.hpp"
 
 namespace swarm::link {
@@ -17,48 +16,43 @@ constexpr std::size_t kLingeringWriters = 8;
 class TopicChannel final : public StateChannel {
  public:
   TopicChannel(Participant& participant, const CellOptions& options)
-      : participant_(participant), options_(options) {
-    SWARM_ASSERT(options.cell_size_m > 0.0 && options.hear_radius_m >= 0.0);
-    SWARM_ASSERT(0.0 <= options.join_margin_m && options.join_margin_m <= options.leave_margin_m);
-  }
+      : participant_(participant),
+        options_(options),
+        interest_(options),
+        batches_(options.cell_size_m) {}
 
   std::size_t publish(std::span<const RobotStateMessage> states) override {
-    std::map<Cell, std::vector<RobotStateMessage>> by_cell;
-    for (const auto& state : states) {
-      by_cell[cell_of({state.x_m, state.y_m}, options_.cell_size_m)].push_back(state);
-    }
     std::size_t sent = 0;
-    for (const auto& [cell, in_cell] : by_cell) sent += publish_cell(cell, in_cell);
+    for (const CellStatesMessage& batch : batches_.sort(states)) {
+      auto* writer = writer_of({batch.cell_x, batch.cell_y});
+      if (writer != nullptr && writer->write(batch)) sent += batch.states.size();
+    }
     retire_writers();
     return sent;
   }
 
   void listen_around(std::span<const Vec2> positions_m) override {
     ++now_;
-    std::set<Cell> join;
-    std::set<Cell> keep;
-    std::set<Cell> speak;
-    for (const auto& position : positions_m) {
-      add_cells(position, options_.hear_radius_m + options_.join_margin_m, join);
-      add_cells(position, options_.hear_radius_m + options_.leave_margin_m, keep);
-      add_cells(position, options_.join_margin_m, speak);
-    }
+    const auto wanted = interest_.update(positions_m);
     for (auto it = readers_.begin(); it != readers_.end();) {
-      if (keep.contains(it->first)) {
+      if (std::binary_search(wanted.begin(), wanted.end(), it->first)) {
         ++it;
         continue;
       }
       undecodable_of_left_ += it->second->undecodable();
       it = readers_.erase(it);
     }
-    for (const Cell& cell : join) {
+    for (const Cell& cell : wanted) {
       if (readers_.contains(cell)) continue;
       auto reader = participant_.make_reader(cell_topic(cell));
       if (reader) readers_.emplace(cell, *std::move(reader));  // else tried again next time
     }
     // A writer is discovered some tenths of a second after it is made: make it before the robot
     // crosses into the cell, or its first states there go unheard.
-    for (const Cell& cell : speak) writer_of(cell);
+    for (const Cell& cell :
+         cells_around(positions_m, options_.join_margin_m, options_.cell_size_m)) {
+      writer_of(cell);
+    }
     retire_writers();
   }
 
@@ -80,11 +74,6 @@ class TopicChannel final : public StateChannel {
     std::uint64_t used = 0;  // value of now_
   };
 
-  void add_cells(const Vec2& position_m, double radius_m, std::set<Cell>& cells) const {
-    const auto touching = cells_touching(position_m, radius_m, options_.cell_size_m);
-    cells.insert(touching.begin(), touching.end());
-  }
-
   Writer<CellStatesMessage>* writer_of(const Cell& cell) {
     auto it = writers_.find(cell);
     if (it == writers_.end()) {
@@ -94,21 +83,6 @@ class TopicChannel final : public StateChannel {
     }
     it->second.used = now_;
     return it->second.writer.get();
-  }
-
-  std::size_t publish_cell(const Cell& cell, std::span<const RobotStateMessage> states) {
-    auto* writer = writer_of(cell);
-    if (writer == nullptr) return 0;
-    batch_.cell_x = cell.x;
-    batch_.cell_y = cell.y;
-    std::size_t sent = 0;
-    while (!states.empty()) {
-      const auto part = states.first(std::min(states.size(), kMaxCellStates));
-      batch_.states.assign(part.begin(), part.end());
-      if (writer->write(batch_)) sent += part.size();
-      states = states.subspan(part.size());
-    }
-    return sent;
   }
 
   // Deletes the writers that were not used for longest, never one used since the last
@@ -125,10 +99,11 @@ class TopicChannel final : public StateChannel {
 
   Participant& participant_;
   CellOptions options_;
+  CellInterest interest_;
+  CellBatches batches_;
   std::uint64_t now_ = 0;  // calls of listen_around()
   std::map<Cell, ReaderPtr<CellStatesMessage>> readers_;
   std::map<Cell, CellWriter> writers_;
-  CellStatesMessage batch_;  // kept for its memory
   std::uint64_t undecodable_of_left_ = 0;
 };
 

@@ -59,10 +59,11 @@ struct SafetySpec {
 };
 
 struct LinkSpec {
-  double cell_size_m = 100.0;
+  double cell_size_m = 100.0;        ///< of the topics channel
   double hear_radius_m = 4.0;        ///< states of robots this near must be heard
   double join_margin_m = 6.0;        ///< a cell is joined this much before it is needed
   double leave_margin_m = 9.0;       ///< and left this much after
+  double group_cell_size_m = 5.0;    ///< of the groups channel, whose cells cost no discovery
   double send_error_m = 0.05;        ///< dead reckoning: speak when extrapolation is off by this
   double send_interval_max_s = 0.5;  ///< … or this old
   double send_near_m = 1.0;  ///< … or at every tick while a neighbour's surface is this near

@@ -82,11 +82,12 @@ inline constexpr std::array<Field<SafetySpec>, 4> kSafety{{
     {"follow_share", &SafetySpec::follow_share, between(0, 1)},
 }};
 
-inline constexpr std::array<Field<LinkSpec>, 8> kLink{{
+inline constexpr std::array<Field<LinkSpec>, 9> kLink{{
     {"cell_size_m", &LinkSpec::cell_size_m, between(1, 10'000)},
     {"hear_radius_m", &LinkSpec::hear_radius_m, positive(10'000)},
     {"join_margin_m", &LinkSpec::join_margin_m, between(0, 1000)},
     {"leave_margin_m", &LinkSpec::leave_margin_m, between(0, 1000)},
+    {"group_cell_size_m", &LinkSpec::group_cell_size_m, between(1, 10'000)},
     {"send_error_m", &LinkSpec::send_error_m, between(0, 100)},
     {"send_interval_max_s", &LinkSpec::send_interval_max_s, positive(60)},
     {"send_near_m", &LinkSpec::send_near_m, between(0, 10'000)},

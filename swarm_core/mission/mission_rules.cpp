@@ -31,6 +31,8 @@ class Rules {
   std::vector<BrokenRule> broken;
 };
 
+constexpr double kGroupCellsMax = 4.0;  // per hear radius: at most 100 cells a robot
+
 }  // namespace
 
 double least_hear_radius_m(const Mission& mission) {
@@ -58,6 +60,12 @@ std::vector<BrokenRule> broken_rules(const Mission& mission) {
   rules.below({"link.join_margin_m", link.join_margin_m},
               {"link.leave_margin_m", link.leave_margin_m});
   rules.at_most({"link.hear_radius_m", link.hear_radius_m}, {"link.cell_size_m", link.cell_size_m});
+  if (link.hear_radius_m > kGroupCellsMax * link.group_cell_size_m) {
+    rules.add({"link.group_cell_size_m", "link.hear_radius_m"},
+              fmt::format("link.group_cell_size_m is {}; must be >= link.hear_radius_m / {}: a "
+                          "robot listens to every cell within that radius",
+                          link.group_cell_size_m, kGroupCellsMax));
+  }
   rules.at_most({"timing.clock_skew_warn_s", timing.clock_skew_warn_s},
                 {"timing.clock_skew_refuse_s", timing.clock_skew_refuse_s});
   // One lost heartbeat must not stop the swarm.

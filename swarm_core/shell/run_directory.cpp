@@ -51,10 +51,15 @@ Result<std::string> read_file(const std::filesystem::path& file, std::size_t max
   return content;
 }
 
+std::string_view to_string(Channel channel) {
+  return channel == Channel::kTopics ? "topics" : "groups";
+}
+
 Result<void> write_run_info(const std::filesystem::path& run_dir, const RunInfo& info) {
   const nlohmann::json json = {{"domain", info.domain},
                                {"discovery_host", info.discovery_host},
                                {"discovery_port", info.discovery_port},
+                               {"channel", to_string(info.channel)},
                                {"seed", info.seed}};
   return write_file(run_dir / kRunFile, json.dump(2) + "\n");
 }
@@ -67,6 +72,9 @@ Result<RunInfo> read_run_info(const std::filesystem::path& run_dir) {
     return RunInfo{.domain = json.at("domain").get<std::uint32_t>(),
                    .discovery_host = json.at("discovery_host").get<std::string>(),
                    .discovery_port = json.at("discovery_port").get<std::uint16_t>(),
+                   .channel = json.at("channel").get<std::string>() == to_string(Channel::kGroups)
+                                  ? Channel::kGroups
+                                  : Channel::kTopics,
                    .seed = json.at("seed").get<std::uint64_t>()};
   } catch (const nlohmann::json::exception& e) {
     return fail(ErrorCode::kBadInput, fmt::format("{}: not a run directory: {}",

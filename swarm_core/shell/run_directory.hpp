@@ -22,11 +22,16 @@ inline constexpr std::string_view kControlSocket = "control.sock";
 inline constexpr std::string_view kLogsFolder = "logs";
 inline constexpr std::string_view kBlackboxFolder = "blackbox";
 
+/// What carries the robots' states; see swarm_link/state_channel.hpp.
+enum class Channel { kTopics, kGroups };
+std::string_view to_string(Channel channel);  ///< "topics", "groups"
+
 /// How to join a run; `run.json`.
 struct RunInfo {
   std::uint32_t domain = 0;
   std::string discovery_host = "127.0.0.1";
   std::uint16_t discovery_port = 0;
+  Channel channel = Channel::kTopics;
   std::uint64_t seed = 0;
 };
 

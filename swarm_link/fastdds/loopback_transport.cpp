@@ -3,14 +3,10 @@
 #include "swarm_link/fastdds/loopback_transport.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cstring>
 #include <exception>
 
-#include <arpa/inet.h>
 #include <fastrtps/utils/IPLocator.h>
-#include <netinet/in.h>
-#include <sys/socket.h>
 #include <unistd.h>
 
 namespace swarm::link::fastdds {
@@ -19,39 +15,12 @@ namespace rtps = eprosima::fastdds::rtps;
 using eprosima::fastrtps::rtps::IPLocator;
 using eprosima::fastrtps::rtps::octet;
 
-namespace {
-
-constexpr std::size_t kDatagramBytes = 65'536;
-constexpr std::size_t kBatch = 32;
-constexpr const char* kLoopback = "127.0.0.1";
-
-in_addr group_of(const rtps::Locator& locator) {
-  in_addr group{};
-  std::memcpy(&group.s_addr, IPLocator::getIPv4(locator), sizeof group.s_addr);
-  return group;
-}
-
-// A group's socket is bound to the group, not to every address: it hears nothing else.
 sockaddr_in to_address(const rtps::Locator& locator) {
   sockaddr_in address{};
   address.sin_family = AF_INET;
   address.sin_port = htons(IPLocator::getPhysicalPort(locator));
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  if (IPLocator::isMulticast(locator)) address.sin_addr = group_of(locator);
+  std::memcpy(&address.sin_addr.s_addr, IPLocator::getIPv4(locator), sizeof address.sin_addr);
   return address;
-}
-
-bool same_channel(const rtps::Locator& a, const rtps::Locator& b) {
-  const bool multicast = IPLocator::isMulticast(a);
-  return a.port == b.port && multicast == IPLocator::isMulticast(b) &&
-         (!multicast || group_of(a).s_addr == group_of(b).s_addr);
-}
-
-bool set_membership(int fd, int option, const rtps::Locator& group) {
-  ip_mreqn request{};
-  request.imr_multiaddr = group_of(group);
-  request.imr_address.s_addr = htonl(INADDR_LOOPBACK);
-  return ::setsockopt(fd, IPPROTO_IP, option, &request, sizeof request) == 0;
 }
 
 rtps::Locator to_locator(const sockaddr_in& address) {
@@ -62,6 +31,22 @@ rtps::Locator to_locator(const sockaddr_in& address) {
   IPLocator::setIPv4(locator, static_cast<octet>(ip >> 24U), static_cast<octet>(ip >> 16U),
                      static_cast<octet>(ip >> 8U), static_cast<octet>(ip));
   return locator;
+}
+
+std::shared_ptr<rtps::UDPv4TransportDescriptor> loopback_udp(int buffer_bytes) {
+  auto udp = std::make_shared<rtps::UDPv4TransportDescriptor>();
+  udp->interfaceWhiteList = {"127.0.0.1"};
+  udp->receiveBufferSize = static_cast<std::uint32_t>(buffer_bytes);
+  udp->sendBufferSize = static_cast<std::uint32_t>(buffer_bytes);
+  return udp;
+}
+
+namespace {
+
+bool same_channel(const rtps::Locator& a, const rtps::Locator& b) {
+  const bool multicast = IPLocator::isMulticast(a);
+  return a.port == b.port && multicast == IPLocator::isMulticast(b) &&
+         (!multicast || to_address(a).sin_addr.s_addr == to_address(b).sin_addr.s_addr);
 }
 
 class LoopbackTransport final : public rtps::ChainingTransport {
@@ -110,19 +95,11 @@ class LoopbackTransport final : public rtps::ChainingTransport {
   LoopbackTransportDescriptor descriptor_;
 };
 
-std::shared_ptr<rtps::UDPv4TransportDescriptor> loopback_udp(int buffer_bytes) {
-  auto udp = std::make_shared<rtps::UDPv4TransportDescriptor>();
-  udp->interfaceWhiteList = {kLoopback};
-  udp->receiveBufferSize = static_cast<std::uint32_t>(buffer_bytes);
-  udp->sendBufferSize = static_cast<std::uint32_t>(buffer_bytes);
-  return udp;
-}
-
 }  // namespace
 
 ReceiveSockets::ReceiveSockets(std::uint16_t first_data_port, bool at_tick, int buffer_bytes)
     : first_data_port_(first_data_port), at_tick_(at_tick), buffer_bytes_(buffer_bytes) {
-  if (at_tick_) buffers_.reset(new unsigned char[kBatch * kDatagramBytes]);
+  if (at_tick_) drain_.emplace();
 }
 
 ReceiveSockets::~ReceiveSockets() {
@@ -148,17 +125,10 @@ const ReceiveSockets::Socket* ReceiveSockets::find(const Locator& locator) const
 }
 
 bool ReceiveSockets::open(const Locator& locator, Receiver* receiver) {
-  const int fd = ::socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+  sockaddr_in address = to_address(locator);
+  if (!is_multicast(address.sin_addr)) address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  const int fd = open_receive_socket(address, buffer_bytes_);
   if (fd < 0) return false;
-  ::setsockopt(fd, SOL_SOCKET, SO_RCVBUF, &buffer_bytes_, sizeof buffer_bytes_);
-  if (const int yes = 1; IPLocator::isMulticast(locator)) {  // every process listens there
-    ::setsockopt(fd, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
-  }
-  const auto address = to_address(locator);
-  if (::bind(fd, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
-    ::close(fd);
-    return false;
-  }
   const std::lock_guard lock(mutex_);
   sockets_.push_back({.fd = fd, .locator = locator, .receiver = receiver});
   if (is_data_port(locator.port)) opened_.push_back(locator.port);
@@ -178,7 +148,9 @@ bool ReceiveSockets::join(const Locator& group) {
   const std::lock_guard lock(mutex_);
   Socket* const socket = find(group);
   if (socket == nullptr) return false;
-  if (socket->members == 0 && !set_membership(socket->fd, IP_ADD_MEMBERSHIP, group)) return false;
+  if (socket->members == 0 && !join_group(socket->fd, to_address(group).sin_addr)) {
+    return false;
+  }
   ++socket->members;
   return true;
 }
@@ -187,7 +159,7 @@ void ReceiveSockets::leave(const Locator& group) {
   const std::lock_guard lock(mutex_);
   Socket* const socket = find(group);
   if (socket == nullptr || socket->members == 0) return;
-  if (--socket->members == 0) set_membership(socket->fd, IP_DROP_MEMBERSHIP, group);
+  if (--socket->members == 0) leave_group(socket->fd, to_address(group).sin_addr);
 }
 
 bool ReceiveSockets::is_open(const Locator& locator) const {
@@ -201,38 +173,23 @@ void ReceiveSockets::note_opened(std::uint32_t port) {
 }
 
 void ReceiveSockets::drain() {
+  struct ToVendor final : DatagramDrain::Sink {
+    const Socket* socket = nullptr;
+    void datagram(std::span<std::byte> bytes, const sockaddr_in& sender) override {
+      try {
+        socket->receiver->OnDataReceived(reinterpret_cast<const octet*>(bytes.data()),
+                                         static_cast<std::uint32_t>(bytes.size()), socket->locator,
+                                         to_locator(sender));
+      } catch (const std::exception&) {
+        // The vendor choked on one datagram: as good as lost.
+      }
+    }
+  } to_vendor;
   const std::lock_guard lock(mutex_);
   for (const auto& socket : sockets_) {
-    for (int received = 0; received < kMaxDatagrams;) {
-      const int batch = drain_socket(socket);
-      received += batch;
-      if (batch < static_cast<int>(kBatch)) break;
-    }
+    to_vendor.socket = &socket;
+    drain_->drain(socket.fd, to_vendor);
   }
-}
-
-int ReceiveSockets::drain_socket(const Socket& socket) {
-  std::array<mmsghdr, kBatch> messages{};
-  std::array<iovec, kBatch> vectors;
-  std::array<sockaddr_in, kBatch> senders;
-  for (std::size_t i = 0; i < kBatch; ++i) {
-    vectors[i] = {buffers_.get() + i * kDatagramBytes, kDatagramBytes};
-    messages[i].msg_hdr.msg_iov = &vectors[i];
-    messages[i].msg_hdr.msg_iovlen = 1;
-    messages[i].msg_hdr.msg_name = &senders[i];
-    messages[i].msg_hdr.msg_namelen = sizeof(sockaddr_in);
-  }
-  const int count = ::recvmmsg(socket.fd, messages.data(), kBatch, MSG_DONTWAIT, nullptr);
-  for (int i = 0; i < count; ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    try {
-      socket.receiver->OnDataReceived(buffers_.get() + k * kDatagramBytes, messages[k].msg_len,
-                                      socket.locator, to_locator(senders[k]));
-    } catch (const std::exception&) {
-      continue;  // the vendor choked on one datagram: as good as lost
-    }
-  }
-  return std::max(count, 0);
 }
 
 bool ReceiveSockets::hears_data() const {
@@ -249,41 +206,6 @@ bool ReceiveSockets::hears_metatraffic() const {
 bool ReceiveSockets::hears(std::uint32_t port) const {
   const std::lock_guard lock(mutex_);
   return std::find(opened_.begin(), opened_.end(), port) != opened_.end();
-}
-
-int granted_receive_buffer_bytes(int asked_bytes) {
-  const int fd = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-  if (fd < 0) return 0;
-  int granted = 0;
-  socklen_t size = sizeof granted;
-  ::setsockopt(fd, SOL_SOCKET, SO_RCVBUF, &asked_bytes, sizeof asked_bytes);
-  ::getsockopt(fd, SOL_SOCKET, SO_RCVBUF, &granted, &size);
-  ::close(fd);
-  return granted / 2;  // the kernel reports twice what was asked, for its own bookkeeping
-}
-
-bool loopback_carries_multicast() {
-  const int fd = ::socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
-  if (fd < 0) return false;
-  rtps::Locator group;
-  group.kind = LOCATOR_KIND_UDPv4;
-  IPLocator::setIPv4(group, 239, 255, 0, 0);
-  sockaddr_in address = to_address(group);  // port 0: any free one
-  socklen_t size = sizeof address;
-  const ip_mreqn through_loopback{.imr_multiaddr = {},
-                                  .imr_address = {htonl(INADDR_LOOPBACK)},
-                                  .imr_ifindex = 0};
-  const bool sent =
-      ::bind(fd, reinterpret_cast<const sockaddr*>(&address), size) == 0 &&
-      ::getsockname(fd, reinterpret_cast<sockaddr*>(&address), &size) == 0 &&
-      set_membership(fd, IP_ADD_MEMBERSHIP, group) &&
-      ::setsockopt(fd, IPPROTO_IP, IP_MULTICAST_IF, &through_loopback, sizeof through_loopback) ==
-          0 &&
-      ::sendto(fd, "?", 1, 0, reinterpret_cast<const sockaddr*>(&address), size) == 1;
-  char back = 0;
-  const bool heard = sent && ::recv(fd, &back, 1, 0) == 1;  // the loopback delivers while it sends
-  ::close(fd);
-  return heard;
 }
 
 LoopbackTransportDescriptor::LoopbackTransportDescriptor(

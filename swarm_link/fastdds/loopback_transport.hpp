@@ -5,10 +5,13 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <vector>
 
 #include <fastdds/rtps/transport/ChainingTransport.h>
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
+
+#include "swarm_link/fastdds/udp_socket.hpp"
 
 /// UDP on the loopback interface whose user-data sockets have no receive thread: the owner drains
 /// them from its own tick. The wake-up per datagram is two thirds of what receiving a small sample
@@ -45,9 +48,7 @@ class ReceiveSockets {
   /// Remembers that the vendor's transport opened or closed a port.
   void note_opened(std::uint32_t port);
 
-  /// Hands waiting datagrams to the vendor, at most kMaxDatagrams so that a flood cannot hold the
-  /// tick.
-  static constexpr int kMaxDatagrams = 8192;
+  /// Hands waiting datagrams to the vendor.
   void drain();
 
   bool hears_data() const;
@@ -63,22 +64,21 @@ class ReceiveSockets {
   };
   Socket* find(const Locator& locator);
   const Socket* find(const Locator& locator) const;
-  int drain_socket(const Socket& socket);
-
   std::uint16_t first_data_port_;
   bool at_tick_;
   int buffer_bytes_;
   mutable std::mutex mutex_;
   std::vector<Socket> sockets_;
   std::vector<std::uint32_t> opened_;
-  std::unique_ptr<unsigned char[]> buffers_;  // untouched pages cost nothing
+  std::optional<DatagramDrain> drain_;  // of owned sockets
 };
 
-/// Receive buffer the kernel really grants when `asked_bytes` are asked for.
-int granted_receive_buffer_bytes(int asked_bytes);
+/// The vendor's locator of a UDP address, and back.
+eprosima::fastdds::rtps::Locator to_locator(const sockaddr_in& address);
+sockaddr_in to_address(const eprosima::fastdds::rtps::Locator& locator);
 
-/// Sends a datagram to a multicast group on the loopback interface and looks whether it comes back.
-bool loopback_carries_multicast();
+/// The vendor's own UDP transport, bound to the loopback interface.
+std::shared_ptr<eprosima::fastdds::rtps::UDPv4TransportDescriptor> loopback_udp(int buffer_bytes);
 
 struct LoopbackTransportDescriptor : eprosima::fastdds::rtps::ChainingTransportDescriptor {
   explicit LoopbackTransportDescriptor(std::shared_ptr<ReceiveSockets> receive_sockets,

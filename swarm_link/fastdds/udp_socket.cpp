@@ -1,0 +1,119 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "swarm_link/fastdds/udp_socket.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include <sys/socket.h>
+#include <unistd.h>
+
+namespace swarm::link::fastdds {
+
+namespace {
+
+constexpr std::size_t kDatagramBytes = 65'536;
+constexpr std::size_t kBatch = 32;
+
+bool set_membership(int fd, int option, const in_addr& group) {
+  ip_mreqn request{};
+  request.imr_multiaddr = group;
+  request.imr_address.s_addr = htonl(INADDR_LOOPBACK);
+  return ::setsockopt(fd, IPPROTO_IP, option, &request, sizeof request) == 0;
+}
+
+}  // namespace
+
+bool is_multicast(const in_addr& address) { return IN_MULTICAST(ntohl(address.s_addr)); }
+
+int open_receive_socket(const sockaddr_in& address, int buffer_bytes) {
+  const int fd = ::socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+  if (fd < 0) return -1;
+  ::setsockopt(fd, SOL_SOCKET, SO_RCVBUF, &buffer_bytes, sizeof buffer_bytes);
+  if (const int yes = 1; is_multicast(address.sin_addr)) {
+    ::setsockopt(fd, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+  }
+  if (::bind(fd, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0) return fd;
+  ::close(fd);
+  return -1;
+}
+
+bool join_group(int fd, const in_addr& group) {
+  return set_membership(fd, IP_ADD_MEMBERSHIP, group);
+}
+
+bool leave_group(int fd, const in_addr& group) {
+  return set_membership(fd, IP_DROP_MEMBERSHIP, group);
+}
+
+int open_group_sender() {
+  const int fd = ::socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+  if (fd < 0) return -1;
+  ip_mreqn through_loopback{};
+  through_loopback.imr_address.s_addr = htonl(INADDR_LOOPBACK);
+  if (::setsockopt(fd, IPPROTO_IP, IP_MULTICAST_IF, &through_loopback, sizeof through_loopback) ==
+      0) {
+    return fd;
+  }
+  ::close(fd);
+  return -1;
+}
+
+bool loopback_carries_multicast() {
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(0xEFFF0000);  // 239.255.0.0; port 0: any free one
+  socklen_t size = sizeof address;
+  const int hearing = open_receive_socket(address, 1 << 16);
+  const int speaking = open_group_sender();
+  char back = 0;
+  const bool heard =
+      hearing >= 0 && speaking >= 0 && join_group(hearing, address.sin_addr) &&
+      ::getsockname(hearing, reinterpret_cast<sockaddr*>(&address), &size) == 0 &&
+      ::sendto(speaking, "?", 1, 0, reinterpret_cast<const sockaddr*>(&address), size) == 1 &&
+      ::recv(hearing, &back, 1, 0) == 1;  // the loopback delivers while it sends
+  if (hearing >= 0) ::close(hearing);
+  if (speaking >= 0) ::close(speaking);
+  return heard;
+}
+
+int granted_receive_buffer_bytes(int asked_bytes) {
+  const int fd = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  if (fd < 0) return 0;
+  int granted = 0;
+  socklen_t size = sizeof granted;
+  ::setsockopt(fd, SOL_SOCKET, SO_RCVBUF, &asked_bytes, sizeof asked_bytes);
+  ::getsockopt(fd, SOL_SOCKET, SO_RCVBUF, &granted, &size);
+  ::close(fd);
+  return granted / 2;  // the kernel reports twice what was asked, for its own bookkeeping
+}
+
+DatagramDrain::DatagramDrain() : buffers_(new std::byte[kBatch * kDatagramBytes]) {}
+
+void DatagramDrain::drain(int fd, Sink& sink) {
+  for (int received = 0; received < kMaxDatagrams;) {
+    const int batch = drain_batch(fd, sink);
+    received += batch;
+    if (batch < static_cast<int>(kBatch)) return;
+  }
+}
+
+int DatagramDrain::drain_batch(int fd, Sink& sink) {
+  std::array<mmsghdr, kBatch> messages{};
+  std::array<iovec, kBatch> vectors;
+  std::array<sockaddr_in, kBatch> senders;
+  for (std::size_t i = 0; i < kBatch; ++i) {
+    vectors[i] = {buffers_.get() + i * kDatagramBytes, kDatagramBytes};
+    messages[i].msg_hdr.msg_iov = &vectors[i];
+    messages[i].msg_hdr.msg_iovlen = 1;
+    messages[i].msg_hdr.msg_name = &senders[i];
+    messages[i].msg_hdr.msg_namelen = sizeof(sockaddr_in);
+  }
+  const int count = std::max(0, ::recvmmsg(fd, messages.data(), kBatch, MSG_DONTWAIT, nullptr));
+  for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
+    sink.datagram({buffers_.get() + i * kDatagramBytes, messages[i].msg_len}, senders[i]);
+  }
+  return count;
+}
+
+}  // namespace swarm::link::fastdds

@@ -1,0 +1,55 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include <netinet/in.h>
+
+/// UDP on the loopback interface: what the transports of this folder share. No vendor's types.
+namespace swarm::link::fastdds {
+
+bool is_multicast(const in_addr& address);
+
+/// A non-blocking socket bound to an address; −1 if the kernel refuses. A multicast group's socket
+/// is bound to the group, so it hears nothing else, and shares its port with other processes; it
+/// hears nothing at all until join_group().
+int open_receive_socket(const sockaddr_in& address, int buffer_bytes);
+
+bool join_group(int fd, const in_addr& group);
+bool leave_group(int fd, const in_addr& group);
+
+/// A non-blocking socket that sends to multicast groups on the loopback interface; −1 if refused.
+int open_group_sender();
+
+/// Sends a datagram to a multicast group and looks whether it comes back.
+bool loopback_carries_multicast();
+
+/// Receive buffer the kernel really grants when `asked_bytes` are asked for.
+int granted_receive_buffer_bytes(int asked_bytes);
+
+/// Empties sockets without waiting.
+class DatagramDrain {
+ public:
+  DatagramDrain();
+
+  /// Called once per datagram; the bytes are valid during the call.
+  class Sink {
+   public:
+    virtual ~Sink() = default;
+    virtual void datagram(std::span<std::byte> bytes, const sockaddr_in& sender) = 0;
+  };
+
+  /// At most kMaxDatagrams, so that a flood cannot hold the tick.
+  static constexpr int kMaxDatagrams = 8192;
+  void drain(int fd, Sink& sink);
+
+ private:
+  int drain_batch(int fd, Sink& sink);
+  std::unique_ptr<std::byte[]> buffers_;  // untouched pages cost nothing
+};
+
+}  // namespace swarm::link::fastdds
