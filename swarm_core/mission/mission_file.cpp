@@ -3,6 +3,7 @@
 #include "swarm_core/mission/mission_file.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -380,9 +381,15 @@ Result<Mission> load_mission(const std::filesystem::path& file) {
     return fail(ErrorCode::kBadInput,
                 fmt::format("{}: cannot be opened; is the path right?", file.string()));
   }
-  // One byte more than allowed tells a file that is too large, without trusting its size.
-  std::string text(kMaxMissionBytes + 1, '\0');
-  text.resize(std::fread(text.data(), 1, text.size(), stream.get()));
+  // In pieces: making room for the largest mission allowed took half of an agent's start-up. One
+  // byte more than allowed tells a file that is too large, without trusting its size.
+  std::string text;
+  std::array<char, 16'384> piece;
+  while (text.size() <= kMaxMissionBytes) {
+    const std::size_t read = std::fread(piece.data(), 1, piece.size(), stream.get());
+    if (read == 0) break;
+    text.append(piece.data(), read);
+  }
   if (std::ferror(stream.get()) != 0) {
     return fail(ErrorCode::kBadInput,
                 fmt::format("{}: cannot be read; is it a file?", file.string()));
