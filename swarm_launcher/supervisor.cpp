@@ -11,6 +11,7 @@
 namespace swarm::launcher {
 namespace {
 
+constexpr Duration kStartPatience = std::chrono::seconds(5);
 constexpr Duration kRespawnDelay = std::chrono::milliseconds(300);
 constexpr Duration kStopRepeat = std::chrono::milliseconds(100);
 constexpr std::uint32_t kStopRepeats = 15;
@@ -132,6 +133,14 @@ void Supervisor::command(CommandKind kind, SteadyTime now, std::vector<Action>& 
   actions.emplace_back(LogEvent{.code = "command", .text = std::string(swarm::to_string(kind))});
 }
 
+/// An agent that joins the bus. Dozens at once only take the CPU from each other and from those
+/// that answer them; one that hangs must not keep the others waiting.
+bool Supervisor::is_starting(std::uint32_t process, SteadyTime now) const {
+  const Process& p = processes_[process];
+  return process != kPlanner.value() && p.alive && now - p.started_at < kStartPatience &&
+         !robots_[robots_of(ProcessIndex(process)).first.value()].heard;
+}
+
 void Supervisor::start_due(SteadyTime now, std::vector<Action>& actions) {
   for (std::uint32_t i = 0; i < processes(); ++i) {
     Process& p = processes_[i];
@@ -145,8 +154,12 @@ void Supervisor::start_due(SteadyTime now, std::vector<Action>& actions) {
         .text = i == 0 ? "planner restarted" : fmt::format("agent process {} restarted", i)});
   }
   const double due = 1.0 + to_seconds(now - begun_) * options_.launcher.starts_per_s;
-  while (next_start_ < processes() && static_cast<double>(next_start_) < due) {
+  std::uint32_t starting = 0;
+  for (std::uint32_t i = 0; i < next_start_; ++i) starting += is_starting(i, now) ? 1 : 0;
+  while (next_start_ < processes() && static_cast<double>(next_start_) < due &&
+         starting++ < options_.launcher.starting_max) {
     processes_[next_start_].alive = processes_[next_start_].started = true;
+    processes_[next_start_].started_at = now;
     actions.emplace_back(StartProcess{ProcessIndex(next_start_++)});
     last_start_ = now;
   }

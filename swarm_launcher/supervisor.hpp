@@ -122,6 +122,7 @@ class Supervisor {
   struct Process {
     bool alive = false;
     bool started = false;
+    SteadyTime started_at;
     std::uint32_t respawns = 0;
     SteadyTime respawn_at;
     bool respawn_due = false;
@@ -132,6 +133,7 @@ class Supervisor {
     bool lost = false;
   };
 
+  bool is_starting(std::uint32_t process, SteadyTime now) const;
   void start_due(SteadyTime now, std::vector<Action>& actions);
   void gather(SteadyTime now, std::vector<Action>& actions);
   void run(SteadyTime now, std::vector<Action>& actions);

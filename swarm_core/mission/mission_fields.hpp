@@ -102,8 +102,9 @@ inline constexpr std::array<Field<TimingSpec>, 5> kTiming{{
     {"clock_skew_refuse_s", &TimingSpec::clock_skew_refuse_s, positive(3600)},
 }};
 
-inline constexpr std::array<Field<LauncherSpec>, 6> kLauncher{{
+inline constexpr std::array<Field<LauncherSpec>, 7> kLauncher{{
     {"starts_per_s", &LauncherSpec::starts_per_s, positive(10'000)},
+    {"starting_max", &LauncherSpec::starting_max, between(1, 10'000)},
     {"quorum_share", &LauncherSpec::quorum_share, positive(1)},
     {"quorum_timeout_s", &LauncherSpec::quorum_timeout_s, positive(3600)},
     {"time_limit_s", &LauncherSpec::time_limit_s, positive(1e6)},

@@ -53,6 +53,8 @@ rtps::RTPSParticipantAttributes participant_attributes(
   attributes.builtin.discovery_config.discoveryProtocol = rtps::DiscoveryProtocol_t::NONE;
   attributes.builtin.use_WriterLivelinessProtocol = false;
   attributes.builtin.avoid_builtin_multicast = true;
+  attributes.allocation.send_buffers.preallocated_number = 1;
+  attributes.allocation.send_buffers.dynamic = true;
   return attributes;
 }
 

@@ -36,6 +36,10 @@ dds::DomainParticipantQos common_qos(std::shared_ptr<ReceiveSockets> sockets, in
   qos.transport().listen_socket_buffer_size = static_cast<std::uint32_t>(buffer_bytes);
   qos.transport().send_socket_buffer_size = static_cast<std::uint32_t>(buffer_bytes);
 
+  // The vendor makes and zeroes a buffer of 64 KiB for every thread that might send one day.
+  qos.allocation().send_buffers.preallocated_number = 1;
+  qos.allocation().send_buffers.dynamic = true;
+
   auto& builtin = qos.wire_protocol().builtin;
   builtin.avoid_builtin_multicast = true;
   builtin.use_WriterLivelinessProtocol = false;  // 12 % of the discovery traffic, unused by us

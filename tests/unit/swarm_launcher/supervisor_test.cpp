@@ -70,6 +70,27 @@ TEST(Supervisor, StartsThePlannerThenAgentsInWaves) {
   EXPECT_LE(bench.started.size(), 12U);
 }
 
+TEST(Supervisor, WaitsForTheStartedBeforeItStartsMore) {
+  Bench bench(30);
+  bench.options.launcher.starting_max = 4;
+
+  bench.run_for(milliseconds(2000));
+  EXPECT_EQ(bench.started.size(), 1U + 4U);
+
+  bench.sut->on_status(RobotId(1), {});
+  bench.run_for(milliseconds(100));
+  EXPECT_EQ(bench.started.size(), 1U + 5U);
+}
+
+TEST(Supervisor, DoesNotWaitLongForAProcessThatHangs) {
+  Bench bench(8);
+  bench.options.launcher.starting_max = 4;
+
+  bench.run_for(seconds(8));
+
+  EXPECT_EQ(bench.started.size(), 1U + 8U);
+}
+
 TEST(Supervisor, StartsTheMissionWhenEveryRobotIsReady) {
   Bench bench(5);
   bench.run_for(seconds(1));
