@@ -21,7 +21,7 @@
 #include "swarm_core/shell/run_directory.hpp"
 #include "swarm_core/shell/stop_signal.hpp"
 #include "swarm_link/fastdds/fastdds_participant.hpp"
-#include "swarm_link/fastdds/group_channel.hpp"
+#include "swarm_link/groups/group_channel.hpp"
 #include "swarm_link/topics.hpp"
 
 namespace swarm::agent {

@@ -11,7 +11,7 @@
 #include <fastdds/rtps/transport/ChainingTransport.h>
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 
-#include "swarm_link/fastdds/udp_socket.hpp"
+#include "swarm_link/udp_socket.hpp"
 
 /// UDP on the loopback interface whose user-data sockets have no receive thread: the owner drains
 /// them from its own tick. The wake-up per datagram is two thirds of what receiving a small sample

@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "swarm_core/base/assert.hpp"
+#include "swarm_link/groups/group_channel.hpp"
 #include "swarm_link/inproc/inproc_bus.hpp"
 
 namespace swarm::link::conformance {
@@ -56,6 +57,19 @@ class TestFastDdsBus final : public Bus {
   std::uint32_t next_index_;
 };
 
+/// Has no topics: nothing but groups.
+class TestGroupBus final : public Bus {
+ public:
+  std::unique_ptr<StateChannel> channel(const CellOptions& options) override {
+    auto made = make_group_channel({.domain = test_domain(), .cells = options});
+    SWARM_ASSERT(made.has_value());
+    return *std::move(made);
+  }
+
+ private:
+  std::unique_ptr<Participant> make(std::uint32_t) override { return nullptr; }
+};
+
 }  // namespace
 
 Bus::Hang::Hang() : deadline_ns_(steady_ns() + 30'000'000'000) {}
@@ -65,6 +79,10 @@ void Bus::rest() { std::this_thread::sleep_for(std::chrono::milliseconds(2)); }
 
 Participant& Bus::participant(std::uint32_t ownership_strength) {
   return *participants_.emplace_back(make(ownership_strength));
+}
+
+std::unique_ptr<StateChannel> Bus::channel(const CellOptions& options) {
+  return make_topic_channel(participant(), options);
 }
 
 void Bus::pump() {
@@ -99,6 +117,17 @@ const std::vector<Back>& backs() {
       {"inproc", [] { return make_inproc_bus(); }},
       {"fastdds_at_tick", [] { return make_fastdds_bus(true); }},
       {"fastdds_threads", [] { return make_fastdds_bus(false); }}};
+  return all;
+}
+
+const std::vector<Back>& channel_backs() {
+  static const std::vector<Back> all = [] {
+    std::vector<Back> list = backs();
+    list.push_back({"groups", []() -> std::unique_ptr<Bus> {
+                      return std::make_unique<TestGroupBus>();
+                    }});
+    return list;
+  }();
   return all;
 }
 

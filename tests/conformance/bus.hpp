@@ -11,6 +11,7 @@
 
 #include "swarm_link/fastdds/fastdds_participant.hpp"
 #include "swarm_link/port.hpp"
+#include "swarm_link/state_channel.hpp"
 
 /// What the conformance suite runs against: each back behind the same few functions.
 namespace swarm::link::conformance {
@@ -21,6 +22,9 @@ class Bus {
 
   /// Lives as long as the bus.
   Participant& participant(std::uint32_t ownership_strength = 0);
+
+  /// A way of hearing neighbours, of a participant of its own.
+  virtual std::unique_ptr<StateChannel> channel(const CellOptions& options);
 
   /// One tick of everybody.
   void pump();
@@ -71,6 +75,8 @@ struct Back {
   MakeBus make;
 };
 const std::vector<Back>& backs();
+/// The backs, whose channels are made of topics, and the groups.
+const std::vector<Back>& channel_backs();
 inline std::string name_of(const testing::TestParamInfo<Back>& back) { return back.param.name; }
 
 }  // namespace swarm::link::conformance

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-// The topic channel over every back: joins, leaves, hears.
+// Every channel over every back: joins, leaves, hears.
 #include "swarm_link/state_channel.hpp"
 
 #include <set>
@@ -32,14 +32,17 @@ class StateChannels : public testing::TestWithParam<Back> {
   };
 
   Robot robot(std::uint32_t id, double x_m, double y_m) {
-    return {.channel = make_topic_channel(bus->participant(), {}),
+    return {.channel = bus->channel({}),
             .state = {.robot_id = id, .x_m = x_m, .y_m = y_m}};
   }
 
   std::unique_ptr<Bus> bus = GetParam().make();
 };
 
-INSTANTIATE_TEST_SUITE_P(Backs, StateChannels, testing::ValuesIn(backs()), name_of);
+INSTANTIATE_TEST_SUITE_P(Backs, StateChannels, testing::ValuesIn(channel_backs()), name_of);
+
+using TopicChannels = StateChannels;
+INSTANTIATE_TEST_SUITE_P(Backs, TopicChannels, testing::ValuesIn(backs()), name_of);
 
 TEST_P(StateChannels, HearNeighboursAcrossACellBorder) {
   Robot left = robot(1, 18.0, 10.0);
@@ -81,7 +84,7 @@ TEST_P(StateChannels, LoseAndFindEachOtherAsTheyMove) {
       [&] { return both_tick(), stays.heard.contains(2) && roams.heard.contains(1); }));
 }
 
-TEST_P(StateChannels, HearARobotFromItsFirstStateInANewCell) {
+TEST_P(TopicChannels, HearARobotFromItsFirstStateInANewCell) {
   Robot left = robot(1, 18.0, 10.0);
   Robot right = robot(2, 24.0, 10.0);
   // Wait at the border until both cells' endpoints have found each other …

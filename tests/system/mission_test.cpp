@@ -15,6 +15,7 @@ TEST(Mission, FliesAndIsAudited) {
   EXPECT_EQ(summary["outcome"], "ok");
   EXPECT_EQ(summary["robots"], 12);
   EXPECT_EQ(summary["processes"], 12);
+  EXPECT_EQ(summary["channel"], "topics");
   EXPECT_EQ(summary["arrived"], 12);
   EXPECT_TRUE(summary["lost"].empty());
   EXPECT_EQ(summary["collisions_robot"], 0);
@@ -62,9 +63,20 @@ TEST(Mission, PacksSeveralRobotsIntoAProcess) {
   EXPECT_EQ(run.summary()["arrived"], 12);
 }
 
+TEST(Mission, FliesOnMulticastGroups) {
+  FlownRun run({"--channel", "groups"});
+
+  ASSERT_EQ(run.launcher().wait(), 0) << run.launcher().err();
+
+  EXPECT_EQ(run.summary()["channel"], "groups");
+  EXPECT_EQ(run.summary()["arrived"], 12);
+  EXPECT_EQ(run.summary()["collisions_robot"], 0);
+}
+
 TEST(Mission, TwoRunsAtOnceDoNotHearEachOther) {
-  FlownRun one({"--robots", "6", "--seed", "1"});
-  FlownRun two({"--robots", "6", "--seed", "2"});
+  // On the same groups of the map, told apart by their domains.
+  FlownRun one({"--robots", "6", "--seed", "1", "--channel", "groups"});
+  FlownRun two({"--robots", "6", "--seed", "2", "--channel", "groups"});
 
   EXPECT_EQ(one.launcher().wait(), 0) << one.launcher().err();
   EXPECT_EQ(two.launcher().wait(), 0) << two.launcher().err();

@@ -9,8 +9,8 @@
 
 #include <netinet/in.h>
 
-/// UDP on the loopback interface: what the transports of this folder share. No vendor's types.
-namespace swarm::link::fastdds {
+/// UDP on the loopback interface: what the Fast DDS back and the groups share. No vendor's types.
+namespace swarm::link {
 
 bool is_multicast(const in_addr& address);
 
@@ -52,4 +52,4 @@ class DatagramDrain {
   std::unique_ptr<std::byte[]> buffers_;  // untouched pages cost nothing
 };
 
-}  // namespace swarm::link::fastdds
+}  // namespace swarm::link

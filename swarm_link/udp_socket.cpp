@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-#include "swarm_link/fastdds/udp_socket.hpp"
+#include "swarm_link/udp_socket.hpp"
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-namespace swarm::link::fastdds {
+namespace swarm::link {
 
 namespace {
 
@@ -116,4 +116,4 @@ int DatagramDrain::drain_batch(int fd, Sink& sink) {
   return count;
 }
 
-}  // namespace swarm::link::fastdds
+}  // namespace swarm::link

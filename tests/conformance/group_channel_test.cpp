@@ -1,0 +1,165 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+// What only multicast groups can get wrong: anybody may send anything there.
+#include "swarm_link/groups/group_channel.hpp"
+
+#include <set>
+#include <thread>
+
+#include <arpa/inet.h>
+#include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include "tests/conformance/bus.hpp"
+
+namespace swarm::link::conformance {
+namespace {
+
+using Datagram = std::vector<unsigned char>;
+
+/// A plain socket in the group of a cell: hears and says bytes.
+class Stranger {
+ public:
+  explicit Stranger(Cell cell) : fd_(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)) {
+    const GroupAddress group = group_address(test_domain(), cell);
+    address_.sin_family = AF_INET;
+    address_.sin_port = htons(group.port);
+    ::inet_pton(AF_INET, group.host.c_str(), &address_.sin_addr);
+    const int yes = 1;
+    ip_mreqn through_loopback{};
+    through_loopback.imr_multiaddr = address_.sin_addr;
+    through_loopback.imr_address.s_addr = htonl(INADDR_LOOPBACK);
+    const timeval patience{.tv_sec = 30, .tv_usec = 0};
+    ::setsockopt(fd_, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+    ::setsockopt(fd_, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
+    ::bind(fd_, reinterpret_cast<const sockaddr*>(&address_), sizeof address_);
+    ::setsockopt(fd_, IPPROTO_IP, IP_ADD_MEMBERSHIP, &through_loopback, sizeof through_loopback);
+    ::setsockopt(fd_, IPPROTO_IP, IP_MULTICAST_IF, &through_loopback, sizeof through_loopback);
+  }
+  ~Stranger() { ::close(fd_); }
+  Stranger(const Stranger&) = delete;
+  Stranger& operator=(const Stranger&) = delete;
+
+  Datagram hear() const {
+    Datagram bytes(65'536);
+    const ssize_t size = ::recv(fd_, bytes.data(), bytes.size(), 0);
+    bytes.resize(static_cast<std::size_t>(std::max<ssize_t>(size, 0)));
+    return bytes;
+  }
+  void say(const Datagram& bytes) const {
+    ::sendto(fd_, bytes.data(), bytes.size(), 0, reinterpret_cast<const sockaddr*>(&address_),
+             sizeof address_);
+  }
+
+ private:
+  int fd_;
+  sockaddr_in address_{};
+};
+
+struct GroupChannelTest : testing::Test {
+  static std::unique_ptr<StateChannel> make() {
+    return make_group_channel({.domain = test_domain()}).value();
+  }
+  static std::vector<CellStatesMessage> take(StateChannel& channel) {
+    std::vector<CellStatesMessage> batches;
+    channel.take(batches);
+    return batches;
+  }
+
+  const Vec2 place_m{2.0, 2.0};  // in cell (0, 0)
+  std::unique_ptr<StateChannel> hears = make();
+  std::unique_ptr<StateChannel> speaks = make();
+};
+
+TEST_F(GroupChannelTest, HearsAStateAtOnce) {
+  hears->listen_around({&place_m, 1});
+  const RobotStateMessage state{.robot_id = 7, .sequence_number = 1, .x_m = 2.0, .y_m = 2.0};
+
+  EXPECT_EQ(speaks->publish({&state, 1}), 1U);
+
+  const auto heard = take(*hears);  // no discovery, no waiting: loopback delivers while it sends
+  ASSERT_EQ(heard.size(), 1U);
+  EXPECT_EQ(heard[0].states, std::vector{state});
+}
+
+TEST_F(GroupChannelTest, HearsNothingOfCellsItLeft) {
+  hears->listen_around({&place_m, 1});
+  const Vec2 elsewhere_m(100.0, 100.0);
+  const RobotStateMessage state{.robot_id = 7, .x_m = 2.0, .y_m = 2.0};
+
+  hears->listen_around({&elsewhere_m, 1});
+  speaks->publish({&state, 1});
+
+  EXPECT_TRUE(take(*hears).empty());
+}
+
+TEST_F(GroupChannelTest, ListensToMoreCellsThanASocketHasMemberships) {
+  std::vector<Vec2> places_m;
+  std::vector<RobotStateMessage> states;
+  for (std::uint32_t i = 0; i < 60; ++i) {  // the kernel allows a socket 20
+    places_m.emplace_back(2.0 + 20.0 * i, 2.0);
+    states.push_back({.robot_id = i, .x_m = places_m.back().x(), .y_m = 2.0});
+  }
+  hears->listen_around(places_m);
+
+  EXPECT_EQ(speaks->publish(states), 60U);
+
+  std::set<std::uint32_t> heard;
+  for (const auto& batch : take(*hears)) {
+    for (const auto& state : batch.states) heard.insert(state.robot_id);
+  }
+  EXPECT_EQ(heard.size(), 60U);
+}
+
+TEST_F(GroupChannelTest, GivesCellsOfAMapGroupsOfTheirOwn) {
+  std::set<std::string> groups;
+  for (std::int32_t x = -90; x < 90; ++x) {
+    for (std::int32_t y = -89; y < 89; ++y) groups.insert(group_address(0, {x, y}).host);
+  }
+  EXPECT_EQ(groups.size(), 180U * 178U);
+}
+
+TEST_F(GroupChannelTest, DoesNotHearOtherDomains) {
+  const auto other = make_group_channel({.domain = test_domain() + 100}).value();
+  other->listen_around({&place_m, 1});
+  const RobotStateMessage state{.x_m = 2.0, .y_m = 2.0};
+
+  speaks->publish({&state, 1});
+
+  EXPECT_TRUE(take(*other).empty());
+}
+
+// Every truncation and every corrupted byte of a real datagram, and noise: nothing but valid
+// samples may come through, and the channel goes on.
+TEST_F(GroupChannelTest, SurvivesWhateverIsSentToTheGroup) {
+  const Stranger stranger({0, 0});
+  const RobotStateMessage state{.robot_id = 7, .sequence_number = 1, .x_m = 2.0, .y_m = 2.0};
+  speaks->publish({&state, 1});
+  const Datagram genuine = stranger.hear();
+  ASSERT_GT(genuine.size(), 20U);
+  hears->listen_around({&place_m, 1});
+
+  for (std::size_t size = 0; size < genuine.size(); ++size) {
+    stranger.say(Datagram(genuine.begin(), genuine.begin() + static_cast<std::ptrdiff_t>(size)));
+  }
+  for (std::size_t at = 0; at < genuine.size(); ++at) {
+    for (const int value : {0x00, 0x01, 0x7F, 0x80, 0xFF}) {
+      Datagram corrupt = genuine;
+      corrupt[at] = static_cast<unsigned char>(value);
+      stranger.say(corrupt);
+    }
+    for (const auto& batch : take(*hears)) EXPECT_LE(batch.states.size(), kMaxCellStates);
+  }
+  EXPECT_GT(hears->undecodable(), 0U);
+
+  const RobotStateMessage after{.robot_id = 7, .sequence_number = 2, .x_m = 2.0, .y_m = 2.0};
+  speaks->publish({&after, 1});
+  const auto heard = take(*hears);
+  ASSERT_FALSE(heard.empty());
+  EXPECT_EQ(heard.back().states, std::vector{after});
+}
+
+}  // namespace
+}  // namespace swarm::link::conformance
