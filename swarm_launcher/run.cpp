@@ -149,9 +149,9 @@ Result<std::unique_ptr<Run>> Run::make(const RunOptions& options) {
   if (auto written = shell::write_file(dir / shell::kMissionFile, to_yaml(*mission)); !written) {
     return tl::unexpected(written.error());
   }
-  auto run = std::unique_ptr<Run>(new Run(options, std::move(*mission), dir, std::move(*lock),
-                                          choose_channel(options.channel, agents,
-                                                         options.per_process)));
+  auto run =
+      std::unique_ptr<Run>(new Run(options, std::move(*mission), dir, std::move(*lock),
+                                   choose_channel(options.channel, agents, options.per_process)));
   if (const auto joined = run->join(); !joined) return tl::unexpected(joined.error());
   return run;
 }
@@ -392,8 +392,8 @@ ChannelChoice choose_channel(std::optional<shell::Channel> wanted, std::uint32_t
             fmt::format("{} agent processes, at most {}", agents, kTopicsAgentsMax)};
   }
   if (per_process > kGroupsPerProcessMax) {
-    return {shell::Channel::kTopics, fmt::format("{} robots a process, more than {}", per_process,
-                                                 kGroupsPerProcessMax)};
+    return {shell::Channel::kTopics,
+            fmt::format("{} robots a process, more than {}", per_process, kGroupsPerProcessMax)};
   }
   return {shell::Channel::kGroups,
           fmt::format("{} agent processes, more than {}", agents, kTopicsAgentsMax)};

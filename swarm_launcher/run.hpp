@@ -19,7 +19,7 @@ struct RunOptions {
   std::uint64_t seed = 1;
   std::filesystem::path out;  ///< run directory; empty: runs/<mission>-<time>
   bool json = false;
-  int domain = -1;  ///< DDS domain; negative: a free one
+  int domain = -1;                        ///< DDS domain; negative: a free one
   std::optional<shell::Channel> channel;  ///< empty: choose_channel() decides
 };
 

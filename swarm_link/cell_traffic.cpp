@@ -16,7 +16,8 @@ CellInterest::CellInterest(const CellOptions& options) : options_(options) {
 
 std::span<const Cell> CellInterest::update(std::span<const Vec2> positions_m) {
   const double size = options_.cell_size_m;
-  const auto join = cells_around(positions_m, options_.hear_radius_m + options_.join_margin_m, size);
+  const auto join =
+      cells_around(positions_m, options_.hear_radius_m + options_.join_margin_m, size);
   const auto keep =
       cells_around(positions_m, options_.hear_radius_m + options_.leave_margin_m, size);
   std::vector<Cell> kept;

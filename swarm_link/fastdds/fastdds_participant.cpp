@@ -149,7 +149,8 @@ class FastDdsParticipant final : public Participant {
       const auto vendor_topic = topics_.acquire(topic.name, type_name<M>());
       if (!vendor_topic) return tl::unexpected(vendor_topic.error());
       std::optional<eprosima::fastrtps::rtps::Locator_t> group;
-      if (topic.qos.crowd && options_.receive_at_tick) group = group_of(options_.domain, topic.name);
+      if (topic.qos.crowd && options_.receive_at_tick)
+        group = group_of(options_.domain, topic.name);
       auto* made = subscriber_->create_datareader(*vendor_topic, reader_qos(topic.qos, group),
                                                   nullptr, dds::StatusMask::none());
       if (made == nullptr) return refused_endpoint("reader", topic.name);

@@ -143,8 +143,8 @@ class GroupChannel final : public StateChannel, private DatagramDrain::Sink {
   std::uint64_t sequence_number_ = 0;
   int sender_;
   DatagramDrain drain_;
-  std::vector<Joined> joined_;      // sorted by group
-  std::vector<in_addr_t> groups_;   // kept for its memory, as are these two
+  std::vector<Joined> joined_;     // sorted by group
+  std::vector<in_addr_t> groups_;  // kept for its memory, as are these two
   std::vector<std::byte> payload_;
   std::vector<std::byte> datagram_;
   std::vector<CellStatesMessage>* taking_ = nullptr;

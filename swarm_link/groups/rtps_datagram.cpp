@@ -11,8 +11,8 @@ namespace {
 constexpr std::array<std::uint8_t, 4> kMagic{'R', 'T', 'P', 'S'};
 constexpr std::uint8_t kMajor = 2;
 constexpr std::uint8_t kMinor = 3;
-constexpr std::size_t kHeaderBytes = 20;     // magic, version, vendor, GUID prefix
-constexpr std::size_t kSubHeaderBytes = 4;   // kind, flags, octets to the next one
+constexpr std::size_t kHeaderBytes = 20;      // magic, version, vendor, GUID prefix
+constexpr std::size_t kSubHeaderBytes = 4;    // kind, flags, octets to the next one
 constexpr std::size_t kDataHeaderBytes = 20;  // extra flags, to inline QoS, reader, writer, number
 constexpr std::size_t kWriterIdAt = 8;
 constexpr std::uint8_t kData = 0x15;

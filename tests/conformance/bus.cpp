@@ -123,9 +123,8 @@ const std::vector<Back>& backs() {
 const std::vector<Back>& channel_backs() {
   static const std::vector<Back> all = [] {
     std::vector<Back> list = backs();
-    list.push_back({"groups", []() -> std::unique_ptr<Bus> {
-                      return std::make_unique<TestGroupBus>();
-                    }});
+    list.push_back(
+        {"groups", []() -> std::unique_ptr<Bus> { return std::make_unique<TestGroupBus>(); }});
     return list;
   }();
   return all;

@@ -32,8 +32,7 @@ class StateChannels : public testing::TestWithParam<Back> {
   };
 
   Robot robot(std::uint32_t id, double x_m, double y_m) {
-    return {.channel = bus->channel({}),
-            .state = {.robot_id = id, .x_m = x_m, .y_m = y_m}};
+    return {.channel = bus->channel({}), .state = {.robot_id = id, .x_m = x_m, .y_m = y_m}};
   }
 
   std::unique_ptr<Bus> bus = GetParam().make();
