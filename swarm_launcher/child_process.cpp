@@ -40,8 +40,19 @@ Result<pid_t> start_process(const std::vector<std::string>& command_line,
   argv.push_back(nullptr);
 
   const pid_t parent = ::getpid();
+  // A stop signal that reached the child before its exec would end in our handler and be lost with
+  // it: it waits until the child has the default one.
+  sigset_t stops;
+  sigset_t before;
+  sigemptyset(&stops);
+  sigaddset(&stops, SIGINT);
+  sigaddset(&stops, SIGTERM);
+  ::pthread_sigmask(SIG_BLOCK, &stops, &before);
   const pid_t pid = ::fork();
   if (pid == 0) {  // only async-signal-safe calls from here on: the launcher has threads
+    ::signal(SIGINT, SIG_DFL);
+    ::signal(SIGTERM, SIG_DFL);
+    ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
     ::setpgid(0, 0);
     ::prctl(PR_SET_PDEATHSIG, SIGTERM);
     if (::getppid() != parent) ::_exit(kExecFailed);
@@ -53,6 +64,7 @@ Result<pid_t> start_process(const std::vector<std::string>& command_line,
     ::execv(argv[0], argv.data());
     ::_exit(kExecFailed);
   }
+  ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
   ::close(log_fd);
   if (pid < 0) {
     return fail(ErrorCode::kEnvironment, fmt::format("cannot start {}: {}; see ulimit -u",
