@@ -183,6 +183,7 @@ Result<PlanResult> plan(const PlanRequest& request, const PlannerOptions& option
   if (!routes) return tl::unexpected(routes.error());
 
   for (Route& route : *routes) {
+    result.stats.raw_mean_path_m += route.mass * mean_length_m(route.waypoints);
     if (options.shortcuts > 0) smooth(route.waypoints, request.world, options, checker, rng);
     result.stats.planned_mean_path_m += route.mass * mean_length_m(route.waypoints);
     result.stats.cost_m += route.mass * w2_length_m(route.waypoints);

@@ -46,7 +46,8 @@ struct PlanStats {
   double transport_ms = 0.0;  ///< LP (13)
   double smoothing_ms = 0.0;
   double total_ms = 0.0;
-  double planned_mean_path_m = 0.0;  ///< Σ mass · length of the route's mean
+  double raw_mean_path_m = 0.0;      ///< Σ mass · length of the route's mean, before smoothing
+  double planned_mean_path_m = 0.0;  ///< the same of the published plan
   double cost_m = 0.0;               ///< Σ mass · W₂ length of the route
 };
 

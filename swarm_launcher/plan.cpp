@@ -61,7 +61,7 @@ double mean_bound_m(const Mission& mission) {
 /// What a number of plans have in common.
 struct Sample {
   std::vector<double> nodes, edges, roadmap_ms, search_ms, transport_ms, smoothing_ms, total_ms,
-      ratio, cost_m;
+      raw_ratio, ratio, cost_m;
   double max_cvar_m = -std::numeric_limits<double>::infinity();
   std::uint32_t tried = 0;
 
@@ -74,6 +74,7 @@ struct Sample {
     transport_ms.push_back(s.transport_ms);
     smoothing_ms.push_back(s.smoothing_ms);
     total_ms.push_back(s.total_ms);
+    raw_ratio.push_back(s.raw_mean_path_m / bound_m);
     ratio.push_back(s.planned_mean_path_m / bound_m);
     cost_m.push_back(s.cost_m);
     max_cvar_m = std::max(max_cvar_m, planner::planned_max_cvar_m(result.plan, mission.world,
@@ -89,6 +90,7 @@ struct Sample {
                                          {"smoothing_ms", median(smoothing_ms)},
                                          {"total_ms", median(total_ms)},
                                          {"bound_m", bound_m},
+                                         {"planned_ratio_raw", mean(raw_ratio)},
                                          {"planned_ratio", mean(ratio)},
                                          {"max_cvar_m", max_cvar_m},
                                          {"cost_m", mean(cost_m)},
@@ -102,10 +104,11 @@ struct Sample {
         "{} of {} seeds planned; {:.0f} nodes, {:.0f} edges\n"
         "median time: roadmap {:.2f} + search {:.2f} + transport {:.2f} + smoothing {:.2f} = "
         "{:.2f} ms\n"
-        "mean path / bound {:.3f} (bound {:.1f} m), W2 cost {:.1f} m, largest CVaR {:.4f} m\n",
+        "mean path / bound {:.3f} raw, {:.3f} smoothed (bound {:.1f} m), W2 cost {:.1f} m, largest "
+        "CVaR {:.4f} m\n",
         total_ms.size(), tried, median(nodes), median(edges), median(roadmap_ms), median(search_ms),
-        median(transport_ms), median(smoothing_ms), median(total_ms), mean(ratio), bound_m,
-        mean(cost_m), max_cvar_m);
+        median(transport_ms), median(smoothing_ms), median(total_ms), mean(raw_ratio), mean(ratio),
+        bound_m, mean(cost_m), max_cvar_m);
   }
 
   double success() const { return static_cast<double>(total_ms.size()) / tried; }

@@ -11,14 +11,31 @@ namespace swarm::planner {
 EdgeChecker::EdgeChecker(const World& world, const RiskLimit& risk)
     : world_(&world), k_(cvar_coefficient(risk.alpha)), delta_m_(risk.delta_m) {}
 
-EdgeChecker::Sample EdgeChecker::sample(const Geodesic& geodesic, double t) const {
-  const Gaussian g = geodesic.at(t);
+EdgeChecker::Sweep::Sweep(const Gaussian& a, const Gaussian& b)
+    : from_m(a.mean_m()), step_m(b.mean_m() - a.mean_m()) {
+  const Mat2 pulled = transport_map(a, b) * a.covariance_m2();
+  xx = {a.covariance_m2()(0, 0), 2.0 * pulled(0, 0), b.covariance_m2()(0, 0)};
+  xy = {a.covariance_m2()(0, 1), pulled(0, 1) + pulled(1, 0), b.covariance_m2()(0, 1)};
+  yy = {a.covariance_m2()(1, 1), 2.0 * pulled(1, 1), b.covariance_m2()(1, 1)};
+}
+
+EdgeChecker::Sample EdgeChecker::sample(const Sweep& sweep, double t) const {
+  const std::array weights{(1.0 - t) * (1.0 - t), t * (1.0 - t), t * t};
+  const auto at = [&](const std::array<double, 3>& c) {
+    return weights[0] * c[0] + weights[1] * c[1] + weights[2] * c[2];
+  };
+  const double xx = at(sweep.xx);
+  const double xy = at(sweep.xy);
+  const double yy = at(sweep.yy);
+  const Vec2 mean_m = sweep.from_m + t * sweep.step_m;
   Sample sample{t, std::numeric_limits<double>::infinity(),
                 std::numeric_limits<double>::infinity()};
   for (const ConvexObstacle* obstacle : near_) {
-    const SignedDistance at_mean = obstacle->signed_distance(g.mean_m());
-    sample.slack_m = std::min(sample.slack_m, delta_m_ - obstacle_cvar_m(g, at_mean, k_));
-    sample.distance_m = std::min(sample.distance_m, at_mean.distance_m);
+    const auto [distance_m, n] = obstacle->signed_distance(mean_m);
+    const double variance_m2 = xx * n.x() * n.x() + 2.0 * xy * n.x() * n.y() + yy * n.y() * n.y();
+    const double cvar_m = -distance_m + k_ * std::sqrt(std::max(0.0, variance_m2));
+    sample.slack_m = std::min(sample.slack_m, delta_m_ - cvar_m);
+    sample.distance_m = std::min(sample.distance_m, distance_m);
   }
   return sample;
 }
@@ -47,9 +64,9 @@ bool EdgeChecker::is_free(const Gaussian& a, const Gaussian& b, double tolerance
   // Where the limit holds, s ≥ kσ_min − δ.
   const double distance_min_m = k_ * sigma_min_m - delta_m_;
 
-  const Geodesic geodesic(a, b);
+  const Sweep sweep(a, b);
   open_.clear();
-  open_.push_back({sample(geodesic, 0.0), sample(geodesic, 1.0)});
+  open_.push_back({sample(sweep, 0.0), sample(sweep, 1.0)});
   if (open_[0].from.slack_m < 0.0 || open_[0].to.slack_m < 0.0) return false;
   // First in, first out: the whole edge is looked at coarsely before any part of it finely, and
   // most edges that are not free fall at once.
@@ -60,7 +77,7 @@ bool EdgeChecker::is_free(const Gaussian& a, const Gaussian& b, double tolerance
         std::max(distance_min_m, 0.5 * (from.distance_m + to.distance_m - share * mean_way_m));
     const double rate_m = straight_rate_m + turn_rate_m2 / distance_m;
     if (from.slack_m + to.slack_m + 2.0 * tolerance_m >= rate_m * share) continue;
-    const Sample middle = sample(geodesic, 0.5 * (from.t + to.t));
+    const Sample middle = sample(sweep, 0.5 * (from.t + to.t));
     if (middle.slack_m < 0.0) return false;
     open_.push_back({from, middle});
     open_.push_back({middle, to});

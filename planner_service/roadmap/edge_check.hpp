@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "swarm_core/gmm/wasserstein.hpp"
@@ -41,7 +42,15 @@ class EdgeChecker {
     Sample from, to;
   };
 
-  Sample sample(const Geodesic& geodesic, double t) const;
+  /// The geodesic as polynomials of t, so that a sample costs a few products and no matrix:
+  /// Σ(t) = (1−t)²Σ_a + t(1−t)(TΣ_a + Σ_aT) + t²Σ_b.
+  struct Sweep {
+    Sweep(const Gaussian& a, const Gaussian& b);
+    Vec2 from_m, step_m;
+    std::array<double, 3> xx, xy, yy;  // coefficients of the three products of t
+  };
+
+  Sample sample(const Sweep& sweep, double t) const;
 
   const World* world_;
   double k_;

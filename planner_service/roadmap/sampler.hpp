@@ -22,7 +22,7 @@ enum class SamplerKind {
 struct SamplerOptions {
   SamplerKind kind = SamplerKind::kFit;
   double sigma_min_m = 1.0;  ///< range of σ₁ and σ₂
-  double sigma_max_m = 4.0;
+  double sigma_max_m = 3.0;
   double rho_max = 0.6;       ///< range of |ρ|
   double bridge_share = 0.3;  ///< share of means drawn near obstacles, see near_obstacle_mean()
   double bridge_sigma_m = 10.0;

@@ -17,7 +17,9 @@ constexpr double kSymmetryTolerance = 1e-9;
 constexpr double kLimitSlack = 1.0 + 1e-9;
 
 double max_variance_m2(const Mat2& s) {
-  return 0.5 * (s(0, 0) + s(1, 1)) + std::hypot(0.5 * (s(0, 0) - s(1, 1)), s(0, 1));
+  const double half_difference = 0.5 * (s(0, 0) - s(1, 1));
+  return 0.5 * (s(0, 0) + s(1, 1)) +
+         std::sqrt(half_difference * half_difference + s(0, 1) * s(0, 1));
 }
 
 }  // namespace

@@ -29,7 +29,7 @@ struct PlannerSpec {
   double risk_alpha = 0.05;           ///< α
   double risk_delta_m = -0.2;         ///< δ
   double sigma_min_m = 1.0;           ///< sampler range of σ₁, σ₂
-  double sigma_max_m = 4.0;
+  double sigma_max_m = 3.0;
   double rho_max = 0.6;           ///< sampler range of |ρ|
   double bridge_share = 0.3;      ///< share of samples drawn by the Gaussian sampler of ref. [20]
   double bridge_sigma_m = 10.0;   ///< spread of its pairs

@@ -61,6 +61,49 @@ SignedDistance polygon_distance(std::span<const Vec2> vertices_m, const Vec2& p)
   return {sign * distance_m, Vec2(best_edge.y(), -best_edge.x()).normalized()};
 }
 
+std::vector<ConvexEdge> edges_of(std::span<const Vec2> vertices_m) {
+  std::vector<ConvexEdge> edges;
+  edges.reserve(vertices_m.size());
+  for (std::size_t i = 0; i < vertices_m.size(); ++i) {
+    const Vec2 step = vertices_m[(i + 1) % vertices_m.size()] - vertices_m[i];
+    const double length_m = step.norm();
+    const Vec2 direction = step / length_m;
+    edges.push_back({vertices_m[i], direction, Vec2(direction.y(), -direction.x()), length_m});
+  }
+  return edges;
+}
+
+// Inside, the nearest edge is the one whose line is nearest. Outside, a foot that lies on an edge
+// is the nearest point; without one it is a corner.
+SignedDistance convex_distance(std::span<const ConvexEdge> edges, const Vec2& p) {
+  double farthest_m = -std::numeric_limits<double>::infinity();
+  const ConvexEdge* facing = nullptr;
+  for (const ConvexEdge& edge : edges) {
+    const Vec2 offset = p - edge.from_m;
+    const double distance_m = edge.normal.dot(offset);
+    if (distance_m > 0.0) {
+      const double along_m = edge.direction.dot(offset);
+      if (along_m >= 0.0 && along_m <= edge.length_m) return {distance_m, edge.normal};
+    }
+    if (distance_m > farthest_m) {
+      farthest_m = distance_m;
+      facing = &edge;
+    }
+  }
+  if (farthest_m <= 0.0) return {farthest_m, facing->normal};
+  double nearest_squared = std::numeric_limits<double>::infinity();
+  Vec2 nearest_offset = Vec2::Zero();
+  for (const ConvexEdge& edge : edges) {
+    const Vec2 offset = p - edge.from_m;
+    if (offset.squaredNorm() >= nearest_squared) continue;
+    nearest_squared = offset.squaredNorm();
+    nearest_offset = offset;
+  }
+  const double distance_m = std::sqrt(nearest_squared);
+  if (distance_m <= kTiny_m) return {distance_m, facing->normal};
+  return {distance_m, nearest_offset / distance_m};
+}
+
 SignedDistance circle_distance(const Circle& circle, const Vec2& p) {
   const Vec2 offset = p - circle.center_m;
   const double norm_m = offset.norm();
@@ -134,8 +177,7 @@ double Box::distance_m(const Vec2& p) const {
 }
 
 SignedDistance ConvexObstacle::signed_distance(const Vec2& point_m) const {
-  return vertices_m.empty() ? circle_distance(circle, point_m)
-                            : polygon_distance(vertices_m, point_m);
+  return vertices_m.empty() ? circle_distance(circle, point_m) : convex_distance(edges, point_m);
 }
 
 Result<World> World::make(Box bounds_m, std::vector<Obstacle> obstacles) {
@@ -166,7 +208,8 @@ Result<World> World::make(Box bounds_m, std::vector<Obstacle> obstacles) {
     world.boxes_.push_back(box_of(polygon.vertices_m()));
     for (std::vector<Vec2>& part : decompose_convex(polygon)) {
       const Box box = box_of(part);
-      world.convex_obstacles_.push_back({std::move(part), {}, box, i});
+      auto edges = edges_of(part);
+      world.convex_obstacles_.push_back({std::move(part), {}, box, i, std::move(edges)});
     }
   }
   world.obstacles_ = std::move(obstacles);
