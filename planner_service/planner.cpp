@@ -174,7 +174,8 @@ Result<PlanResult> plan(const PlanRequest& request, const PlannerOptions& option
   PlanResult result;
   EdgeChecker checker(request.world, options.risk);
   result.roadmap =
-      connect(roadmap_nodes(request, options, rng), options.connection_radius_m, checker);
+      connect(roadmap_nodes(request, options, rng), options.connection_radius_m, checker,
+              starts + goals);
   result.stats.nodes = result.roadmap.nodes.size();
   result.stats.edges = result.roadmap.edge_count();
   result.stats.roadmap_ms = stage.lap_ms();

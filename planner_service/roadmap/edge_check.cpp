@@ -19,30 +19,46 @@ EdgeChecker::Sweep::Sweep(const Gaussian& a, const Gaussian& b)
   yy = {a.covariance_m2()(1, 1), 2.0 * pulled(1, 1), b.covariance_m2()(1, 1)};
 }
 
-EdgeChecker::Sample EdgeChecker::sample(const Sweep& sweep, double t) const {
+EdgeChecker::Sample EdgeChecker::sample(const ConvexObstacle& obstacle, const Sweep& sweep,
+                                        double t) const {
   const std::array weights{(1.0 - t) * (1.0 - t), t * (1.0 - t), t * t};
   const auto at = [&](const std::array<double, 3>& c) {
     return weights[0] * c[0] + weights[1] * c[1] + weights[2] * c[2];
   };
-  const double xx = at(sweep.xx);
-  const double xy = at(sweep.xy);
-  const double yy = at(sweep.yy);
-  const Vec2 mean_m = sweep.from_m + t * sweep.step_m;
-  Sample sample{t, std::numeric_limits<double>::infinity(),
-                std::numeric_limits<double>::infinity()};
-  for (const ConvexObstacle* obstacle : near_) {
-    const auto [distance_m, n] = obstacle->signed_distance(mean_m);
-    const double variance_m2 = xx * n.x() * n.x() + 2.0 * xy * n.x() * n.y() + yy * n.y() * n.y();
-    const double cvar_m = -distance_m + k_ * std::sqrt(std::max(0.0, variance_m2));
-    sample.slack_m = std::min(sample.slack_m, delta_m_ - cvar_m);
-    sample.distance_m = std::min(sample.distance_m, distance_m);
+  const auto [to_obstacle, face] = obstacle.faced(sweep.from_m + t * sweep.step_m);
+  const Vec2& n = to_obstacle.gradient;
+  const double variance_m2 = at(sweep.xx) * n.x() * n.x() + 2.0 * at(sweep.xy) * n.x() * n.y() +
+                             at(sweep.yy) * n.y() * n.y();
+  const double cvar_m = -to_obstacle.distance_m + k_ * std::sqrt(std::max(0.0, variance_m2));
+  return {t, delta_m_ - cvar_m, to_obstacle.distance_m, face};
+}
+
+bool EdgeChecker::keeps_off(const ConvexObstacle& obstacle, const Sweep& sweep, const Rates& rates,
+                            double tolerance_m) {
+  open_.clear();
+  open_.push_back({sample(obstacle, sweep, 0.0), sample(obstacle, sweep, 1.0)});
+  if (open_[0].from.slack_m < 0.0 || open_[0].to.slack_m < 0.0) return false;
+  // First in, first out: the whole edge is looked at coarsely before any part of it finely, and
+  // most edges that are not free fall at once.
+  for (std::size_t i = 0; i < open_.size(); ++i) {
+    const auto [from, to] = open_[i];
+    if (from.face == to.face && from.face != ConvexObstacle::kNoFace) continue;
+    const double share = to.t - from.t;
+    const double distance_m =
+        std::max(rates.distance_min_m,
+                 0.5 * (from.distance_m + to.distance_m - share * rates.mean_way_m));
+    const double rate_m = rates.straight_m + rates.turn_m2 / distance_m;
+    if (from.slack_m + to.slack_m + 2.0 * tolerance_m >= rate_m * share) continue;
+    const Sample middle = sample(obstacle, sweep, 0.5 * (from.t + to.t));
+    if (middle.slack_m < 0.0) return false;
+    open_.push_back({from, middle});
+    open_.push_back({middle, to});
   }
-  return sample;
+  return true;
 }
 
 bool EdgeChecker::is_free(const Gaussian& a, const Gaussian& b, double tolerance_m) {
   const double sigma_max_m = std::max(a.max_sigma_m(), b.max_sigma_m());
-  const double sigma_min_m = std::min(a.min_sigma_m(), b.min_sigma_m());
   // Along a W₂ geodesic σ_max is convex and σ_min concave: the ends bound both. An obstacle whose
   // box is farther from the box of the way than the widest spread cannot come into play.
   const double reach_m = k_ * sigma_max_m - delta_m_;
@@ -55,34 +71,20 @@ bool EdgeChecker::is_free(const Gaussian& a, const Gaussian& b, double tolerance
   }
   if (near_.empty()) return true;
 
+  const double sigma_min_m = std::min(a.min_sigma_m(), b.min_sigma_m());
   const double length_m = wasserstein2(a, b);
   const double mean_way_m = (b.mean_m() - a.mean_m()).norm();
   const double shape_way_m =
       std::sqrt(std::max(0.0, length_m * length_m - mean_way_m * mean_way_m));
-  const double straight_rate_m = mean_way_m + k_ * shape_way_m;
-  const double turn_rate_m2 = k_ * (sigma_max_m - sigma_min_m) * mean_way_m;
-  // Where the limit holds, s ≥ kσ_min − δ.
-  const double distance_min_m = k_ * sigma_min_m - delta_m_;
-
+  const Rates rates{.straight_m = mean_way_m + k_ * shape_way_m,
+                    .turn_m2 = k_ * (sigma_max_m - sigma_min_m) * mean_way_m,
+                    .mean_way_m = mean_way_m,
+                    // Where the limit holds, s ≥ kσ_min − δ.
+                    .distance_min_m = k_ * sigma_min_m - delta_m_};
   const Sweep sweep(a, b);
-  open_.clear();
-  open_.push_back({sample(sweep, 0.0), sample(sweep, 1.0)});
-  if (open_[0].from.slack_m < 0.0 || open_[0].to.slack_m < 0.0) return false;
-  // First in, first out: the whole edge is looked at coarsely before any part of it finely, and
-  // most edges that are not free fall at once.
-  for (std::size_t i = 0; i < open_.size(); ++i) {
-    const auto [from, to] = open_[i];
-    const double share = to.t - from.t;
-    const double distance_m =
-        std::max(distance_min_m, 0.5 * (from.distance_m + to.distance_m - share * mean_way_m));
-    const double rate_m = straight_rate_m + turn_rate_m2 / distance_m;
-    if (from.slack_m + to.slack_m + 2.0 * tolerance_m >= rate_m * share) continue;
-    const Sample middle = sample(sweep, 0.5 * (from.t + to.t));
-    if (middle.slack_m < 0.0) return false;
-    open_.push_back({from, middle});
-    open_.push_back({middle, to});
-  }
-  return true;
+  return std::all_of(near_.begin(), near_.end(), [&](const ConvexObstacle* obstacle) {
+    return keeps_off(*obstacle, sweep, rates, tolerance_m);
+  });
 }
 
 }  // namespace swarm::planner

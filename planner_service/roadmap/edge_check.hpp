@@ -13,14 +13,16 @@ namespace swarm::planner {
 
 /// COLLISIONFREE of SwarmPRM, Alg. 1: whether every Gaussian on the W₂ geodesic keeps CVaR ≤ δ.
 ///
-/// Instead of a fixed grid, an interval of the edge is halved until its two ends prove it: the
-/// slack δ − CVaR changes along the edge at most by
+/// Proven between the samples, obstacle by obstacle. Where both ends of an interval face the same
+/// edge of an obstacle, CVaR = −s(t) + k|Σ_a^½((1−t)I + tT)n| is linear plus the norm of something
+/// linear: convex, so the ends bound it. Elsewhere the interval is halved until its ends prove it:
+/// the slack δ − CVaR changes along the edge at most by
 ///
 ///   L = |Δμ| + k √(W₂² − |Δμ|²) + k (σ_max − σ_min) |Δμ| / s
 ///
 /// (way of the mean, change of shape, turn of the normal at distance s from a corner), so slacks a
 /// and b at the ends of an interval of length h prove that CVaR ≤ δ + tolerance on it when a + b +
-/// 2 · tolerance ≥ L h. Nothing between the samples is taken on trust.
+/// 2 · tolerance ≥ L h.
 ///
 /// Keeps scratch memory: one checker per thread.
 class EdgeChecker {
@@ -37,6 +39,7 @@ class EdgeChecker {
     double t = 0.0;
     double slack_m = 0.0;
     double distance_m = 0.0;
+    int face = ConvexObstacle::kNoFace;
   };
   struct Interval {
     Sample from, to;
@@ -50,7 +53,17 @@ class EdgeChecker {
     std::array<double, 3> xx, xy, yy;  // coefficients of the three products of t
   };
 
-  Sample sample(const Sweep& sweep, double t) const;
+  /// How fast the slack may change over the whole edge.
+  struct Rates {
+    double straight_m = 0.0;
+    double turn_m2 = 0.0;  ///< to be divided by the distance of the corner
+    double mean_way_m = 0.0;
+    double distance_min_m = 0.0;  ///< of the mean, where the limit holds
+  };
+
+  Sample sample(const ConvexObstacle& obstacle, const Sweep& sweep, double t) const;
+  bool keeps_off(const ConvexObstacle& obstacle, const Sweep& sweep, const Rates& rates,
+                 double tolerance_m);
 
   const World* world_;
   double k_;

@@ -19,6 +19,11 @@ struct NeighbourPair {
 
 /// NEIGHBOUR of SwarmPRM, Alg. 1, for all nodes at once: every pair with W₂ ≤ radius, ordered by
 /// (a, b). W₂ is at least the distance of the means, so a k-d tree on these finds a superset.
-std::vector<NeighbourPair> find_neighbours(std::span<const Gaussian> nodes, double radius_m);
+///
+/// The first `terminals` nodes, the start and goal components, may be wider than any sample and
+/// then farther than a small radius from all of them, however many there are: they reach at least
+/// twice as far as to their nearest sample.
+std::vector<NeighbourPair> find_neighbours(std::span<const Gaussian> nodes, double radius_m,
+                                           std::size_t terminals = 0);
 
 }  // namespace swarm::planner

@@ -17,9 +17,10 @@ void Roadmap::close_edge(std::uint32_t a, std::uint32_t b) {
   }
 }
 
-Roadmap connect(std::vector<Gaussian> nodes, double radius_m, EdgeChecker& checker) {
+Roadmap connect(std::vector<Gaussian> nodes, double radius_m, EdgeChecker& checker,
+                std::size_t terminals) {
   Roadmap roadmap;
-  std::vector<NeighbourPair> edges = find_neighbours(nodes, radius_m);
+  std::vector<NeighbourPair> edges = find_neighbours(nodes, radius_m, terminals);
   std::erase_if(edges, [&](const NeighbourPair& edge) {
     return !checker.is_free(nodes[edge.a], nodes[edge.b], kBuildTolerance_m);
   });

@@ -42,7 +42,8 @@ struct Roadmap {
 };
 
 /// ROADMAPCONSTRUCTION without the sampling: joins all nodes within W₂ ≤ radius whose geodesic is
-/// free.
-Roadmap connect(std::vector<Gaussian> nodes, double radius_m, EdgeChecker& checker);
+/// free; `terminals` as in find_neighbours().
+Roadmap connect(std::vector<Gaussian> nodes, double radius_m, EdgeChecker& checker,
+                std::size_t terminals = 0);
 
 }  // namespace swarm::planner

@@ -75,7 +75,7 @@ std::vector<ConvexEdge> edges_of(std::span<const Vec2> vertices_m) {
 
 // Inside, the nearest edge is the one whose line is nearest. Outside, a foot that lies on an edge
 // is the nearest point; without one it is a corner.
-SignedDistance convex_distance(std::span<const ConvexEdge> edges, const Vec2& p) {
+ConvexObstacle::Faced convex_distance(std::span<const ConvexEdge> edges, const Vec2& p) {
   double farthest_m = -std::numeric_limits<double>::infinity();
   const ConvexEdge* facing = nullptr;
   for (const ConvexEdge& edge : edges) {
@@ -83,14 +83,16 @@ SignedDistance convex_distance(std::span<const ConvexEdge> edges, const Vec2& p)
     const double distance_m = edge.normal.dot(offset);
     if (distance_m > 0.0) {
       const double along_m = edge.direction.dot(offset);
-      if (along_m >= 0.0 && along_m <= edge.length_m) return {distance_m, edge.normal};
+      if (along_m >= 0.0 && along_m <= edge.length_m) {
+        return {{distance_m, edge.normal}, static_cast<int>(&edge - edges.data())};
+      }
     }
     if (distance_m > farthest_m) {
       farthest_m = distance_m;
       facing = &edge;
     }
   }
-  if (farthest_m <= 0.0) return {farthest_m, facing->normal};
+  if (farthest_m <= 0.0) return {{farthest_m, facing->normal}};
   double nearest_squared = std::numeric_limits<double>::infinity();
   Vec2 nearest_offset = Vec2::Zero();
   for (const ConvexEdge& edge : edges) {
@@ -100,8 +102,8 @@ SignedDistance convex_distance(std::span<const ConvexEdge> edges, const Vec2& p)
     nearest_offset = offset;
   }
   const double distance_m = std::sqrt(nearest_squared);
-  if (distance_m <= kTiny_m) return {distance_m, facing->normal};
-  return {distance_m, nearest_offset / distance_m};
+  if (distance_m <= kTiny_m) return {{distance_m, facing->normal}};
+  return {{distance_m, nearest_offset / distance_m}};
 }
 
 SignedDistance circle_distance(const Circle& circle, const Vec2& p) {
@@ -176,8 +178,9 @@ double Box::distance_m(const Vec2& p) const {
   return std::sqrt(dx * dx + dy * dy);
 }
 
-SignedDistance ConvexObstacle::signed_distance(const Vec2& point_m) const {
-  return vertices_m.empty() ? circle_distance(circle, point_m) : convex_distance(edges, point_m);
+ConvexObstacle::Faced ConvexObstacle::faced(const Vec2& point_m) const {
+  if (vertices_m.empty()) return {circle_distance(circle, point_m)};
+  return convex_distance(edges, point_m);
 }
 
 Result<World> World::make(Box bounds_m, std::vector<Obstacle> obstacles) {

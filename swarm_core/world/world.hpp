@@ -55,7 +55,16 @@ struct ConvexObstacle {
   std::size_t obstacle = 0;         ///< index into World::obstacles() of what this is a part of
   std::vector<ConvexEdge> edges{};  ///< of the polygon; empty for a circle
   /// Exact; O(edges), two products each and rarely a root: the planner asks this most of all.
-  SignedDistance signed_distance(const Vec2& point_m) const;
+  SignedDistance signed_distance(const Vec2& point_m) const { return faced(point_m).signed_distance; }
+
+  static constexpr int kNoFace = -1;
+  struct Faced {
+    SignedDistance signed_distance;
+    int face = kNoFace;  ///< index of the edge that holds the nearest point; none at a corner
+  };
+  /// From a point outside, also which edge it faces. All points that face an edge form a convex
+  /// set, and there the distance is that to the edge's line.
+  Faced faced(const Vec2& point_m) const;
 };
 
 /// The static map: a rectangle with obstacles, which may touch and overlap.

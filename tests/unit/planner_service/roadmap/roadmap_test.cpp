@@ -44,6 +44,15 @@ TEST(Neighbours, CountTheRadiusItself) {
   ASSERT_EQ(pairs.size(), 1U);
   EXPECT_EQ(pairs[0].b, 1U);
   EXPECT_TRUE(find_neighbours({}, 3.0).empty());
+
+  // A terminal 50 m from its nearest sample reaches 100 m; samples reach 3 m.
+  const std::vector<Gaussian> far = {at(0), at(50), at(52), at(99), at(101)};
+  const auto reached = find_neighbours(far, 3.0, 1);
+  ASSERT_EQ(reached.size(), 5U);
+  EXPECT_EQ(reached[2].a, 0U);
+  EXPECT_EQ(reached[2].b, 3U);
+  EXPECT_EQ(reached[3].a, 1U);
+  EXPECT_EQ(reached[4].a, 3U);
 }
 
 TEST(Roadmap, HasExactlyTheFreeNeighboursInBothDirections) {
