@@ -42,6 +42,7 @@ class EdgeChecker {
     int face = ConvexObstacle::kNoFace;
   };
   struct Interval {
+    const ConvexObstacle* obstacle = nullptr;
     Sample from, to;
   };
 
@@ -55,20 +56,22 @@ class EdgeChecker {
 
   /// How fast the slack may change over the whole edge.
   struct Rates {
-    double straight_m = 0.0;
-    double turn_m2 = 0.0;  ///< to be divided by the distance of the corner
-    double mean_way_m = 0.0;
-    double distance_min_m = 0.0;  ///< of the mean, where the limit holds
+    Rates(const Gaussian& a, const Gaussian& b, double k, double delta_m);
+    double straight_m;
+    double turn_m2;  // to be divided by the distance of the corner
+    double mean_way_m;
+    double distance_min_m;  // of the mean, where the limit holds: s ≥ kσ_min − δ
   };
 
   Sample sample(const ConvexObstacle& obstacle, const Sweep& sweep, double t) const;
-  bool keeps_off(const ConvexObstacle& obstacle, const Sweep& sweep, const Rates& rates,
-                 double tolerance_m);
+  static bool faces_one_edge(const Interval& interval) {
+    return interval.from.face == interval.to.face && interval.from.face != ConvexObstacle::kNoFace;
+  }
+  static bool is_proven(const Interval& interval, const Rates& rates, double tolerance_m);
 
   const World* world_;
   double k_;
   double delta_m_;
-  std::vector<const ConvexObstacle*> near_;
   std::vector<Interval> open_;
 };
 

@@ -45,8 +45,8 @@ std::optional<Vec2> near_obstacle_mean(const World& world, double spread_m, doub
   const double dx = standard_normal(rng);
   const double dy = standard_normal(rng);
   const Vec2 second = first + spread_m * Vec2(dx, dy);
-  const bool first_free = world.distance_m(first) > clearance_m;
-  const bool second_free = world.distance_m(second) > clearance_m;
+  const bool first_free = world.is_clear(first, clearance_m);
+  const bool second_free = world.is_clear(second, clearance_m);
   if (first_free == second_free) return std::nullopt;
   if (first_free) return first;
   if (!world.bounds_m().contains(second)) return std::nullopt;

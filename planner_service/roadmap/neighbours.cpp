@@ -45,6 +45,7 @@ std::vector<NeighbourPair> find_neighbours(std::span<const Gaussian> nodes, doub
                                            std::size_t terminals) {
   std::vector<NeighbourPair> pairs;
   if (nodes.empty()) return pairs;
+  pairs.reserve(16 * nodes.size());
   const MeanCloud cloud{nodes};
   const MeanTree tree(2, cloud);
   const nanoflann::SearchParams any_order(32, 0.0F, false);

@@ -231,6 +231,14 @@ SignedDistance World::signed_distance(const Vec2& point_m) const {
   return best;
 }
 
+bool World::is_clear(const Vec2& point_m, double clearance_m) const {
+  return std::none_of(convex_obstacles_.begin(), convex_obstacles_.end(),
+                      [&](const ConvexObstacle& obstacle) {
+                        return obstacle.box.distance_m(point_m) <= clearance_m &&
+                               obstacle.signed_distance(point_m).distance_m <= clearance_m;
+                      });
+}
+
 bool World::segment_is_free(const Vec2& from_m, const Vec2& to_m, double clearance_m) const {
   // A segment at exactly the clearance is free, whatever the rounding; one that touches is not.
   const double reach_m = std::max(clearance_m - kTiny_m, kTiny_m);

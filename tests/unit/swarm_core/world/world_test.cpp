@@ -162,6 +162,9 @@ TEST(World, ConvexPartsSeeTheSameSurfaceFromOutside) {
       if (world.distance_m(p) > 0.0) {
         EXPECT_NEAR(nearest, world.distance_m(p), 1e-9);
       }
+      for (const double clearance_m : {0.0, 0.5, 3.0}) {
+        EXPECT_EQ(world.is_clear(p, clearance_m), nearest > clearance_m);
+      }
     }
   }
 }
