@@ -153,7 +153,8 @@ PlannerOptions planner_options(const PlannerSpec& spec) {
   return {.samples = spec.samples,
           .connection_radius_m = spec.connection_radius_m,
           .risk = {.alpha = spec.risk_alpha, .delta_m = spec.risk_delta_m},
-          .sampler = {.sigma_min_m = spec.sigma_min_m,
+          .sampler = {.kind = spec.sampler == "uniform" ? SamplerKind::kUniform : SamplerKind::kFit,
+                      .sigma_min_m = spec.sigma_min_m,
                       .sigma_max_m = spec.sigma_max_m,
                       .rho_max = spec.rho_max,
                       .bridge_share = spec.bridge_share,
@@ -173,9 +174,8 @@ Result<PlanResult> plan(const PlanRequest& request, const PlannerOptions& option
   const std::size_t goals = request.goal.components().size();
   PlanResult result;
   EdgeChecker checker(request.world, options.risk);
-  result.roadmap =
-      connect(roadmap_nodes(request, options, rng), options.connection_radius_m, checker,
-              starts + goals);
+  result.roadmap = connect(roadmap_nodes(request, options, rng), options.connection_radius_m,
+                           checker, starts + goals);
   result.stats.nodes = result.roadmap.nodes.size();
   result.stats.edges = result.roadmap.edge_count();
   result.stats.roadmap_ms = stage.lap_ms();

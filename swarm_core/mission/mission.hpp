@@ -24,6 +24,9 @@ struct RobotsSpec {
 
 struct PlannerSpec {
   std::string method = "swarmprm";
+  /// Means by a low-discrepancy sequence, shapes squeezed to keep the risk limit (fit), or uniform
+  /// with rejection, as printed in the paper (uniform: finds a plan less often).
+  std::string sampler = "fit";
   std::uint32_t samples = 500;        ///< n of Alg. 1
   double connection_radius_m = 20.0;  ///< r of Alg. 1, in W₂
   double risk_alpha = 0.05;           ///< α

@@ -34,6 +34,7 @@ inline constexpr std::size_t kMaxVertices = 100'000;  ///< of all polygons toget
 inline constexpr std::size_t kMaxScriptEvents = 1'000;
 inline constexpr std::size_t kMaxNameLength = 64;
 inline constexpr std::array<std::string_view, 1> kPlannerMethods{"swarmprm"};
+inline constexpr std::array<std::string_view, 2> kPlannerSamplers{"fit", "uniform"};
 inline constexpr std::array<std::pair<std::string_view, ScriptAction>, 3> kScriptActions{
     {{"pause", ScriptAction::kPause},
      {"resume", ScriptAction::kResume},

@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <memory>
 #include <set>
+#include <span>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -88,7 +89,10 @@ class MissionReader {
     const Node* node = top.take(key);
     if (node == nullptr) return;
     MapReader keys(*node, std::string(key), violations_);
-    if constexpr (std::is_same_v<Section, PlannerSpec>) read_method(keys);
+    if constexpr (std::is_same_v<Section, PlannerSpec>) {
+      read_choice(keys, "method", mission_fields::kPlannerMethods, section.method);
+      read_choice(keys, "sampler", mission_fields::kPlannerSamplers, section.sampler);
+    }
     for (const Field<Section>& field : fields) {
       if (const Node* value = keys.take(field.key)) read_field(*value, keys, field, section);
     }
@@ -119,18 +123,19 @@ class MissionReader {
     }
   }
 
-  void read_method(MapReader& keys) {
-    const Node* node = keys.take("method");
+  void read_choice(MapReader& keys, std::string_view key, std::span<const std::string_view> known,
+                   std::string& choice) {
+    const Node* node = keys.take(key);
     if (node == nullptr) return;
-    const auto method = yaml::read_text(*node, "planner.method", violations_);
-    if (!method) return;
-    const auto& known = mission_fields::kPlannerMethods;
-    if (std::find(known.begin(), known.end(), *method) == known.end()) {
-      violations_.add(node->at, fmt::format("planner.method is {}; must be one of: {}",
-                                            describe(*node), fmt::join(known, ", ")));
+    const std::string path = keys.path_of(key);
+    const auto chosen = yaml::read_text(*node, path, violations_);
+    if (!chosen) return;
+    if (std::find(known.begin(), known.end(), *chosen) == known.end()) {
+      violations_.add(node->at, fmt::format("{} is {}; must be one of: {}", path, describe(*node),
+                                            fmt::join(known, ", ")));
       return;
     }
-    mission_.planner.method = *method;
+    choice = *chosen;
   }
 
   void read_world(const Node& node) {

@@ -77,7 +77,8 @@ std::string to_yaml(const Mission& mission) {
   write_fields(out, mission.robots, mission_fields::kRobots);
   write_mixture(out, "start", mission.start);
   write_mixture(out, "goal", mission.goal);
-  fmt::format_to(out, "planner:\n  method: {}\n", mission.planner.method);
+  fmt::format_to(out, "planner:\n  method: {}\n  sampler: {}\n", mission.planner.method,
+                 mission.planner.sampler);
   write_fields(out, mission.planner, mission_fields::kPlanner);
   fmt::format_to(out, "control:\n");
   write_fields(out, mission.control, mission_fields::kControl);

@@ -36,6 +36,7 @@ start:
 goal: [{mean_m: [17, 5], covariance_m2: [[1, 0], [0, 1]], weight: 1}]
 planner:
   method: swarmprm
+  sampler: uniform
   samples: 77
   risk_alpha: 0.1
   sigma_min_m: 0.3
@@ -97,7 +98,7 @@ template <class Section, std::size_t N>
 void expect_same(const Section& a, const Section& b,
                  const std::array<mission_fields::Field<Section>, N>& fields) {
   // The tables are all that reader and writer know: a member without a row would be lost.
-  constexpr std::size_t kTexts = std::is_same_v<Section, PlannerSpec> ? 1 : 0;
+  constexpr std::size_t kTexts = std::is_same_v<Section, PlannerSpec> ? 2 : 0;
   static_assert(members_of<Section>() == N + kTexts);
   for (const auto& field : fields) {
     std::visit([&](auto member) { EXPECT_EQ(a.*member, b.*member) << field.key; }, field.member);
@@ -110,6 +111,7 @@ void expect_same(const Mission& a, const Mission& b) {
   expect_same(a.start, b.start);
   expect_same(a.goal, b.goal);
   EXPECT_EQ(a.planner.method, b.planner.method);
+  EXPECT_EQ(a.planner.sampler, b.planner.sampler);
   expect_same(a.robots, b.robots, mission_fields::kRobots);
   expect_same(a.planner, b.planner, mission_fields::kPlanner);
   expect_same(a.control, b.control, mission_fields::kControl);
