@@ -213,4 +213,26 @@ double planned_max_cvar_m(const FlowPlan& plan, const World& world, double alpha
   return worst_m;
 }
 
+double planned_obstacle_share(const FlowPlan& plan, const World& world, std::size_t samples,
+                              Rng& rng) {
+  constexpr std::size_t kTimes = 100;
+  const std::size_t points = std::max<std::size_t>(1, samples / kTimes);
+  double worst = 0.0;
+  for (std::size_t i = 0; i < kTimes; ++i) {
+    const double share = static_cast<double>(i) / (kTimes - 1);
+    const Mixture mixture = plan.mixture_at(share * plan.duration());
+    std::size_t inside = 0;
+    for (std::size_t p = 0; p < points; ++p) {
+      const std::size_t component =
+          mixture.component_at((static_cast<double>(p) + 0.5) / static_cast<double>(points));
+      const Gaussian& g = mixture.components()[component].gaussian;
+      const double u = standard_normal(rng);
+      const Vec2 z(u, standard_normal(rng));
+      inside += world.is_clear(g.mean_m() + cholesky_lower(g.covariance_m2()) * z, 0.0) ? 0U : 1U;
+    }
+    worst = std::max(worst, static_cast<double>(inside) / static_cast<double>(points));
+  }
+  return worst;
+}
+
 }  // namespace swarm::planner

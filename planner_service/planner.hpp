@@ -72,4 +72,10 @@ Result<PlanResult> plan(const PlanRequest& request, const PlannerOptions& option
 /// nothing of the planner's own edge check in it.
 double planned_max_cvar_m(const FlowPlan& plan, const World& world, double alpha);
 
+/// What the promise means in robots, for reports: the largest share of the flow's mixture inside
+/// obstacles, over its whole time, from `samples` points drawn from it. A robot rides a point of
+/// its own and is shrunk towards the mean there, so this is a share of the plan, not of robots.
+double planned_obstacle_share(const FlowPlan& plan, const World& world, std::size_t samples,
+                              Rng& rng);
+
 }  // namespace swarm::planner

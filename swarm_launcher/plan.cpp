@@ -22,6 +22,8 @@
 namespace swarm::launcher {
 namespace {
 
+constexpr std::size_t kShareSamples = 1'000'000;
+
 double median(std::vector<double> values) {
   if (values.empty()) return 0.0;
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -62,6 +64,7 @@ double mean_bound_m(const Mission& mission) {
 struct Sample {
   std::vector<double> nodes, edges, roadmap_ms, search_ms, transport_ms, smoothing_ms, total_ms,
       raw_ratio, ratio, cost_m;
+  double obstacle_share = 0.0;  // of the first plan
   double max_cvar_m = -std::numeric_limits<double>::infinity();
   std::uint32_t tried = 0;
 
@@ -77,6 +80,11 @@ struct Sample {
     raw_ratio.push_back(s.raw_mean_path_m / bound_m);
     ratio.push_back(s.planned_mean_path_m / bound_m);
     cost_m.push_back(s.cost_m);
+    if (total_ms.size() == 1) {
+      Rng rng(1);
+      obstacle_share =
+          planner::planned_obstacle_share(result.plan, mission.world, kShareSamples, rng);
+    }
     max_cvar_m = std::max(max_cvar_m, planner::planned_max_cvar_m(result.plan, mission.world,
                                                                   mission.planner.risk_alpha));
   }
@@ -93,6 +101,7 @@ struct Sample {
                                          {"planned_ratio_raw", mean(raw_ratio)},
                                          {"planned_ratio", mean(ratio)},
                                          {"max_cvar_m", max_cvar_m},
+                                         {"obstacle_share", obstacle_share},
                                          {"cost_m", mean(cost_m)},
                                          {"seeds", tried},
                                          {"success", success()}};
@@ -104,11 +113,11 @@ struct Sample {
         "{} of {} seeds planned; {:.0f} nodes, {:.0f} edges\n"
         "median time: roadmap {:.2f} + search {:.2f} + transport {:.2f} + smoothing {:.2f} = "
         "{:.2f} ms\n"
-        "mean path / bound {:.3f} raw, {:.3f} smoothed (bound {:.1f} m), W2 cost {:.1f} m, largest "
-        "CVaR {:.4f} m\n",
+        "mean path / bound {:.3f} raw, {:.3f} smoothed (bound {:.1f} m), W2 cost {:.1f} m\n"
+        "largest CVaR {:.4f} m; at most {:.2f} % of the first plan's mixture inside obstacles\n",
         total_ms.size(), tried, median(nodes), median(edges), median(roadmap_ms), median(search_ms),
         median(transport_ms), median(smoothing_ms), median(total_ms), mean(raw_ratio), mean(ratio),
-        bound_m, mean(cost_m), max_cvar_m);
+        bound_m, mean(cost_m), max_cvar_m, 100.0 * obstacle_share);
   }
 
   double success() const { return static_cast<double>(total_ms.size()) / tried; }

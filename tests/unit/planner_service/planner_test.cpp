@@ -164,6 +164,24 @@ TEST(Planner, TakesShorterWaysTheMoreRiskItMayTake) {
   }
 }
 
+TEST(Planner, ShowsFewerRobotsInObstaclesTheLessRiskItMayTake) {
+  const StandinScene scene = standin_scene();
+  PlannerOptions options;
+  double before = 0.0;
+  for (const double alpha : {0.05, 0.15, 0.3}) {
+    options.risk.alpha = alpha;
+    const auto planned = plan_scene(scene, options, 1);
+    ASSERT_TRUE(planned);
+    Rng rng(1);
+
+    const double share = planned_obstacle_share(planned->plan, scene.world, 1'000'000, rng);
+
+    EXPECT_GT(share, before) << "alpha " << alpha;
+    EXPECT_LT(share, alpha);  // their mean is 0.2 m outside
+    before = share;
+  }
+}
+
 TEST(Planner, TakesLongerWaysTheMoreClearanceItMustKeep) {
   const StandinScene scene = standin_scene();
   PlannerOptions options;
