@@ -105,7 +105,7 @@ Result<void> AgentProcess::Impl::join(const shell::RunInfo& run) {
   event_writer = std::move(*event);
 
   const LinkSpec& l = mission.link;
-  if (run.channel == shell::Channel::kGroups) {
+  if (run.channel == Channel::kGroups) {
     link::GroupChannelOptions groups{.domain = run.domain};
     groups.cells.cell_size_m = l.group_cell_size_m;
     groups.cells.hear_radius_m = l.hear_radius_m;

@@ -35,10 +35,8 @@ int main(int argc, char** argv) {
     run_command->add_option("--out", run.out, "Run directory (default: runs/<mission>-<time>)");
     run_command->add_option("--domain", run.domain, "DDS domain (default: a free one)")
         ->check(CLI::Range(0, 229));
-    const std::map<std::string, std::optional<shell::Channel>> channels = {
-        {"auto", std::nullopt},
-        {"topics", shell::Channel::kTopics},
-        {"groups", shell::Channel::kGroups}};
+    const std::map<std::string, std::optional<Channel>> channels = {
+        {"auto", std::nullopt}, {"topics", Channel::kTopics}, {"groups", Channel::kGroups}};
     std::string channel = "auto";
     run_command
         ->add_option("--channel", channel,

@@ -16,6 +16,7 @@
 #include "swarm_core/mission/placement.hpp"
 #include "swarm_core/shell/run_directory.hpp"
 #include "swarm_core/shell/stop_signal.hpp"
+#include "swarm_launcher/channel_choice.hpp"
 #include "swarm_launcher/child_process.hpp"
 #include "swarm_launcher/control_socket.hpp"
 #include "swarm_launcher/domain_lock.hpp"
@@ -59,11 +60,6 @@ Result<void> make_run_dir(const std::filesystem::path& dir) {
   }
   return {};
 }
-
-// Beyond these, endpoints of moving robots cost more to discover than all else together
-// (docs/BENCHMARKS.md); a process of many robots listens nearly everywhere and gains nothing.
-constexpr std::uint32_t kTopicsAgentsMax = 32;
-constexpr std::uint32_t kGroupsPerProcessMax = 4;
 
 int number_of(EndSignal signal) {
   switch (signal) {
@@ -383,21 +379,6 @@ std::string Run::planner_complaint() const {
 }
 
 }  // namespace
-
-ChannelChoice choose_channel(std::optional<shell::Channel> wanted, std::uint32_t agents,
-                             std::uint32_t per_process) {
-  if (wanted) return {*wanted, "as asked"};
-  if (agents <= kTopicsAgentsMax) {
-    return {shell::Channel::kTopics,
-            fmt::format("{} agent processes, at most {}", agents, kTopicsAgentsMax)};
-  }
-  if (per_process > kGroupsPerProcessMax) {
-    return {shell::Channel::kTopics,
-            fmt::format("{} robots a process, more than {}", per_process, kGroupsPerProcessMax)};
-  }
-  return {shell::Channel::kGroups,
-          fmt::format("{} agent processes, more than {}", agents, kTopicsAgentsMax)};
-}
 
 Result<ExitCode> run_mission(const RunOptions& options) {
   become_urgent();

@@ -5,10 +5,9 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
-#include <string>
 
 #include "swarm_core/base/result.hpp"
-#include "swarm_core/shell/run_directory.hpp"
+#include "swarm_core/mission/channel.hpp"
 
 namespace swarm::launcher {
 
@@ -19,17 +18,9 @@ struct RunOptions {
   std::uint64_t seed = 1;
   std::filesystem::path out;  ///< run directory; empty: runs/<mission>-<time>
   bool json = false;
-  int domain = -1;                        ///< DDS domain; negative: a free one
-  std::optional<shell::Channel> channel;  ///< empty: choose_channel() decides
+  int domain = -1;                 ///< DDS domain; negative: a free one
+  std::optional<Channel> channel;  ///< empty: choose_channel() decides
 };
-
-/// The state channel for so many agent processes, and why.
-struct ChannelChoice {
-  shell::Channel channel;
-  std::string reason;
-};
-ChannelChoice choose_channel(std::optional<shell::Channel> wanted, std::uint32_t agents,
-                             std::uint32_t per_process);
 
 /// `swarm_launcher run`: the whole mission with real processes, from planning to the audited
 /// report. Result on stdout, progress on stderr.

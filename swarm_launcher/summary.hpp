@@ -6,7 +6,7 @@
 #include <filesystem>
 
 #include "swarm_core/base/result.hpp"
-#include "swarm_core/shell/run_directory.hpp"
+#include "swarm_core/mission/channel.hpp"
 #include "swarm_launcher/supervisor.hpp"
 
 namespace swarm::launcher {
@@ -14,7 +14,7 @@ namespace swarm::launcher {
 /// What only the launcher can measure.
 struct Measurements {
   Outcome outcome = Outcome::kNone;
-  shell::Channel channel = shell::Channel::kTopics;
+  Channel channel = Channel::kTopics;
   double discovery_s = -1.0;  ///< negative: never complete
   double hearing_s = -1.0;    ///< from then to everyone hearing its neighbours; negative: never
   double cpu_s = 0.0;         ///< of all processes of the run

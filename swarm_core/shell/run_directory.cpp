@@ -51,10 +51,6 @@ Result<std::string> read_file(const std::filesystem::path& file, std::size_t max
   return content;
 }
 
-std::string_view to_string(Channel channel) {
-  return channel == Channel::kTopics ? "topics" : "groups";
-}
-
 Result<void> write_run_info(const std::filesystem::path& run_dir, const RunInfo& info) {
   const nlohmann::json json = {{"domain", info.domain},
                                {"discovery_host", info.discovery_host},

@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "swarm_core/base/result.hpp"
+#include "swarm_core/mission/channel.hpp"
 
 /// A run's directory: where the launcher, the planner, the agents and the monitor meet.
 namespace swarm::shell {
@@ -21,10 +22,6 @@ inline constexpr std::string_view kRunFile = "run.json";
 inline constexpr std::string_view kControlSocket = "control.sock";
 inline constexpr std::string_view kLogsFolder = "logs";
 inline constexpr std::string_view kBlackboxFolder = "blackbox";
-
-/// What carries the robots' states; see swarm_link/state_channel.hpp.
-enum class Channel { kTopics, kGroups };
-std::string_view to_string(Channel channel);  ///< "topics", "groups"
 
 /// How to join a run; `run.json`.
 struct RunInfo {

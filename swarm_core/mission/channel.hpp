@@ -1,0 +1,17 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string_view>
+
+namespace swarm {
+
+/// What carries the robots' states: DDS topics per cell, or multicast groups per cell; see
+/// docs/architecture.md.
+enum class Channel { kTopics, kGroups };
+
+constexpr std::string_view to_string(Channel channel) {
+  return channel == Channel::kTopics ? "topics" : "groups";
+}
+
+}  // namespace swarm
