@@ -12,9 +12,12 @@ constexpr std::uint32_t kGroupsPerProcessMax = 4;
 
 }  // namespace
 
-ChannelChoice choose_channel(std::optional<Channel> wanted, std::uint32_t agents,
-                             std::uint32_t robots_per_process) {
+ChannelChoice choose_channel(const ChannelQuestion& question) {
+  const auto& [wanted, agents, robots_per_process, multicast] = question;
   if (wanted) return {*wanted, "as asked"};
+  if (!multicast) {
+    return {Channel::kTopics, "this machine carries no multicast on its loopback interface"};
+  }
   if (agents <= kTopicsAgentsMax) {
     return {Channel::kTopics,
             fmt::format("{} agent processes, at most {}", agents, kTopicsAgentsMax)};

@@ -15,11 +15,16 @@ struct ChannelChoice {
   std::string reason;  ///< for people
 };
 
-/// The state channel of a run with so many agent processes, and why. `wanted` is obeyed. Beyond 32
-/// processes the endpoints of moving robots cost more to discover than all else together
-/// (docs/BENCHMARKS.md); a process of many robots listens nearly everywhere and gains nothing by
-/// groups.
-ChannelChoice choose_channel(std::optional<Channel> wanted, std::uint32_t agents,
-                             std::uint32_t robots_per_process);
+struct ChannelQuestion {
+  std::optional<Channel> wanted{};  ///< obeyed
+  std::uint32_t agents = 0;         ///< processes
+  std::uint32_t robots_per_process = 1;
+  bool multicast = true;  ///< whether the machine carries it on its loopback interface
+};
+
+/// The state channel of a run, and why. Beyond 32 processes the endpoints of moving robots cost
+/// more to discover than all else together (docs/BENCHMARKS.md); a process of many robots listens
+/// nearly everywhere and gains nothing by groups.
+ChannelChoice choose_channel(const ChannelQuestion& question);
 
 }  // namespace swarm::launcher

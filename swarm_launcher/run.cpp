@@ -26,6 +26,7 @@
 #include "swarm_launcher/supervisor.hpp"
 #include "swarm_launcher/swarm_view.hpp"
 #include "swarm_link/fastdds/fastdds_participant.hpp"
+#include "swarm_link/udp_socket.hpp"
 #include "swarm_link/validation.hpp"
 
 namespace swarm::launcher {
@@ -59,6 +60,12 @@ Result<void> make_run_dir(const std::filesystem::path& dir) {
     }
   }
   return {};
+}
+
+tl::unexpected<Error> fail_without_multicast() {
+  return fail(ErrorCode::kEnvironment,
+              "--channel groups: the loopback interface carries no multicast; let firewalls pass "
+              "239.255.0.0/16 on lo, or use --channel topics");
 }
 
 int number_of(EndSignal signal) {
@@ -137,6 +144,12 @@ Result<std::unique_ptr<Run>> Run::make(const RunOptions& options) {
   }
   const std::uint32_t agents =
       (mission->robots.count + options.per_process - 1) / options.per_process;
+  const bool multicast = link::loopback_carries_multicast();
+  ChannelChoice channel = choose_channel({.wanted = options.channel,
+                                          .agents = agents,
+                                          .robots_per_process = options.per_process,
+                                          .multicast = multicast});
+  if (channel.channel == Channel::kGroups && !multicast) return fail_without_multicast();
   auto lock = DomainLock::take(options.domain, agents + kFirstAgentIndex);
   if (!lock) return tl::unexpected(lock.error());
   const auto dir =
@@ -145,9 +158,8 @@ Result<std::unique_ptr<Run>> Run::make(const RunOptions& options) {
   if (auto written = shell::write_file(dir / shell::kMissionFile, to_yaml(*mission)); !written) {
     return tl::unexpected(written.error());
   }
-  auto run =
-      std::unique_ptr<Run>(new Run(options, std::move(*mission), dir, std::move(*lock),
-                                   choose_channel(options.channel, agents, options.per_process)));
+  auto run = std::unique_ptr<Run>(
+      new Run(options, std::move(*mission), dir, std::move(*lock), std::move(channel)));
   if (const auto joined = run->join(); !joined) return tl::unexpected(joined.error());
   return run;
 }

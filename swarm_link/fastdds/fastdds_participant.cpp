@@ -99,13 +99,6 @@ class FastDdsParticipant final : public Participant {
                               options_.domain, options_.index,
                               sockets_->hears_metatraffic() ? "data" : "discovery"));
     }
-    if (options_.receive_at_tick && !loopback_carries_multicast()) {
-      return fail(ErrorCode::kEnvironment,
-                  fmt::format("participant '{}' would not hear other robots: multicast sent to the "
-                              "loopback interface does not come back; run 'ip link set lo up' and "
-                              "let firewalls pass 239.255.0.0/16 on lo",
-                              options_.name));
-    }
     const int granted = granted_receive_buffer_bytes(options_.receive_buffer_bytes);
     if (granted < options_.receive_buffer_bytes / 2) {
       return fail(ErrorCode::kEnvironment,
@@ -149,8 +142,7 @@ class FastDdsParticipant final : public Participant {
       const auto vendor_topic = topics_.acquire(topic.name, type_name<M>());
       if (!vendor_topic) return tl::unexpected(vendor_topic.error());
       std::optional<eprosima::fastrtps::rtps::Locator_t> group;
-      if (topic.qos.crowd && options_.receive_at_tick)
-        group = group_of(options_.domain, topic.name);
+      if (topic.qos.crowd && multicast_) group = group_of(options_.domain, topic.name);
       auto* made = subscriber_->create_datareader(*vendor_topic, reader_qos(topic.qos, group),
                                                   nullptr, dds::StatusMask::none());
       if (made == nullptr) return refused_endpoint("reader", topic.name);
@@ -174,6 +166,7 @@ class FastDdsParticipant final : public Participant {
   }
 
   FastDdsOptions options_;
+  bool multicast_ = options_.receive_at_tick && loopback_carries_multicast();  // else by unicast
   Ports ports_;
   std::shared_ptr<ReceiveSockets> sockets_;
   dds::DomainParticipant* participant_;

@@ -7,19 +7,28 @@
 namespace swarm::launcher {
 namespace {
 
+Channel choice(std::uint32_t agents, std::uint32_t robots_per_process) {
+  return choose_channel({.agents = agents, .robots_per_process = robots_per_process}).channel;
+}
+
 TEST(ChannelChoice, TakesGroupsForManyProcessesOfFewRobots) {
-  EXPECT_EQ(choose_channel({}, 1, 1).channel, Channel::kTopics);
-  EXPECT_EQ(choose_channel({}, 32, 1).channel, Channel::kTopics);
-  EXPECT_EQ(choose_channel({}, 33, 1).channel, Channel::kGroups);
-  EXPECT_EQ(choose_channel({}, 300, 4).channel, Channel::kGroups);
-  EXPECT_EQ(choose_channel({}, 300, 5).channel, Channel::kTopics);
+  EXPECT_EQ(choice(1, 1), Channel::kTopics);
+  EXPECT_EQ(choice(32, 1), Channel::kTopics);
+  EXPECT_EQ(choice(33, 1), Channel::kGroups);
+  EXPECT_EQ(choice(300, 4), Channel::kGroups);
+  EXPECT_EQ(choice(300, 5), Channel::kTopics);
+}
+
+TEST(ChannelChoice, TakesTopicsWhereThereIsNoMulticast) {
+  EXPECT_EQ(choose_channel({.agents = 300, .multicast = false}).channel, Channel::kTopics);
 }
 
 TEST(ChannelChoice, ObeysAndSaysWhy) {
-  EXPECT_EQ(choose_channel(Channel::kTopics, 300, 1).channel, Channel::kTopics);
-  EXPECT_EQ(choose_channel(Channel::kGroups, 1, 100).channel, Channel::kGroups);
-  EXPECT_EQ(choose_channel(Channel::kGroups, 1, 100).reason, "as asked");
-  EXPECT_EQ(choose_channel({}, 100, 1).reason, "100 agent processes, more than 32");
+  const auto asked = choose_channel({.wanted = Channel::kGroups, .agents = 1});
+  EXPECT_EQ(asked.channel, Channel::kGroups);
+  EXPECT_EQ(asked.reason, "as asked");
+  EXPECT_EQ(choose_channel({.wanted = Channel::kTopics, .agents = 300}).channel, Channel::kTopics);
+  EXPECT_EQ(choose_channel({.agents = 100}).reason, "100 agent processes, more than 32");
 }
 
 }  // namespace
