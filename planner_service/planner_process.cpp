@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "planner_service/planner_process.hpp"
 
+#include <ctime>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
-#include <time.h>
 #include <unistd.h>
 
 #include "planner_service/planner.hpp"
@@ -78,7 +78,7 @@ Result<void> PlannerProcess::Impl::join(const shell::RunInfo& run) {
                                               .ownership_strength = options.ownership_strength});
   if (!made) return tl::unexpected(made.error());
   participant = std::move(*made);
-  if (const auto hears = participant->self_check(); !hears) return hears;
+  if (auto hears = participant->self_check(); !hears) return hears;
   auto plans = participant->make_writer(link::plan_topic());
   auto heartbeats = participant->make_writer(link::heartbeat_topic());
   auto events = participant->make_writer(link::event_topic());

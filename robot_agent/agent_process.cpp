@@ -4,13 +4,13 @@
 
 #include <cerrno>
 #include <cmath>
+#include <ctime>
 #include <numbers>
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
-#include <time.h>
 #include <unistd.h>
 
 #include "robot_agent/drivers/simulated_robot.hpp"
@@ -89,7 +89,7 @@ Result<void> AgentProcess::Impl::join(const shell::RunInfo& run) {
                                       .discovery = {run.discovery_host, run.discovery_port}});
   if (!made) return tl::unexpected(made.error());
   participant = std::move(*made);
-  if (const auto hears = participant->self_check(); !hears) return hears;
+  if (auto hears = participant->self_check(); !hears) return hears;
 
   auto plan_reader = participant->make_reader(link::plan_topic());
   auto heartbeat_reader = participant->make_reader(link::heartbeat_topic());

@@ -51,7 +51,7 @@ class EdgeChecker {
   struct Sweep {
     Sweep(const Gaussian& a, const Gaussian& b);
     Vec2 from_m, step_m;
-    std::array<double, 3> xx, xy, yy;  // coefficients of the three products of t
+    std::array<double, 3> xx{}, xy{}, yy{};  // coefficients of the three products of t
   };
 
   /// How fast the slack may change over the whole edge.
