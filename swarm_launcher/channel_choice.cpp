@@ -12,22 +12,28 @@ constexpr std::uint32_t kGroupsPerProcessMax = 4;
 
 }  // namespace
 
-ChannelChoice choose_channel(const ChannelQuestion& question) {
+Result<ChannelChoice> choose_channel(const ChannelQuestion& question) {
   const auto& [wanted, agents, robots_per_process, multicast] = question;
-  if (wanted) return {*wanted, "as asked"};
+  if (wanted == Channel::kGroups && !multicast) {
+    return fail(ErrorCode::kEnvironment,
+                "--channel groups: the loopback interface carries no multicast; let firewalls pass "
+                "239.255.0.0/16 on lo, or use --channel topics");
+  }
+  if (wanted) return ChannelChoice{*wanted, "as asked"};
   if (!multicast) {
-    return {Channel::kTopics, "this machine carries no multicast on its loopback interface"};
+    return ChannelChoice{Channel::kTopics,
+                         "this machine carries no multicast on its loopback interface"};
   }
   if (agents <= kTopicsAgentsMax) {
-    return {Channel::kTopics,
-            fmt::format("{} agent processes, at most {}", agents, kTopicsAgentsMax)};
+    return ChannelChoice{Channel::kTopics,
+                         fmt::format("{} agent processes, at most {}", agents, kTopicsAgentsMax)};
   }
   if (robots_per_process > kGroupsPerProcessMax) {
-    return {Channel::kTopics, fmt::format("{} robots a process, more than {}", robots_per_process,
-                                          kGroupsPerProcessMax)};
+    return ChannelChoice{Channel::kTopics, fmt::format("{} robots a process, more than {}",
+                                                       robots_per_process, kGroupsPerProcessMax)};
   }
-  return {Channel::kGroups,
-          fmt::format("{} agent processes, more than {}", agents, kTopicsAgentsMax)};
+  return ChannelChoice{Channel::kGroups,
+                       fmt::format("{} agent processes, more than {}", agents, kTopicsAgentsMax)};
 }
 
 }  // namespace swarm::launcher

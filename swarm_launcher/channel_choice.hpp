@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "swarm_core/base/result.hpp"
 #include "swarm_core/mission/channel.hpp"
 
 namespace swarm::launcher {
@@ -16,7 +17,7 @@ struct ChannelChoice {
 };
 
 struct ChannelQuestion {
-  std::optional<Channel> wanted{};  ///< obeyed
+  std::optional<Channel> wanted{};  ///< obeyed, or refused where it cannot work
   std::uint32_t agents = 0;         ///< processes
   std::uint32_t robots_per_process = 1;
   bool multicast = true;  ///< whether the machine carries it on its loopback interface
@@ -25,6 +26,6 @@ struct ChannelQuestion {
 /// The state channel of a run, and why. Beyond 32 processes the endpoints of moving robots cost
 /// more to discover than all else together (docs/BENCHMARKS.md); a process of many robots listens
 /// nearly everywhere and gains nothing by groups.
-ChannelChoice choose_channel(const ChannelQuestion& question);
+Result<ChannelChoice> choose_channel(const ChannelQuestion& question);
 
 }  // namespace swarm::launcher

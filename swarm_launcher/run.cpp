@@ -7,7 +7,6 @@
 #include <map>
 #include <thread>
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -22,6 +21,7 @@
 #include "swarm_launcher/domain_lock.hpp"
 #include "swarm_launcher/event_log.hpp"
 #include "swarm_launcher/progress.hpp"
+#include "swarm_launcher/run_dir.hpp"
 #include "swarm_launcher/summary.hpp"
 #include "swarm_launcher/supervisor.hpp"
 #include "swarm_launcher/swarm_view.hpp"
@@ -38,34 +38,6 @@ constexpr std::uint32_t kFirstAgentIndex = 2;  // DDS participants 0 and 1: laun
 
 UtcTime utc_now() {
   return std::chrono::time_point_cast<Duration>(std::chrono::system_clock::now());
-}
-
-std::filesystem::path default_run_dir(const std::string& mission) {
-  const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
-  return std::filesystem::path("runs") /
-         fmt::format("{}-{:%Y%m%d-%H%M%S}", mission, fmt::localtime(now));
-}
-
-Result<void> make_run_dir(const std::filesystem::path& dir) {
-  std::error_code error;
-  if (std::filesystem::exists(dir / shell::kRunFile, error)) {
-    return fail(ErrorCode::kBadInput,
-                fmt::format("--out {}: holds a run already; name another directory", dir.string()));
-  }
-  for (const auto& folder : {shell::kLogsFolder, shell::kBlackboxFolder}) {
-    std::filesystem::create_directories(dir / folder, error);
-    if (error) {
-      return fail(ErrorCode::kEnvironment,
-                  fmt::format("cannot make {}: {}", (dir / folder).string(), error.message()));
-    }
-  }
-  return {};
-}
-
-tl::unexpected<Error> fail_without_multicast() {
-  return fail(ErrorCode::kEnvironment,
-              "--channel groups: the loopback interface carries no multicast; let firewalls pass "
-              "239.255.0.0/16 on lo, or use --channel topics");
 }
 
 int number_of(EndSignal signal) {
@@ -144,22 +116,21 @@ Result<std::unique_ptr<Run>> Run::make(const RunOptions& options) {
   }
   const std::uint32_t agents =
       (mission->robots.count + options.per_process - 1) / options.per_process;
-  const bool multicast = link::loopback_carries_multicast();
-  ChannelChoice channel = choose_channel({.wanted = options.channel,
-                                          .agents = agents,
-                                          .robots_per_process = options.per_process,
-                                          .multicast = multicast});
-  if (channel.channel == Channel::kGroups && !multicast) return fail_without_multicast();
+  auto channel = choose_channel({.wanted = options.channel,
+                                 .agents = agents,
+                                 .robots_per_process = options.per_process,
+                                 .multicast = link::loopback_carries_multicast()});
+  if (!channel) return tl::unexpected(channel.error());
   auto lock = DomainLock::take(options.domain, agents + kFirstAgentIndex);
   if (!lock) return tl::unexpected(lock.error());
-  const auto dir =
-      std::filesystem::absolute(options.out.empty() ? default_run_dir(mission->name) : options.out);
-  if (const auto made = make_run_dir(dir); !made) return tl::unexpected(made.error());
+  const auto made = make_run_dir(options.out, mission->name);
+  if (!made) return tl::unexpected(made.error());
+  const std::filesystem::path& dir = *made;
   if (auto written = shell::write_file(dir / shell::kMissionFile, to_yaml(*mission)); !written) {
     return tl::unexpected(written.error());
   }
   auto run = std::unique_ptr<Run>(
-      new Run(options, std::move(*mission), dir, std::move(*lock), std::move(channel)));
+      new Run(options, std::move(*mission), dir, std::move(*lock), std::move(*channel)));
   if (const auto joined = run->join(); !joined) return tl::unexpected(joined.error());
   return run;
 }

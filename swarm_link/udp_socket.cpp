@@ -26,6 +26,14 @@ bool set_membership(int fd, int option, const in_addr& group) {
 
 bool is_multicast(const in_addr& address) { return IN_MULTICAST(ntohl(address.s_addr)); }
 
+sockaddr_in multicast_group(std::uint32_t domain, std::uint32_t hash) {
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(0xEFFF0000U | (hash & 0xFFFFU));
+  address.sin_port = htons(static_cast<std::uint16_t>(7401 + 250 * domain));
+  return address;
+}
+
 int open_receive_socket(const sockaddr_in& address, int buffer_bytes) {
   const int fd = ::socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
   if (fd < 0) return -1;

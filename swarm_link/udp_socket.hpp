@@ -14,6 +14,9 @@ namespace swarm::link {
 
 bool is_multicast(const in_addr& address);
 
+/// Group 239.255.h.h of a DDS domain, at the standard's port for its user multicast.
+sockaddr_in multicast_group(std::uint32_t domain, std::uint32_t hash);
+
 /// A non-blocking socket bound to an address; −1 if the kernel refuses. A multicast group's socket
 /// is bound to the group, so it hears nothing else, and shares its port with other processes; it
 /// hears nothing at all until join_group().

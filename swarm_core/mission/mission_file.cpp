@@ -9,6 +9,7 @@
 #include <memory>
 #include <set>
 #include <span>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -127,15 +128,8 @@ class MissionReader {
                    std::string& choice) {
     const Node* node = keys.take(key);
     if (node == nullptr) return;
-    const std::string path = keys.path_of(key);
-    const auto chosen = yaml::read_text(*node, path, violations_);
-    if (!chosen) return;
-    if (std::find(known.begin(), known.end(), *chosen) == known.end()) {
-      violations_.add(node->at, fmt::format("{} is {}; must be one of: {}", path, describe(*node),
-                                            fmt::join(known, ", ")));
-      return;
-    }
-    choice = *chosen;
+    auto chosen = yaml::read_choice(*node, keys.path_of(key), known, violations_);
+    if (chosen) choice = *std::move(chosen);
   }
 
   void read_world(const Node& node) {

@@ -160,6 +160,16 @@ std::optional<std::string> read_text(const Node& node, const std::string& path,
   return std::nullopt;
 }
 
+std::optional<std::string> read_choice(const Node& node, const std::string& path,
+                                       std::span<const std::string_view> known,
+                                       Violations& violations) {
+  auto chosen = read_text(node, path, violations);
+  if (!chosen || std::find(known.begin(), known.end(), *chosen) != known.end()) return chosen;
+  violations.add(node.at, fmt::format("{} is {}; must be one of: {}", path, describe(node),
+                                      fmt::join(known, ", ")));
+  return std::nullopt;
+}
+
 std::optional<std::vector<double>> read_numbers(const Node& node, const std::string& path,
                                                 std::size_t size, const Range& range,
                                                 Violations& violations) {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -69,6 +70,10 @@ std::optional<std::uint32_t> read_count(const Node& node, const std::string& pat
                                         const Range& range, Violations& violations);
 std::optional<std::string> read_text(const Node& node, const std::string& path,
                                      Violations& violations);
+/// One of the known words.
+std::optional<std::string> read_choice(const Node& node, const std::string& path,
+                                       std::span<const std::string_view> known,
+                                       Violations& violations);
 
 /// A list of exactly `size` numbers.
 std::optional<std::vector<double>> read_numbers(const Node& node, const std::string& path,

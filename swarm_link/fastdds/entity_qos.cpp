@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "swarm_link/fastdds/entity_qos.hpp"
 
-#include <fastrtps/utils/IPLocator.h>
+#include "swarm_link/fastdds/loopback_transport.hpp"
 
 namespace swarm::link::fastdds {
 
@@ -50,12 +50,7 @@ dds::DataWriterQos writer_qos(const Qos& qos, std::uint32_t ownership_strength) 
 rtps::Locator_t group_of(std::uint32_t domain, const std::string& topic) {
   std::uint32_t hash = 2'166'136'261U;  // FNV-1a
   for (const char c : topic) hash = (hash ^ static_cast<unsigned char>(c)) * 16'777'619U;
-  rtps::Locator_t group;
-  group.kind = LOCATOR_KIND_UDPv4;
-  group.port = 7401 + 250 * domain;  // the standard's port for user multicast
-  rtps::IPLocator::setIPv4(group, 239, 255, static_cast<rtps::octet>((hash >> 8U) & 0xFFU),
-                           static_cast<rtps::octet>(hash & 0xFFU));
-  return group;
+  return to_locator(multicast_group(domain, hash));
 }
 
 dds::DataReaderQos reader_qos(const Qos& qos, const std::optional<rtps::Locator_t>& group) {

@@ -20,13 +20,8 @@ namespace swarm::link {
 namespace {
 
 sockaddr_in group_of(std::uint32_t domain, const Cell& cell) {
-  const auto hash = static_cast<std::uint32_t>(cell.x) * 359U + static_cast<std::uint32_t>(cell.y);
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_addr.s_addr = htonl(0xEFFF0000U | (hash & 0xFFFFU));
-  // The standard's port for user multicast.
-  address.sin_port = htons(static_cast<std::uint16_t>(7401 + 250 * domain));
-  return address;
+  return multicast_group(
+      domain, static_cast<std::uint32_t>(cell.x) * 359U + static_cast<std::uint32_t>(cell.y));
 }
 
 GuidPrefix random_prefix() {

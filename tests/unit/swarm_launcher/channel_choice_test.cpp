@@ -8,7 +8,7 @@ namespace swarm::launcher {
 namespace {
 
 Channel choice(std::uint32_t agents, std::uint32_t robots_per_process) {
-  return choose_channel({.agents = agents, .robots_per_process = robots_per_process}).channel;
+  return choose_channel({.agents = agents, .robots_per_process = robots_per_process})->channel;
 }
 
 TEST(ChannelChoice, TakesGroupsForManyProcessesOfFewRobots) {
@@ -20,15 +20,22 @@ TEST(ChannelChoice, TakesGroupsForManyProcessesOfFewRobots) {
 }
 
 TEST(ChannelChoice, TakesTopicsWhereThereIsNoMulticast) {
-  EXPECT_EQ(choose_channel({.agents = 300, .multicast = false}).channel, Channel::kTopics);
+  EXPECT_EQ(choose_channel({.agents = 300, .multicast = false})->channel, Channel::kTopics);
+}
+
+TEST(ChannelChoice, RefusesGroupsWhereThereIsNoMulticast) {
+  const auto refused = choose_channel({.wanted = Channel::kGroups, .multicast = false});
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::kEnvironment);
 }
 
 TEST(ChannelChoice, ObeysAndSaysWhy) {
   const auto asked = choose_channel({.wanted = Channel::kGroups, .agents = 1});
-  EXPECT_EQ(asked.channel, Channel::kGroups);
-  EXPECT_EQ(asked.reason, "as asked");
-  EXPECT_EQ(choose_channel({.wanted = Channel::kTopics, .agents = 300}).channel, Channel::kTopics);
-  EXPECT_EQ(choose_channel({.agents = 100}).reason, "100 agent processes, more than 32");
+  ASSERT_TRUE(asked);
+  EXPECT_EQ(asked->channel, Channel::kGroups);
+  EXPECT_EQ(asked->reason, "as asked");
+  EXPECT_EQ(choose_channel({.wanted = Channel::kTopics, .agents = 300})->channel, Channel::kTopics);
+  EXPECT_EQ(choose_channel({.agents = 100})->reason, "100 agent processes, more than 32");
 }
 
 }  // namespace

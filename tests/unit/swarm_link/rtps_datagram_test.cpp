@@ -70,13 +70,13 @@ TEST(RtpsDatagram, RefusesWhatIsNotOurs) {
     spoiled[at] = static_cast<std::byte>(value);
     return !decode_rtps(spoiled).has_value();
   };
-  EXPECT_TRUE(refused(0, 'X'));                     // magic
-  EXPECT_TRUE(refused(4, 3));                       // major version
-  EXPECT_TRUE(refused(kHeaderBytes, 0x16));         // DATA_FRAG
-  EXPECT_TRUE(refused(kHeaderBytes + 1, 0x07));     // inline QoS
-  EXPECT_TRUE(refused(kHeaderBytes + 1, 0x01));     // no data
-  EXPECT_TRUE(refused(kHeaderBytes + 3, 0xFF));     // longer than the message
-  EXPECT_TRUE(refused(kHeaderBytes + 12, 0x00));    // another writer
+  EXPECT_TRUE(refused(0, 'X'));                   // magic
+  EXPECT_TRUE(refused(4, 3));                     // major version
+  EXPECT_TRUE(refused(kHeaderBytes, 0x16));       // DATA_FRAG
+  EXPECT_TRUE(refused(kHeaderBytes + 1, 0x07));   // inline QoS
+  EXPECT_TRUE(refused(kHeaderBytes + 1, 0x01));   // no data
+  EXPECT_TRUE(refused(kHeaderBytes + 3, 0xFF));   // longer than the message
+  EXPECT_TRUE(refused(kHeaderBytes + 12, 0x00));  // another writer
 }
 
 // Under the sanitizers this proves that nothing beyond the bytes is read.

@@ -1,0 +1,42 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "swarm_launcher/run_dir.hpp"
+
+#include <chrono>
+#include <system_error>
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include "swarm_core/shell/run_directory.hpp"
+
+namespace swarm::launcher {
+namespace {
+
+std::filesystem::path default_run_dir(const std::string& mission) {
+  const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
+  return std::filesystem::path("runs") /
+         fmt::format("{}-{:%Y%m%d-%H%M%S}", mission, fmt::localtime(now));
+}
+
+}  // namespace
+
+Result<std::filesystem::path> make_run_dir(const std::filesystem::path& out,
+                                           const std::string& mission) {
+  const auto dir = std::filesystem::absolute(out.empty() ? default_run_dir(mission) : out);
+  std::error_code error;
+  if (std::filesystem::exists(dir / shell::kRunFile, error)) {
+    return fail(ErrorCode::kBadInput,
+                fmt::format("--out {}: holds a run already; name another directory", dir.string()));
+  }
+  for (const auto& folder : {shell::kLogsFolder, shell::kBlackboxFolder}) {
+    std::filesystem::create_directories(dir / folder, error);
+    if (error) {
+      return fail(ErrorCode::kEnvironment,
+                  fmt::format("cannot make {}: {}", (dir / folder).string(), error.message()));
+    }
+  }
+  return dir;
+}
+
+}  // namespace swarm::launcher
