@@ -17,14 +17,17 @@ Vec2 SafetyFilter::filter(const Vec2& position_m, const Vec2& wish_mps,
   const double horizon_s = 2.0 * to_seconds(options_.period);
   const double reach_m = options_.speed_max_mps * horizon_s + options_.obstacle_margin_m;
 
-  const auto keep_off = [&](const Vec2& towards, double surface_gap_m) {
-    if (surface_gap_m > reach_m) return;
-    constraints_.push_back({towards, (surface_gap_m - options_.obstacle_margin_m) / horizon_s});
+  const auto keep_off = [&](const Vec2& towards, double surface_gap_m, double coming_mps = 0.0) {
+    if (surface_gap_m > reach_m + coming_mps * horizon_s) return;
+    constraints_.push_back(
+        {towards, (surface_gap_m - options_.obstacle_margin_m) / horizon_s - coming_mps});
   };
   for (const ConvexObstacle& obstacle : world_.convex_obstacles()) {
-    if (obstacle.box.distance_m(position_m) - options_.radius_m > reach_m) continue;
+    const double way_m = obstacle.velocity_mps.norm() * horizon_s;
+    if (obstacle.box.distance_m(position_m) - options_.radius_m > reach_m + way_m) continue;
     const SignedDistance sd = obstacle.signed_distance(position_m);
-    keep_off(-sd.gradient, sd.distance_m - options_.radius_m);
+    keep_off(-sd.gradient, sd.distance_m - options_.radius_m,
+             std::max(0.0, sd.gradient.dot(obstacle.velocity_mps)));
   }
   const Box& bounds = world_.bounds_m();
   keep_off({-1.0, 0.0}, position_m.x() - bounds.min_m.x() - options_.radius_m);

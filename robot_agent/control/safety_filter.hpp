@@ -25,8 +25,9 @@ struct SafetyOptions {
 /// promises.
 ///
 ///   neighbour j:  n_j·u ≤ γ (gap_j − m)/(2Δt) + β max(0, n_j·v_j)      n_j points to the neighbour
-///   obstacle o:   n_o·u ≤ (s_o − m_o)/(2Δt)                            n_o points into the
-///   obstacle bounds:       the same with the four walls of the world
+///   obstacle o:   n_o·u ≤ (s_o − m_o)/(2Δt) − max(0, −n_o·v_o)         n_o points into the
+///   obstacle, v_o is its velocity
+///   bounds:       the same with the four walls of the world
 ///
 /// A command is valid for 2Δt, then the driver stops the robot. Hence: a robot that starts with
 /// s_o ≥ m_o keeps it, however late its ticks are (an obstacle is convex and within its

@@ -171,6 +171,12 @@ Result<Polygon> Polygon::make(std::vector<Vec2> vertices_m) {
   return polygon;
 }
 
+Polygon Polygon::shifted(const Vec2& by_m) const {
+  Polygon polygon = *this;
+  for (Vec2& vertex : polygon.vertices_m_) vertex += by_m;
+  return polygon;
+}
+
 bool Polygon::contains(const Vec2& point_m) const {
   bool inside = false;
   const Vec2* from = &vertices_m_.back();

@@ -27,6 +27,9 @@ class Polygon {
   bool is_convex() const { return convex_; }
   bool contains(const Vec2& point_m) const;
 
+  /// The same polygon somewhere else.
+  Polygon shifted(const Vec2& by_m) const;
+
  private:
   std::vector<Vec2> vertices_m_;
   bool convex_ = false;

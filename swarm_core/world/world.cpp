@@ -10,6 +10,8 @@
 
 #include <fmt/format.h>
 
+#include "swarm_core/base/assert.hpp"
+
 namespace swarm {
 namespace {
 
@@ -183,7 +185,9 @@ ConvexObstacle::Faced ConvexObstacle::faced(const Vec2& point_m) const {
   return convex_distance(edges, point_m);
 }
 
-Result<World> World::make(Box bounds_m, std::vector<Obstacle> obstacles) {
+Result<World> World::make(Box bounds_m, std::vector<Obstacle> obstacles,
+                          std::span<const Vec2> velocities_mps) {
+  SWARM_ASSERT(velocities_mps.empty() || velocities_mps.size() == obstacles.size());
   if (!bounds_m.min_m.allFinite() || !bounds_m.max_m.allFinite() ||
       (bounds_m.min_m.array() >= bounds_m.max_m.array()).any()) {
     return fail(ErrorCode::kBadInput, "world: bounds must be finite, min below max on both axes");
@@ -213,6 +217,11 @@ Result<World> World::make(Box bounds_m, std::vector<Obstacle> obstacles) {
       const Box box = box_of(part);
       auto edges = edges_of(part);
       world.convex_obstacles_.push_back({std::move(part), {}, box, i, std::move(edges)});
+    }
+  }
+  if (!velocities_mps.empty()) {
+    for (ConvexObstacle& part : world.convex_obstacles_) {
+      part.velocity_mps = velocities_mps[part.obstacle];
     }
   }
   world.obstacles_ = std::move(obstacles);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <span>
 #include <variant>
 #include <vector>
 
@@ -52,8 +53,9 @@ struct ConvexObstacle {
   std::vector<Vec2> vertices_m;  ///< counter-clockwise; empty for a circle
   Circle circle;                 ///< used when `vertices_m` is empty
   Box box;
-  std::size_t obstacle = 0;         ///< index into World::obstacles() of what this is a part of
-  std::vector<ConvexEdge> edges{};  ///< of the polygon; empty for a circle
+  std::size_t obstacle = 0;          ///< index into World::obstacles() of what this is a part of
+  std::vector<ConvexEdge> edges{};   ///< of the polygon; empty for a circle
+  Vec2 velocity_mps = Vec2::Zero();  ///< at the moment the map is of
   /// Exact; O(edges), two products each and rarely a root: the planner asks this most of all.
   SignedDistance signed_distance(const Vec2& point_m) const {
     return faced(point_m).signed_distance;
@@ -69,14 +71,16 @@ struct ConvexObstacle {
   Faced faced(const Vec2& point_m) const;
 };
 
-/// The static map: a rectangle with obstacles, which may touch and overlap.
+/// The map at a moment: a rectangle with obstacles, which may touch and overlap.
 class World {
  public:
   /// A world without obstacles and extent.
   World() = default;
 
   /// Refuses an empty or non-finite rectangle and circles without a positive, finite radius.
-  static Result<World> make(Box bounds_m, std::vector<Obstacle> obstacles);
+  /// `velocities_mps` is empty (nothing moves) or has one for each obstacle.
+  static Result<World> make(Box bounds_m, std::vector<Obstacle> obstacles,
+                            std::span<const Vec2> velocities_mps = {});
 
   const Box& bounds_m() const { return bounds_m_; }
   const std::vector<Obstacle>& obstacles() const { return obstacles_; }

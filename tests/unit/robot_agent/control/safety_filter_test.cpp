@@ -173,5 +173,21 @@ TEST(SafetyFilter, StandsStillWhenSqueezedFromBothSides) {
   EXPECT_NEAR(u.x(), 0.0, 1e-9);
 }
 
+TEST(SafetyFilter, GetsOutOfTheWayOfAnObstacleThatComes) {
+  // A circle at 1 m/s towards a robot that wants to stay; it would be hit after 2 s.
+  const Vec2 velocity(1.0, 0.0);
+  Vec2 position(4.0, 0.3);
+  for (int step = 0; step < 80; ++step) {
+    const Vec2 center = kPeriod_s * step * velocity;
+    const World world =
+        *World::make({{-50, -50}, {50, 50}}, {Circle{center, 1.5}}, std::vector<Vec2>{velocity});
+    SafetyFilter filter(world, options());
+    const Vec2 u = filter.filter(position, Vec2::Zero(), {});
+    position += kPeriod_s * u;
+    // Where both are one period later.
+    ASSERT_GE((position - center - kPeriod_s * velocity).norm() - 1.5 - kRadius_m, 0.05 - 1e-9);
+  }
+}
+
 }  // namespace
 }  // namespace swarm::agent
