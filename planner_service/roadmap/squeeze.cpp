@@ -12,6 +12,7 @@ namespace {
 // Squeezing towards one obstacle may widen the Gaussian a little towards another; in a corner of
 // two walls three rounds settle it, more means a place too tight to be worth a sample.
 constexpr int kRounds = 8;
+constexpr int kPushes = 3;
 // Aims a hair below the limit, so that rounding does not leave it a hair above.
 constexpr double kShy = 1.0 - 1e-9;
 
@@ -44,6 +45,25 @@ std::optional<Gaussian> squeeze_into_free(const Gaussian& g, const World& world,
     if (squeezed.min_sigma_m() < sigma_min_m) return std::nullopt;
   }
   return std::nullopt;
+}
+
+Gaussian push_out(const Gaussian& g, const World& world, double room_m) {
+  Vec2 mean_m = g.mean_m();
+  for (int push = 0; push < kPushes; ++push) {
+    double nearest_m = room_m;
+    Vec2 away = Vec2::Zero();
+    for (const ConvexObstacle& obstacle : world.convex_obstacles()) {
+      if (obstacle.box.distance_m(mean_m) >= nearest_m) continue;
+      const SignedDistance at_mean = obstacle.signed_distance(mean_m);
+      if (at_mean.distance_m < nearest_m) {
+        nearest_m = at_mean.distance_m;
+        away = at_mean.gradient;
+      }
+    }
+    if (nearest_m >= room_m) break;
+    mean_m += (room_m - nearest_m) * away;
+  }
+  return Gaussian::from_valid(mean_m, g.covariance_m2());
 }
 
 }  // namespace swarm::planner

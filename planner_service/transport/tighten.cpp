@@ -17,7 +17,6 @@ namespace swarm::planner {
 namespace {
 
 constexpr double kWorthwhile_m = 1e-6;
-constexpr int kPushes = 3;
 constexpr std::array kSteps{1.0, 0.5};
 
 Waypoints resampled(const Waypoints& waypoints, double spacing_m) {
@@ -32,26 +31,6 @@ Waypoints resampled(const Waypoints& waypoints, double spacing_m) {
     fine.push_back(waypoints[i]);
   }
   return fine;
-}
-
-// Moves the mean away from the nearest obstacle until the narrowest Gaussian has room there.
-Gaussian pushed_out(const Gaussian& g, const World& world, double room_m) {
-  Vec2 mean_m = g.mean_m();
-  for (int push = 0; push < kPushes; ++push) {
-    double nearest_m = room_m;
-    Vec2 away = Vec2::Zero();
-    for (const ConvexObstacle& obstacle : world.convex_obstacles()) {
-      if (obstacle.box.distance_m(mean_m) >= nearest_m) continue;
-      const SignedDistance at_mean = obstacle.signed_distance(mean_m);
-      if (at_mean.distance_m < nearest_m) {
-        nearest_m = at_mean.distance_m;
-        away = at_mean.gradient;
-      }
-    }
-    if (nearest_m >= room_m) break;
-    mean_m += (room_m - nearest_m) * away;
-  }
-  return Gaussian::from_valid(mean_m, g.covariance_m2());
 }
 
 }  // namespace
@@ -74,9 +53,8 @@ void tighten(Waypoints& waypoints, const World& world, const RiskLimit& risk,
         const double now_m = wasserstein2(before, fine[i]) + wasserstein2(fine[i], after);
         // A whole step may cost more shape than it saves way; half of it often does not.
         for (const double step : kSteps) {
-          const std::optional<Gaussian> moved =
-              squeeze_into_free(pushed_out(move.at(step), world, room_m), world, k, risk.delta_m,
-                                options.sigma_min_m);
+          const std::optional<Gaussian> moved = squeeze_into_free(
+              push_out(move.at(step), world, room_m), world, k, risk.delta_m, options.sigma_min_m);
           if (!moved) continue;
           const double then_m = wasserstein2(before, *moved) + wasserstein2(*moved, after);
           if (now_m - then_m < kWorthwhile_m) continue;
