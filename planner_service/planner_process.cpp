@@ -3,6 +3,8 @@
 #include "planner_service/planner_process.hpp"
 
 #include <ctime>
+#include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -11,6 +13,8 @@
 #include <unistd.h>
 
 #include "planner_service/planner.hpp"
+#include "planner_service/replan.hpp"
+#include "planner_service/robot_watch.hpp"
 #include "swarm_core/mission/mission_file.hpp"
 #include "swarm_core/mission/phase.hpp"
 #include "swarm_core/plan/plan_json.hpp"
@@ -23,7 +27,15 @@
 namespace swarm::planner {
 namespace {
 
-constexpr Duration kStep = std::chrono::milliseconds(20);
+// A change of the scene must be a plan on the bus within 100 ms, most of which is not ours.
+constexpr Duration kStep = std::chrono::milliseconds(5);
+// After a start the launcher's scene is due at once; a bus that does not bring it must not keep a
+// mission from flying.
+constexpr Duration kScenePatience = std::chrono::seconds(3);
+// A planner that comes back in mid-flight waits this long for robots it does not hear.
+constexpr Duration kHearPatience = std::chrono::milliseconds(1500);
+// While obstacles move, and while there is no plan for the scene.
+constexpr Duration kReplanPeriod = std::chrono::seconds(2);
 
 UtcTime utc_now() {
   return std::chrono::time_point_cast<Duration>(std::chrono::system_clock::now());
@@ -51,24 +63,60 @@ Result<void> write_stats(const std::filesystem::path& run_dir, const PlanStats& 
 struct PlannerProcess::Impl {
   ProcessOptions options;
   Mission mission;
-  FlowPlan plan;
+  std::uint64_t seed = 0;
+  Scene scene;
+  bool scene_heard = false;
+  Replan newest;
+  bool published = false;
+  std::uint32_t version = 0;
+  std::uint64_t planned_scene = 0;
+  std::uint64_t failed_scene = 0;  // that was complained about
   PlannerEpoch epoch;
   std::unique_ptr<link::Participant> participant;
   link::WriterPtr<link::PlanMessage> plan_writer;
   link::WriterPtr<link::HeartbeatMessage> heartbeat_writer;
   link::WriterPtr<link::EventMessage> event_writer;
   link::ReaderPtr<link::CommandMessage> command_reader;
+  link::ReaderPtr<link::SceneMessage> scene_reader;
+  link::ReaderPtr<link::StatusMessage> status_reader;
+  link::WireLimits limits;
+  std::optional<RobotWatch> robots;
   MissionPhase phase = MissionPhase::kReady;
   std::uint64_t last_command = 0;
   std::int64_t t0_utc_ns = 0;
   std::uint64_t beats = 0;
-  std::uint32_t refused = 0;
+  link::RefusalCounters refused;
+  SteadyTime joined_at;
+  SteadyTime tried_at;  // to plan anew
   std::vector<link::CommandMessage> commands;
+  std::vector<link::SceneMessage> scenes;
+  std::vector<link::StatusMessage> statuses;
 
+  Result<void> plan_first();
   Result<void> join(const shell::RunInfo& run);
   void obey();
+  void hear_scene(UtcTime now);
+  void hear_robots(SteadyTime now);
+  void keep_planned(SteadyTime now);
+  Result<Replan> plan_anew(UtcTime now, std::span<const HeardRobot> heard);
+  void try_again(SteadyTime now);
+  void publish();
+  void announce(link::Severity severity, const std::string& code, const std::string& text);
   void beat(UtcTime now);
 };
+
+Result<void> PlannerProcess::Impl::plan_first() {
+  Rng rng(seed);
+  auto planned = plan({mission.world, mission.start, mission.goal},
+                      planner_options(mission.planner), rng, &std::chrono::steady_clock::now);
+  if (!planned) return tl::unexpected(planned.error());
+  newest = {*std::move(planned), {}};
+  if (auto w = shell::write_file(options.run_dir / shell::kPlanFile, to_json(newest.planned.plan));
+      !w) {
+    return w;
+  }
+  return write_stats(options.run_dir, newest.planned.stats);
+}
 
 Result<void> PlannerProcess::Impl::join(const shell::RunInfo& run) {
   auto made = link::make_fastdds_participant({.name = "planner_service",
@@ -83,14 +131,23 @@ Result<void> PlannerProcess::Impl::join(const shell::RunInfo& run) {
   auto heartbeats = participant->make_writer(link::heartbeat_topic());
   auto events = participant->make_writer(link::event_topic());
   auto orders = participant->make_reader(link::command_topic());
+  auto scene_changes = participant->make_reader(link::scene_topic());
+  auto health = participant->make_reader(link::status_topic_unacknowledged());
   if (!plans) return tl::unexpected(plans.error());
   if (!heartbeats) return tl::unexpected(heartbeats.error());
   if (!events) return tl::unexpected(events.error());
   if (!orders) return tl::unexpected(orders.error());
+  if (!scene_changes) return tl::unexpected(scene_changes.error());
+  if (!health) return tl::unexpected(health.error());
   plan_writer = std::move(*plans);
   heartbeat_writer = std::move(*heartbeats);
   event_writer = std::move(*events);
   command_reader = std::move(*orders);
+  scene_reader = std::move(*scene_changes);
+  status_reader = std::move(*health);
+  limits = link::wire_limits(mission);
+  robots.emplace(mission.robots.count, from_seconds(3.0 + 3.0 / mission.link.status_hz));
+  joined_at = std::chrono::steady_clock::now();
   return {};
 }
 
@@ -100,8 +157,8 @@ void PlannerProcess::Impl::obey() {
   commands.clear();
   command_reader->take(commands);
   for (const link::CommandMessage& command : commands) {
-    if (!link::check_command(command)) {
-      ++refused;
+    if (const auto ok = link::check_command(command); !ok) {
+      refused.count(ok.error());
       continue;
     }
     if (command.command_id <= last_command && command.kind != CommandKind::kStop) continue;
@@ -113,12 +170,130 @@ void PlannerProcess::Impl::obey() {
   }
 }
 
+void PlannerProcess::Impl::hear_scene(UtcTime now) {
+  scenes.clear();
+  scene_reader->take(scenes);
+  const auto newest_possible =
+      static_cast<std::uint64_t>((now + limits.clock_skew_refuse).time_since_epoch().count());
+  for (const link::SceneMessage& message : scenes) {
+    auto heard = link::check_scene(message);
+    if (!heard) {
+      refused.count(heard.error());
+    } else if (heard->version > newest_possible) {
+      refused.count(link::RefusalReason::kForged);
+    } else if (scene_heard && heard->version <= scene.version) {
+      refused.count(link::RefusalReason::kStale);
+    } else {
+      scene = std::move(*heard);
+      scene_heard = true;
+    }
+  }
+}
+
+void PlannerProcess::Impl::hear_robots(SteadyTime now) {
+  statuses.clear();
+  status_reader->take(statuses);
+  for (const link::StatusMessage& status : statuses) {
+    if (const auto ok = link::check_status(status, limits); !ok) {
+      refused.count(ok.error());
+      continue;
+    }
+    robots->hear({.robot = RobotId(status.robot_id),
+                  .position_m = {status.x_m, status.y_m},
+                  .arrived = status.arrived},
+                 now);
+  }
+}
+
+/// From where the robots are, once they have left their start; before, the mission's own mixture is
+/// the truth they were placed by.
+Result<Replan> PlannerProcess::Impl::plan_anew(UtcTime now, std::span<const HeardRobot> heard) {
+  const World world = world_during(mission.world, scene, now, kReplanPeriod);
+  const Mixture& goal = scene.goal ? *scene.goal : mission.goal;
+  PlannerOptions wanted = planner_options(mission.planner);
+  wanted.risk.alpha = scene.risk_alpha.value_or(wanted.risk.alpha);
+  Rng rng(mix_seed(seed, version));
+  if (phase == MissionPhase::kReady) {
+    auto planned = plan({world, mission.start, goal}, wanted, rng, &std::chrono::steady_clock::now);
+    if (!planned) return tl::unexpected(planned.error());
+    return Replan{*std::move(planned), {}};
+  }
+  return replan(world, goal, heard, mission.robots.count, wanted, rng,
+                &std::chrono::steady_clock::now);
+}
+
+void PlannerProcess::Impl::try_again(SteadyTime now) {
+  const std::vector<HeardRobot> heard = robots->fresh(now);
+  if (phase != MissionPhase::kReady) {
+    if (heard.empty() || (!robots->heard_all(now) && now - joined_at < kHearPatience)) return;
+  }
+  tried_at = now;
+  auto planned = plan_anew(utc_now(), heard);
+  if (!planned) {
+    if (failed_scene == scene.version) return;
+    failed_scene = scene.version;
+    announce(link::Severity::kWarning, "replan-failed",
+             "the last plan stays: " + planned.error().message);
+    return;
+  }
+  newest = *std::move(planned);
+  publish();
+}
+
+/// There is to be a plan on the bus for the scene as it is; anew while obstacles move.
+void PlannerProcess::Impl::keep_planned(SteadyTime now) {
+  if (!scene_heard && now - joined_at < kScenePatience) return;
+  if (scene.version == 0) {
+    if (!published) publish();
+    return;
+  }
+  const bool news = !published || scene.version != planned_scene;
+  const bool tried = failed_scene == scene.version;
+  const bool due = now - tried_at >= kReplanPeriod;
+  if ((news && (!tried || due)) || (scene.moves(utc_now()) && due)) try_again(now);
+}
+
+void PlannerProcess::Impl::publish() {
+  const UtcTime now = utc_now();
+  link::PlanMessage message =
+      link::to_message(newest.planned.plan, epoch, PlanVersion(++version), now);
+  message.scene_version = scene.version;
+  for (const PlanEntry& entry : newest.entries) {
+    message.entries.push_back({entry.source, entry.share});
+  }
+  plan_writer->write(message);
+  published = true;
+  planned_scene = scene.version;
+  const PlanStats& stats = newest.planned.stats;
+  const double after_ms = 1e-6 * static_cast<double>(now.time_since_epoch().count() -
+                                                     static_cast<std::int64_t>(scene.version));
+  announce(
+      link::Severity::kInfo, "planned",
+      fmt::format("version {}: {} nodes, {} legs, {:.1f} m mean path, {:.1f} ms{}", version,
+                  newest.planned.plan.nodes().size(), newest.planned.plan.legs().size(),
+                  stats.planned_mean_path_m, stats.total_ms,
+                  scene.version == 0 ? "" : fmt::format(", {:.1f} ms after the change", after_ms)));
+  if (version == 1 && scene.version == 0) return;  // kept when it was made
+  const auto kept = shell::write_file(options.run_dir / fmt::format("plan-{:04}.json", version),
+                                      to_json(newest.planned.plan));
+  if (!kept) announce(link::Severity::kWarning, "plan-file", kept.error().message);
+}
+
+void PlannerProcess::Impl::announce(link::Severity severity, const std::string& code,
+                                    const std::string& text) {
+  event_writer->write({.severity = severity,
+                       .source = link::kPlannerSource,
+                       .stamp_utc_ns = utc_now().time_since_epoch().count(),
+                       .code = code,
+                       .text = text});
+}
+
 void PlannerProcess::Impl::beat(UtcTime now) {
   const std::int64_t stamp = now.time_since_epoch().count();
   const double mission_time_s =
       t0_utc_ns == 0 ? 0.0 : 1e-9 * static_cast<double>(stamp - t0_utc_ns);
   heartbeat_writer->write({.phase = phase,
-                           .version = 1,
+                           .version = version,
                            .epoch = epoch.value(),
                            .sequence_number = ++beats,
                            .stamp_utc_ns = stamp,
@@ -136,28 +311,11 @@ Result<std::unique_ptr<PlannerProcess>> PlannerProcess::make(const ProcessOption
   auto mission = load_mission(options.run_dir / shell::kMissionFile);
   if (!mission) return tl::unexpected(mission.error());
   impl->mission = std::move(*mission);
-
-  Rng rng(run->seed);
-  auto planned = plan({impl->mission.world, impl->mission.start, impl->mission.goal},
-                      planner_options(impl->mission.planner), rng, &std::chrono::steady_clock::now);
-  if (!planned) return tl::unexpected(planned.error());
-  impl->plan = std::move(planned->plan);
+  impl->seed = run->seed;
+  impl->scene = first_scene(impl->mission.world.obstacles().size());
   impl->epoch = PlannerEpoch(static_cast<std::uint64_t>(utc_now().time_since_epoch().count()));
-  if (auto w = shell::write_file(options.run_dir / shell::kPlanFile, to_json(impl->plan)); !w) {
-    return tl::unexpected(w.error());
-  }
-  if (auto w = write_stats(options.run_dir, planned->stats); !w) return tl::unexpected(w.error());
+  if (auto planned = impl->plan_first(); !planned) return tl::unexpected(planned.error());
   if (auto joined = impl->join(*run); !joined) return tl::unexpected(joined.error());
-
-  const UtcTime now = utc_now();
-  impl->plan_writer->write(link::to_message(impl->plan, impl->epoch, PlanVersion(1), now));
-  impl->event_writer->write(
-      {.source = link::kPlannerSource,
-       .stamp_utc_ns = now.time_since_epoch().count(),
-       .code = "planned",
-       .text = fmt::format("{} nodes, {} legs, {:.1f} m mean path, {:.1f} ms",
-                           impl->plan.nodes().size(), impl->plan.legs().size(),
-                           planned->stats.planned_mean_path_m, planned->stats.total_ms)});
   return std::unique_ptr<PlannerProcess>(new PlannerProcess(std::move(impl)));
 }
 
@@ -167,8 +325,11 @@ Result<void> PlannerProcess::run() {
   SteadyTime next_beat = std::chrono::steady_clock::now();
   while (shell::stop_requests() == 0) {
     p.participant->receive();
-    p.obey();
     const SteadyTime now = std::chrono::steady_clock::now();
+    p.obey();
+    p.hear_scene(utc_now());
+    p.hear_robots(now);
+    p.keep_planned(now);
     if (now >= next_beat) {
       p.beat(utc_now());
       next_beat = std::max(next_beat + beat_period, now);

@@ -69,12 +69,20 @@ Agent::Agent(const World& world, const AgentOptions& options)
       kick_(options.kick),
       say_(options.say) {}
 
-void Agent::accept_plan(const FlowPlan& plan, const Vec2& position_m) {
+void Agent::accept_plan(const FlowPlan& plan, const Vec2& position_m,
+                        std::optional<PlanEntry> entry) {
   if (route_ && plan.digest() == plan_digest_) return;
-  route_ = moved_ ? route_from_here(plan, options_.share, position_m, world_, options_.route)
-                  : route_from_start(plan, options_.share, position_m, world_, options_.route);
+  if (entry) {
+    route_ =
+        route_from_source(plan, entry->source, entry->share, position_m, world_, options_.route);
+  } else if (moved_) {
+    route_ = route_from_here(plan, options_.share, position_m, world_, options_.route);
+  } else {
+    route_ = route_from_start(plan, options_.share, position_m, world_, options_.route);
+  }
   plan_digest_ = plan.digest();
   pursuit_ = Pursuit(route_->path, options_.pursuit);
+  kick_.forget();
   arrived_ = false;
   best_remaining_m_ = std::numeric_limits<double>::infinity();
 }

@@ -38,6 +38,12 @@ struct AgentOptions {
 /// The options of one robot of a mission.
 AgentOptions agent_options(const Mission& mission, RobotId robot, std::uint64_t seed);
 
+/// Where this robot enters a plan that was made in mid-flight.
+struct PlanEntry {
+  std::uint32_t source = 0;  ///< index into FlowPlan::sources()
+  double share = 0.0;        ///< in [0, 1), for the draws at the splits behind it
+};
+
 struct AgentInput {
   SteadyTime now;
   Vec2 position_m = Vec2::Zero();  ///< measured
@@ -65,8 +71,10 @@ class Agent {
   Agent(const World& world, const AgentOptions& options);
 
   /// Takes a plan. One with the digest of the present one changes nothing, so a restarted planner
-  /// that publishes the same flow does not make robots start over.
-  void accept_plan(const FlowPlan& plan, const Vec2& position_m);
+  /// that publishes the same flow does not make robots start over. Without an entry a robot finds
+  /// its own way into it.
+  void accept_plan(const FlowPlan& plan, const Vec2& position_m,
+                   std::optional<PlanEntry> entry = std::nullopt);
 
   NeighbourTable::Outcome hear(const NeighbourReport& report, const Vec2& own_position_m) {
     return neighbours_.take(report, own_position_m);
@@ -77,6 +85,8 @@ class Agent {
   bool has_route() const { return route_.has_value(); }
   /// Index of the goal (sink of the plan) this robot goes to. \pre has_route()
   std::uint32_t goal() const { return route_->sink; }
+  /// Where the present way begins. \pre has_route()
+  Vec2 way_begin_m() const { return route_->path.at(0.0); }
   std::uint32_t kicks() const { return kick_.kicks(); }
 
  private:

@@ -56,13 +56,15 @@ Result<Vec2> standing_place(const std::filesystem::path& box_file, const Vec2& p
 struct AgentProcess::Impl {
   ProcessOptions options;
   Mission mission;
+  World world;  // as it stands now; the robots refer to it
+  Scene scene;
+  bool world_moves = false;
   std::unique_ptr<link::Participant> participant;
   std::unique_ptr<link::StateChannel> states;
   link::WriterPtr<link::StatusMessage> status_writer;
   link::WriterPtr<link::EventMessage> event_writer;
   std::optional<Inbox> inbox;
   std::vector<Robot> robots;
-  std::optional<FlowPlan> plan;
   std::vector<link::RobotStateMessage> saying;
   std::vector<Vec2> positions;
   link::RefusalCounters reported;  // what was announced as an event already
@@ -74,6 +76,7 @@ struct AgentProcess::Impl {
   Result<void> join(const shell::RunInfo& run);
   Result<void> make_robots(std::uint64_t seed);
   void tick(const Robot::Tick& tick);
+  void follow_scene(UtcTime now);
   void report_health(const Robot::Tick& tick);
   void announce(UtcTime now, link::Severity severity, const std::string& code,
                 const std::string& text);
@@ -92,11 +95,13 @@ Result<void> AgentProcess::Impl::join(const shell::RunInfo& run) {
   if (auto hears = participant->self_check(); !hears) return hears;
 
   auto plan_reader = participant->make_reader(link::plan_topic());
+  auto scene_reader = participant->make_reader(link::scene_topic());
   auto heartbeat_reader = participant->make_reader(link::heartbeat_topic());
   auto command_reader = participant->make_reader(link::command_topic());
   auto status = participant->make_writer(link::status_topic());
   auto event = participant->make_writer(link::event_topic());
   if (!plan_reader) return tl::unexpected(plan_reader.error());
+  if (!scene_reader) return tl::unexpected(scene_reader.error());
   if (!heartbeat_reader) return tl::unexpected(heartbeat_reader.error());
   if (!command_reader) return tl::unexpected(command_reader.error());
   if (!status) return tl::unexpected(status.error());
@@ -118,15 +123,10 @@ Result<void> AgentProcess::Impl::join(const shell::RunInfo& run) {
                                                      .join_margin_m = l.join_margin_m,
                                                      .leave_margin_m = l.leave_margin_m});
   }
-  const link::WireLimits limits{
-      .robots = mission.robots.count,
-      .bounds_m = mission.world.bounds_m(),
-      .speed_max_mps = mission.robots.speed_max_mps,
-      .clock_skew_warn = from_seconds(mission.timing.clock_skew_warn_s),
-      .clock_skew_refuse = from_seconds(mission.timing.clock_skew_refuse_s)};
-  inbox.emplace(
-      Readers{std::move(*plan_reader), std::move(*heartbeat_reader), std::move(*command_reader)},
-      *states, limits, from_seconds(mission.timing.planner_silence_s));
+  const link::WireLimits limits = link::wire_limits(mission);
+  inbox.emplace(Readers{std::move(*plan_reader), std::move(*scene_reader),
+                        std::move(*heartbeat_reader), std::move(*command_reader)},
+                *states, limits, from_seconds(mission.timing.planner_silence_s));
   return {};
 }
 
@@ -146,7 +146,7 @@ Result<void> AgentProcess::Impl::make_robots(std::uint64_t seed) {
                                  .process_id = static_cast<std::uint32_t>(::getpid()),
                                  .radius_m = mission.robots.radius_m,
                                  .stamp = utc_now()});
-    robots.emplace_back(mission.world, agent_options(mission, id, seed),
+    robots.emplace_back(world, agent_options(mission, id, seed),
                         std::make_unique<SimulatedRobot>(std::chrono::steady_clock::now(), *place),
                         std::move(*box));
   }
@@ -163,13 +163,27 @@ void AgentProcess::Impl::announce(UtcTime now, link::Severity severity, const st
   robots.front().note(now, code, text);
 }
 
+/// The map is made anew when the scene changed, and at every tick while an obstacle moves.
+void AgentProcess::Impl::follow_scene(UtcTime now) {
+  if (auto news = inbox->take_scene()) {
+    scene = std::move(*news);
+    world_moves = true;
+    robots.front().note(now, "scene", fmt::format("took scene version {}", scene.version),
+                        static_cast<std::int64_t>(scene.version));
+  }
+  if (!world_moves) return;
+  world = world_at(mission.world, scene, now);
+  world_moves = scene.moves(now);
+}
+
 void AgentProcess::Impl::tick(const Robot::Tick& tick) {
   participant->receive();
   inbox->receive(tick.now, tick.utc_now, [this](RobotId id) -> const EchoGuard* {
     const std::uint32_t offset = id.value() - options.first.value();
     return offset < robots.size() ? &robots[offset].echo() : nullptr;
   });
-  const std::optional<FlowPlan> new_plan = inbox->take_plan();
+  follow_scene(tick.utc_now);
+  const std::optional<NewPlan> new_plan = inbox->take_plan();
 
   saying.clear();
   positions.clear();
@@ -192,6 +206,7 @@ link::StatusMessage AgentProcess::Impl::full_status(const Robot& robot, UtcTime 
   status.process_id = static_cast<std::uint32_t>(::getpid());
   status.plan_epoch = inbox->plan_epoch();
   status.plan_version = inbox->plan_version();
+  status.plan_scene_version = inbox->plan_scene_version();
   const auto& refused = inbox->refused().all();
   status.refused.assign(refused.begin(), refused.end());
   return status;
@@ -257,6 +272,7 @@ Result<std::unique_ptr<AgentProcess>> AgentProcess::make(const ProcessOptions& o
   auto mission = load_mission(options.run_dir / shell::kMissionFile);
   if (!mission) return tl::unexpected(mission.error());
   impl->mission = std::move(*mission);
+  impl->world = impl->mission.world;
   if (options.first.value() + options.count > impl->mission.robots.count || options.count == 0) {
     return fail(ErrorCode::kBadInput, fmt::format("--ids: the mission has robots 0 to {}",
                                                   impl->mission.robots.count - 1));

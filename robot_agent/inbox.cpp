@@ -19,14 +19,10 @@ Inbox::Inbox(Readers readers, link::StateChannel& states, const link::WireLimits
              Duration planner_silence)
     : readers_(std::move(readers)), states_(states), limits_(limits), mission_(planner_silence) {}
 
-void Inbox::receive_fixed_topics(SteadyTime now, UtcTime utc_now) {
-  // Epochs and command ids are UTC stamps of their makers: one from the future is forged, and would
-  // lock everyone out if it were believed.
-  const auto newest =
-      static_cast<std::uint64_t>((utc_now + limits_.clock_skew_refuse).time_since_epoch().count());
+void Inbox::receive_plans(std::uint64_t newest) {
   plans_.clear();
   readers_.plan->take(plans_);
-  for (const link::PlanMessage& message : plans_) {
+  for (link::PlanMessage& message : plans_) {
     auto plan = link::check_plan(message, limits_);
     if (!plan) {
       refused_.count(plan.error());
@@ -35,11 +31,39 @@ void Inbox::receive_fixed_topics(SteadyTime now, UtcTime utc_now) {
     } else if (!plan_sequence_.accept(message.epoch, message.version)) {
       refused_.count(RefusalReason::kStale);
     } else {
-      new_plan_ = std::move(*plan);
+      new_plan_ = {std::move(*plan), std::move(message.entries)};
       plan_epoch_ = message.epoch;
       plan_version_ = message.version;
+      plan_scene_version_ = message.scene_version;
     }
   }
+}
+
+void Inbox::receive_scenes(std::uint64_t newest) {
+  scenes_.clear();
+  readers_.scene->take(scenes_);
+  for (const link::SceneMessage& message : scenes_) {
+    auto scene = link::check_scene(message);
+    if (!scene) {
+      refused_.count(scene.error());
+    } else if (scene->version > newest) {
+      refused_.count(RefusalReason::kForged);
+    } else if (scene->version < scene_version_) {
+      refused_.count(RefusalReason::kStale);
+    } else if (scene->version > scene_version_) {  // 0 is known: the mission file
+      scene_version_ = scene->version;
+      new_scene_ = std::move(*scene);
+    }
+  }
+}
+
+void Inbox::receive_fixed_topics(SteadyTime now, UtcTime utc_now) {
+  // Epochs, scene versions and command ids are UTC stamps of their makers: one from the future is
+  // forged, and would lock everyone out if it were believed.
+  const auto newest =
+      static_cast<std::uint64_t>((utc_now + limits_.clock_skew_refuse).time_since_epoch().count());
+  receive_plans(newest);
+  receive_scenes(newest);
 
   heartbeats_.clear();
   readers_.heartbeat->take(heartbeats_);
@@ -76,7 +100,7 @@ void Inbox::receive_fixed_topics(SteadyTime now, UtcTime utc_now) {
     }
   }
 
-  const std::uint64_t undecodable = readers_.plan->undecodable() +
+  const std::uint64_t undecodable = readers_.plan->undecodable() + readers_.scene->undecodable() +
                                     readers_.heartbeat->undecodable() +
                                     readers_.command->undecodable() + states_.undecodable();
   refused_.count(RefusalReason::kUndecodable,

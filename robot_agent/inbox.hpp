@@ -5,8 +5,10 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
+#include "robot_agent/agent.hpp"
 #include "robot_agent/mission_watch.hpp"
 #include "robot_agent/neighbour_table.hpp"
 #include "swarm_core/metrics/histogram.hpp"
@@ -39,8 +41,22 @@ class EchoGuard {
 
 struct Readers {
   link::ReaderPtr<link::PlanMessage> plan;
+  link::ReaderPtr<link::SceneMessage> scene;
   link::ReaderPtr<link::HeartbeatMessage> heartbeat;
   link::ReaderPtr<link::CommandMessage> command;
+};
+
+/// A plan that passed the edge.
+struct NewPlan {
+  FlowPlan flow;
+  std::vector<link::PlanEntryMessage> entries;  ///< by robot id; empty in a mission's first plan
+
+  std::optional<PlanEntry> entry_of(RobotId robot) const {
+    if (robot.value() >= entries.size()) return std::nullopt;
+    const link::PlanEntryMessage& entry = entries[robot.value()];
+    if (entry.source == link::kAnySource) return std::nullopt;
+    return PlanEntry{entry.source, entry.share / 65536.0};
+  }
 };
 
 /// A state that passed the edge, with its age.
@@ -77,9 +93,12 @@ class Inbox {
   std::span<const HeardState> heard() const { return heard_; }
 
   /// The newest plan, once, when one arrived.
-  std::optional<FlowPlan> take_plan() { return std::exchange(new_plan_, std::nullopt); }
+  std::optional<NewPlan> take_plan() { return std::exchange(new_plan_, std::nullopt); }
+  /// The newest scene, once, when one arrived.
+  std::optional<Scene> take_scene() { return std::exchange(new_scene_, std::nullopt); }
   std::uint64_t plan_epoch() const { return plan_epoch_; }
   std::uint32_t plan_version() const { return plan_version_; }
+  std::uint64_t plan_scene_version() const { return plan_scene_version_; }
 
   const MissionWatch& mission() const { return mission_; }
   std::int64_t stop_stamp_utc_ns() const { return stop_stamp_utc_ns_; }
@@ -91,6 +110,8 @@ class Inbox {
 
  private:
   void receive_fixed_topics(SteadyTime now, UtcTime utc_now);
+  void receive_plans(std::uint64_t newest);
+  void receive_scenes(std::uint64_t newest);
   void begin_states();
   void receive_state(const link::RobotStateMessage& state, SteadyTime steady_now, UtcTime utc_now,
                      const EchoGuard* own);
@@ -104,7 +125,10 @@ class Inbox {
   std::uint64_t undecodable_seen_ = 0;
   std::uint64_t last_heartbeat_ = 0;
   std::uint64_t heartbeat_epoch_ = 0;
-  std::optional<FlowPlan> new_plan_;
+  std::optional<NewPlan> new_plan_;
+  std::optional<Scene> new_scene_;
+  std::uint64_t scene_version_ = 0;
+  std::uint64_t plan_scene_version_ = 0;
   std::uint64_t plan_epoch_ = 0;
   std::uint32_t plan_version_ = 0;
   std::int64_t stop_stamp_utc_ns_ = 0;
@@ -112,6 +136,7 @@ class Inbox {
   std::optional<SteadyTime> received_before_;
   std::vector<HeardState> heard_;
   std::vector<link::PlanMessage> plans_;
+  std::vector<link::SceneMessage> scenes_;
   std::vector<link::HeartbeatMessage> heartbeats_;
   std::vector<link::CommandMessage> commands_;
   std::vector<link::CellStatesMessage> batches_;

@@ -26,7 +26,7 @@ Robot::Robot(const World& world, const AgentOptions& options, std::unique_ptr<Dr
       driver_(std::move(driver)),
       box_(std::move(box)) {}
 
-void Robot::step(const Tick& tick, const Inbox& inbox, const FlowPlan* new_plan) {
+void Robot::step(const Tick& tick, const Inbox& inbox, const NewPlan* new_plan) {
   const Measurement body = driver_->measure(tick.now);
   position_m_ = body.position_m;
   const std::uint8_t goal = agent_.has_route()
@@ -39,7 +39,7 @@ void Robot::step(const Tick& tick, const Inbox& inbox, const FlowPlan* new_plan)
                                .goal = goal});
   }
   if (new_plan != nullptr) {
-    agent_.accept_plan(*new_plan, position_m_);
+    agent_.accept_plan(new_plan->flow, position_m_, new_plan->entry_of(id_));
     note(tick.utc_now, "plan", "took plan version " + std::to_string(inbox.plan_version()));
   }
   for (const HeardState& state : inbox.heard()) {

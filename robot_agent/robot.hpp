@@ -28,7 +28,7 @@ class Robot {
   };
 
   /// Measures, decides, commands and records one step.
-  void step(const Tick& tick, const Inbox& inbox, const FlowPlan* new_plan);
+  void step(const Tick& tick, const Inbox& inbox, const NewPlan* new_plan);
 
   /// The state to tell the neighbours, if this step asked for it.
   const std::optional<link::RobotStateMessage>& to_say() const { return to_say_; }

@@ -8,9 +8,9 @@
 
 namespace swarm::launcher {
 
-Result<ExitCode> command_mission(const std::filesystem::path& run_dir, CommandKind kind) {
+Result<ExitCode> command_mission(const std::filesystem::path& run_dir, const std::string& line) {
   const auto done = send_command(
-      run_dir, kind, [](const std::string& line) { std::printf("%s\n", line.c_str()); });
+      run_dir, line, [](const std::string& answer) { std::printf("%s\n", answer.c_str()); });
   if (!done) return tl::unexpected(done.error());
   return *done ? ExitCode::kOk : ExitCode::kCriteriaNotMet;
 }

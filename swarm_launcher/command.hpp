@@ -3,14 +3,16 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "swarm_core/base/result.hpp"
-#include "swarm_core/mission/phase.hpp"
 
 namespace swarm::launcher {
 
-/// `swarm_launcher command RUN_DIR start|pause|resume|stop`: tells a running mission, prints its
-/// answer. Exit 1 when a stop was not confirmed by every robot.
-Result<ExitCode> command_mission(const std::filesystem::path& run_dir, CommandKind kind);
+/// `swarm_launcher command RUN_DIR WORD [KEYS]`: tells a running mission, prints its answer. WORD
+/// is start, pause, resume or stop, or a change of the scene with its keys as in a script, such as
+/// `add_obstacle circle_m: {center: [60, 40], radius: 3}`. Exit 1 when it was refused, or when a
+/// stop was not confirmed by every robot.
+Result<ExitCode> command_mission(const std::filesystem::path& run_dir, const std::string& line);
 
 }  // namespace swarm::launcher

@@ -23,7 +23,7 @@ namespace swarm::launcher {
 namespace {
 
 constexpr int kAnswerTimeout_ms = 15'000;
-constexpr std::size_t kMaxLine = 64;
+constexpr std::size_t kMaxLine = 256 * 1024;  // a polygon of 4096 corners
 
 /// Socket addresses hold 107 characters; a path through /proc/self/fd is short for any directory.
 class ShortAddress {
@@ -46,14 +46,6 @@ class ShortAddress {
   int dir_fd_;
   sockaddr_un address_ = {};
 };
-
-std::optional<CommandKind> parse_command(const std::string& word) {
-  for (const CommandKind kind :
-       {CommandKind::kStart, CommandKind::kPause, CommandKind::kResume, CommandKind::kStop}) {
-    if (word == to_string(kind)) return kind;
-  }
-  return std::nullopt;
-}
 
 void send_line(int fd, const std::string& line) {
   const std::string text = line + "\n";
@@ -92,43 +84,47 @@ ControlServer::~ControlServer() {
   ::unlink(socket_.c_str());
 }
 
-std::vector<CommandKind> ControlServer::poll() {
+std::vector<ControlServer::Request> ControlServer::poll() {
   for (int fd = 0;
        (fd = ::accept4(listen_fd_, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC)) >= 0;) {
-    clients_.push_back({.fd = fd, .input = {}});
+    clients_.push_back({.id = next_id_++, .fd = fd});
   }
-  std::vector<CommandKind> commands;
+  std::vector<Request> requests;
   for (Client& client : clients_) {
-    std::array<char, kMaxLine> buffer;
-    const ssize_t n = ::recv(client.fd, buffer.data(), buffer.size(), MSG_DONTWAIT);
-    if (n > 0) client.input.append(buffer.data(), static_cast<std::size_t>(n));
+    std::array<char, 4096> buffer;
+    ssize_t n = 0;
+    while ((n = ::recv(client.fd, buffer.data(), buffer.size(), MSG_DONTWAIT)) > 0 &&
+           client.input.size() <= kMaxLine) {
+      client.input.append(buffer.data(), static_cast<std::size_t>(n));
+    }
     const bool gone = n == 0 || (n < 0 && errno != EAGAIN && errno != EINTR);
     const std::size_t end = client.input.find('\n');
     if (!client.asked && end != std::string::npos) {
       client.asked = true;
-      if (const auto kind = parse_command(client.input.substr(0, end))) {
-        commands.push_back(*kind);
-        continue;
-      }
-      send_line(client.fd, "failed: unknown command");
-    } else if (!gone && client.input.size() < kMaxLine) {
+      requests.push_back({client.id, client.input.substr(0, end)});
+      continue;
+    }
+    if (client.input.size() > kMaxLine) {
+      send_line(client.fd, "failed: the line is too long");
+    } else if (!gone) {
       continue;
     }
     ::close(std::exchange(client.fd, -1));
   }
   std::erase_if(clients_, [](const Client& c) { return c.fd < 0; });
-  return commands;
+  return requests;
 }
 
-void ControlServer::answer(const std::string& line, bool last) {
-  for (const Client& client : clients_) {
-    send_line(client.fd, line);
-    if (last) ::close(client.fd);
-  }
-  if (last) clients_.clear();
+void ControlServer::answer(ClientId id, const std::string& text) {
+  const auto client =
+      std::find_if(clients_.begin(), clients_.end(), [&](const Client& c) { return c.id == id; });
+  if (client == clients_.end()) return;  // went without waiting for it
+  send_line(client->fd, text);
+  ::close(client->fd);
+  clients_.erase(client);
 }
 
-Result<bool> send_command(const std::filesystem::path& run_dir, CommandKind kind,
+Result<bool> send_command(const std::filesystem::path& run_dir, const std::string& line,
                           const std::function<void(const std::string&)>& on_line) {
   const int fd = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
   const ShortAddress address(run_dir);
@@ -138,7 +134,12 @@ Result<bool> send_command(const std::filesystem::path& run_dir, CommandKind kind
     return fail(ErrorCode::kEnvironment, fmt::format("no mission is running in {}: {}",
                                                      run_dir.string(), std::strerror(error)));
   }
-  send_line(fd, std::string(to_string(kind)));
+  const std::string text = line + "\n";
+  for (std::size_t sent = 0; sent < text.size();) {
+    const ssize_t n = ::send(fd, text.data() + sent, text.size() - sent, MSG_NOSIGNAL);
+    if (n <= 0) break;  // it says why below, or nothing
+    sent += static_cast<std::size_t>(n);
+  }
   std::string input;
   std::string last;
   for (pollfd waiting{.fd = fd, .events = POLLIN, .revents = 0};

@@ -2,18 +2,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <string>
 #include <vector>
 
 #include "swarm_core/base/result.hpp"
-#include "swarm_core/mission/phase.hpp"
 
 /// `swarm_launcher command` talks to the launcher of a run through a Unix socket in the run
 /// directory: the launcher is matched with every agent already, so a stop goes out at once.
-/// Line-based: the client sends one command word, the server answers with lines of text; the last
-/// starts with "done" or "failed".
+/// Line-based: the client sends one line, a word and its arguments; the server answers with lines
+/// of text; the last starts with "done" or "failed".
 namespace swarm::launcher {
 
 class ControlServer {
@@ -23,28 +23,36 @@ class ControlServer {
   ControlServer& operator=(ControlServer&&) = delete;
   ~ControlServer();
 
-  /// Commands that arrived since the last call; never blocks. What is not a command is answered
-  /// with "failed" and dropped.
-  std::vector<CommandKind> poll();
+  using ClientId = std::uint32_t;
+  struct Request {
+    ClientId client = 0;
+    std::string line{};
+  };
 
-  /// Sends a line to every waiting client; with `last` they are let go.
-  void answer(const std::string& line, bool last);
-  bool has_clients() const { return !clients_.empty(); }
+  /// What was asked since the last call; never blocks. Every request is to be answered. A line that
+  /// is too long is answered with "failed" and dropped.
+  std::vector<Request> poll();
+
+  /// Sends the last line, or lines, of an answer and lets the client go.
+  void answer(ClientId client, const std::string& text);
 
  private:
   ControlServer() = default;
   struct Client {
+    ClientId id = 0;
     int fd = -1;
-    std::string input;
+    std::string input{};
     bool asked = false;
   };
   int listen_fd_ = -1;
   std::filesystem::path socket_;
   std::vector<Client> clients_;
+  ClientId next_id_ = 0;
 };
 
-/// Sends a command and hands every answer line to `on_line`. True when the last one says "done".
-Result<bool> send_command(const std::filesystem::path& run_dir, CommandKind kind,
+/// Sends a line and hands every line of the answer to `on_line`. True when the last one says
+/// "done".
+Result<bool> send_command(const std::filesystem::path& run_dir, const std::string& line,
                           const std::function<void(const std::string&)>& on_line);
 
 }  // namespace swarm::launcher

@@ -2,8 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <map>
 #include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "swarm_core/shell/program.hpp"
 #include "swarm_core/shell/stop_signal.hpp"
@@ -56,17 +59,20 @@ int main(int argc, char** argv) {
     plan_command->add_flag("--json", plan.json, "Print the result as JSON");
 
     std::filesystem::path run_dir;
-    std::string kind;
-    const std::map<std::string, CommandKind> kinds = {{"start", CommandKind::kStart},
-                                                      {"pause", CommandKind::kPause},
-                                                      {"resume", CommandKind::kResume},
-                                                      {"stop", CommandKind::kStop}};
-    CLI::App* command =
-        app.add_subcommand("command", "Command a running mission; stop is an emergency stop");
+    std::vector<std::string> words;
+    CLI::App* command = app.add_subcommand(
+        "command",
+        "Command a running mission: start, pause, resume, stop (an emergency stop), or a change:\n"
+        "  add_obstacle 'circle_m: {center: [100, 60], radius: 4}'    (or polygon_m: [[x, y], "
+        "...])\n"
+        "  move_obstacle 'obstacle: 6, by_m: [10, 0], over_s: 20'\n"
+        "  remove_obstacle 'obstacle: 6'\n"
+        "  goto 'goal: [{mean_m: [20, 20], covariance_m2: [[9, 0], [0, 9]], weight: 1}]'\n"
+        "  risk 'alpha: 0.15'");
     command->add_option("run_dir", run_dir, "Its run directory")->required()->type_name("RUN_DIR");
-    command->add_option("kind", kind, "start, pause, resume or stop")
+    command->add_option("words", words, "The command and its keys, as in a script")
         ->required()
-        ->check(CLI::IsMember(kinds));
+        ->type_name("WORD [KEYS]");
 
     const auto done = shell::parse(app, argc, argv);
     if (!done) return tl::unexpected(done.error());
@@ -75,6 +81,6 @@ int main(int argc, char** argv) {
     run.channel = channels.at(channel);
     if (run_command->parsed()) return launcher::run_mission(run);
     if (plan_command->parsed()) return launcher::plan_mission(plan);
-    return launcher::command_mission(run_dir, kinds.at(kind));
+    return launcher::command_mission(run_dir, fmt::format("{}", fmt::join(words, " ")));
   });
 }

@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "swarm_launcher/run.hpp"
 
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
+#include <fstream>
 #include <map>
 #include <thread>
 
@@ -13,6 +15,8 @@
 
 #include "swarm_core/mission/mission_file.hpp"
 #include "swarm_core/mission/placement.hpp"
+#include "swarm_core/mission/scene_change_file.hpp"
+#include "swarm_core/mission/scene_log.hpp"
 #include "swarm_core/shell/run_directory.hpp"
 #include "swarm_core/shell/stop_signal.hpp"
 #include "swarm_launcher/channel_choice.hpp"
@@ -69,12 +73,16 @@ class Run {
         mission_(std::move(mission)),
         dir_(std::move(dir)),
         lock_(std::move(lock)),
-        events_(dir_ / shell::kEventsFile) {}
+        events_(dir_ / shell::kEventsFile),
+        scene_(first_scene(mission_.world.obstacles().size())),
+        scene_log_(dir_ / shell::kSceneFile, std::ios::app) {}
 
   Result<void> join();
   Result<void> act(const Action& action);
   Result<void> start(ProcessIndex process);
   void send(CommandKind kind);
+  Result<std::string> change(const SceneChange& change);
+  void serve(const ControlServer::Request& request, SteadyTime now);
   void reap(SteadyTime now);
   void read_bus();
   void serve_control(SteadyTime now);
@@ -92,8 +100,11 @@ class Run {
   link::ReaderPtr<link::StatusMessage> status_reader_;
   link::ReaderPtr<link::EventMessage> event_reader_;
   link::WriterPtr<link::CommandMessage> command_writer_;
+  link::WriterPtr<link::SceneMessage> scene_writer_;
   std::optional<ControlServer> control_;
-  std::optional<CommandKind> asked_;  // by the clients of control_, not answered yet
+  std::vector<ControlServer::ClientId> stopping_;  // clients who wait for a stop to be confirmed
+  Scene scene_;
+  std::ofstream scene_log_;
   std::optional<Supervisor> supervisor_;
   SwarmView view_;
   link::WireLimits limits_;
@@ -160,21 +171,21 @@ Result<void> Run::join() {
   auto status = participant_->make_reader(link::status_topic());
   auto event = participant_->make_reader(link::event_topic());
   auto command = participant_->make_writer(link::command_topic());
+  auto scene = participant_->make_writer(link::scene_topic());
   if (!status) return tl::unexpected(status.error());
   if (!event) return tl::unexpected(event.error());
   if (!command) return tl::unexpected(command.error());
+  if (!scene) return tl::unexpected(scene.error());
   status_reader_ = std::move(*status);
   event_reader_ = std::move(*event);
   command_writer_ = std::move(*command);
+  scene_writer_ = std::move(*scene);
+  scene_writer_->write(link::to_message(scene_));
   auto control = ControlServer::listen(dir_);
   if (!control) return tl::unexpected(control.error());
   control_.emplace(std::move(*control));
 
-  limits_ = {.robots = mission_.robots.count,
-             .bounds_m = mission_.world.bounds_m(),
-             .speed_max_mps = mission_.robots.speed_max_mps,
-             .clock_skew_warn = from_seconds(mission_.timing.clock_skew_warn_s),
-             .clock_skew_refuse = from_seconds(mission_.timing.clock_skew_refuse_s)};
+  limits_ = link::wire_limits(mission_);
   supervisor_.emplace(SupervisorOptions{.robots = mission_.robots.count,
                                         .per_process = options_.per_process,
                                         .launcher = mission_.launcher,
@@ -223,10 +234,34 @@ void Run::send(CommandKind kind) {
       {.kind = kind, .command_id = static_cast<std::uint64_t>(stamp), .stamp_utc_ns = stamp});
 }
 
+/// Makes a change of the scene known to all; says what it was.
+Result<std::string> Run::change(const SceneChange& change) {
+  const UtcTime now = utc_now();
+  auto next = after(scene_, change, mission_.world, now);
+  const std::string what = fmt::format("{} {}", name_of(change), keys_of(change));
+  if (!next) {
+    events_.write(now, "launcher", link::Severity::kWarning, "scene-refused",
+                  fmt::format("{}: {}", what, next.error().message));
+    return tl::unexpected(next.error());
+  }
+  const bool added = next->next_id > scene_.next_id;
+  scene_ = std::move(*next);
+  scene_writer_->write(link::to_message(scene_));
+  if (std::holds_alternative<GoTo>(change)) supervisor_->on_new_goal(scene_.version);
+  scene_log_ << scene_log_line(scene_.version, change) << std::flush;
+  events_.write(now, "launcher", link::Severity::kInfo, "scene", what);
+  return added ? fmt::format("obstacle {} added", scene_.next_id - 1)
+               : std::string(name_of(change));
+}
+
 Result<void> Run::act(const Action& action) {
   if (const auto* to_start = std::get_if<StartProcess>(&action)) return start(to_start->process);
   if (const auto* command = std::get_if<SendCommand>(&action)) {
     send(command->kind);
+  } else if (const auto* scene = std::get_if<ChangeScene>(&action)) {
+    if (const auto changed = change(scene->change); !changed) {
+      progress_.say("the script's change was refused: " + changed.error().message);
+    }
   } else if (const auto* signal = std::get_if<SignalProcess>(&action)) {
     for (const auto& [pid, process] : children_) {
       if (process == signal->process) ::kill(pid, number_of(signal->signal));
@@ -265,7 +300,8 @@ void Run::read_bus() {
                            {.has_plan = status.plan_version > 0,
                             .hears_neighbours = view_.hears_neighbours(status.robot_id),
                             .mode = status.mode,
-                            .settled = status.settled});
+                            .settled = status.settled,
+                            .scene_version = status.plan_scene_version});
   }
   heard_events_.clear();
   event_reader_->take(heard_events_);
@@ -278,29 +314,38 @@ void Run::read_bus() {
   }
 }
 
-void Run::serve_control(SteadyTime now) {
-  for (const CommandKind kind : control_->poll()) {
+void Run::serve(const ControlServer::Request& request, SteadyTime now) {
+  const std::size_t space = std::min(request.line.find(' '), request.line.size());
+  const std::string word = request.line.substr(0, space);
+  for (const CommandKind kind :
+       {CommandKind::kStart, CommandKind::kPause, CommandKind::kResume, CommandKind::kStop}) {
+    if (word != to_string(kind)) continue;
     supervisor_->on_command(kind, now);
-    asked_ = kind;
-  }
-  if (!asked_ || !control_->has_clients()) return;
-  if (*asked_ != CommandKind::kStop) {
-    control_->answer(
-        fmt::format("done: {} sent to {} robots", to_string(*asked_), command_writer_->matched()),
-        true);
-    asked_.reset();
+    if (kind == CommandKind::kStop) {
+      stopping_.push_back(request.client);
+    } else {
+      control_->answer(request.client,
+                       fmt::format("done: {} sent to {} robots", word, command_writer_->matched()));
+    }
     return;
   }
-  if (supervisor_->phase() != MissionPhase::kStopped) return;  // not acted on yet
+  const auto wanted = parse_scene_change(word, request.line.substr(space), mission_.world);
+  const Result<std::string> changed = wanted ? change(*wanted) : tl::unexpected(wanted.error());
+  control_->answer(request.client, changed ? "done: " + *changed
+                                           : changed.error().message + "\nfailed: nothing changed");
+}
+
+void Run::serve_control(SteadyTime now) {
+  for (const ControlServer::Request& request : control_->poll()) serve(request, now);
+  if (stopping_.empty() || supervisor_->phase() != MissionPhase::kStopped) return;
   const auto unstopped = supervisor_->unstopped();
-  if (unstopped.empty()) {
-    control_->answer(
-        fmt::format("done: {} robots confirmed the stop", supervisor_->counts().stopped), true);
-    asked_.reset();
-  } else if (supervisor_->stage() == Supervisor::Stage::kEnding) {
-    control_->answer("failed: stop not confirmed by robots " + describe(unstopped), true);
-    asked_.reset();
-  }
+  if (!unstopped.empty() && supervisor_->stage() != Supervisor::Stage::kEnding) return;
+  const std::string answer =
+      unstopped.empty()
+          ? fmt::format("done: {} robots confirmed the stop", supervisor_->counts().stopped)
+          : "failed: stop not confirmed by robots " + describe(unstopped);
+  for (const ControlServer::ClientId client : stopping_) control_->answer(client, answer);
+  stopping_.clear();
 }
 
 void Run::show(SteadyTime now) {

@@ -205,6 +205,27 @@ void Supervisor::repeat_stop(SteadyTime now, std::vector<Action>& actions) {
   }
 }
 
+void Supervisor::play_script(SteadyTime now, std::vector<Action>& actions) {
+  const double t = mission_time(now).count();
+  while (next_script_ < options_.script.size() && options_.script[next_script_].at_s <= t) {
+    const MissionAction& action = options_.script[next_script_++].action;
+    if (const auto* kind = std::get_if<CommandKind>(&action)) {
+      command(*kind, now, actions);
+    } else {
+      actions.emplace_back(ChangeScene{std::get<SceneChange>(action)});
+    }
+  }
+}
+
+/// Whether the script will still send the swarm somewhere else: then arriving is not the end.
+bool Supervisor::script_moves_on() const {
+  return std::any_of(options_.script.begin() + static_cast<std::ptrdiff_t>(next_script_),
+                     options_.script.end(), [](const ScriptEvent& event) {
+                       const auto* change = std::get_if<SceneChange>(&event.action);
+                       return change != nullptr && std::holds_alternative<GoTo>(*change);
+                     });
+}
+
 void Supervisor::run(SteadyTime now, std::vector<Action>& actions) {
   if (phase_ == MissionPhase::kStopped) {
     const bool confirmed = stops_to_send_ == 0 && unstopped().empty();
@@ -217,32 +238,19 @@ void Supervisor::run(SteadyTime now, std::vector<Action>& actions) {
     begin_ending(Outcome::kStopped, now);
     return;
   }
-  const double t = mission_time(now).count();
-  while (next_script_ < options_.script.size() && options_.script[next_script_].at_s <= t) {
-    switch (options_.script[next_script_++].action) {
-      case ScriptAction::kPause:
-        command(CommandKind::kPause, now, actions);
-        break;
-      case ScriptAction::kResume:
-        command(CommandKind::kResume, now, actions);
-        break;
-      case ScriptAction::kStop:
-        command(CommandKind::kStop, now, actions);
-        break;
-    }
-  }
+  play_script(now, actions);
   const Counts c = counts();
   const std::uint32_t living = options_.robots - c.lost;
   if (living == 0) {
     begin_ending(Outcome::kAllLost, now);
     return;
   }
-  const bool arrived = c.arrived == living;
+  const bool arrived = c.arrived == living && !script_moves_on();
   if (arrived && !all_arrived_) all_arrived_at_ = now;
   all_arrived_ = arrived;
-  if (c.settled == living || (arrived && now - all_arrived_at_ > kSettlePatience)) {
+  if ((arrived && c.settled == living) || (arrived && now - all_arrived_at_ > kSettlePatience)) {
     begin_ending(Outcome::kCompleted, now);
-  } else if (t > options_.launcher.time_limit_s) {
+  } else if (mission_time(now).count() > options_.launcher.time_limit_s) {
     begin_ending(Outcome::kTimeLimit, now);
   }
 }
@@ -302,8 +310,8 @@ Supervisor::Counts Supervisor::counts() const {
       continue;
     }
     c.ready += r.heard && r.report.has_plan && r.report.hears_neighbours ? 1 : 0;
-    c.arrived += r.report.mode == RobotMode::kArrived ? 1 : 0;
-    c.settled += r.report.settled ? 1 : 0;
+    c.arrived += r.report.mode == RobotMode::kArrived && has_newest_goal(r) ? 1 : 0;
+    c.settled += r.report.settled && has_newest_goal(r) ? 1 : 0;
     c.stopped += r.report.mode == RobotMode::kStopped ? 1 : 0;
   }
   return c;

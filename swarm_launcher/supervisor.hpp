@@ -39,6 +39,7 @@ struct RobotReport {
   bool hears_neighbours = false;  ///< everyone who stands within its hearing radius
   RobotMode mode = RobotMode::kWaiting;
   bool settled = false;
+  std::uint64_t scene_version = 0;  ///< that its plan was made for
 };
 
 enum class EndSignal { kInterrupt, kTerminate, kKill };
@@ -53,12 +54,15 @@ struct SignalProcess {
 struct SendCommand {
   CommandKind kind;
 };
+struct ChangeScene {
+  SceneChange change;
+};
 struct LogEvent {
   bool warning = false;
   std::string code;
   std::string text;
 };
-using Action = std::variant<StartProcess, SignalProcess, SendCommand, LogEvent>;
+using Action = std::variant<StartProcess, SignalProcess, SendCommand, ChangeScene, LogEvent>;
 
 enum class Outcome {
   kNone,       ///< still going on
@@ -93,7 +97,9 @@ class Supervisor {
   void on_status(RobotId robot, const RobotReport& report);
   void on_exit(ProcessIndex process, const ProcessExit& exit, SteadyTime now);
   void on_command(CommandKind kind, SteadyTime now);  ///< of the user
-  void on_interrupt();                                ///< the second one kills
+  /// The swarm has a new goal: who arrives by a plan for an older scene has not arrived.
+  void on_new_goal(std::uint64_t scene_version) { goal_version_ = scene_version; }
+  void on_interrupt();  ///< the second one kills
 
   /// What to do now. Call it often (every 50 ms or so).
   std::vector<Action> step(SteadyTime now);
@@ -137,6 +143,11 @@ class Supervisor {
   void start_due(SteadyTime now, std::vector<Action>& actions);
   void gather(SteadyTime now, std::vector<Action>& actions);
   void run(SteadyTime now, std::vector<Action>& actions);
+  void play_script(SteadyTime now, std::vector<Action>& actions);
+  bool script_moves_on() const;
+  bool has_newest_goal(const Robot& robot) const {
+    return robot.report.scene_version >= goal_version_;
+  }
   void repeat_stop(SteadyTime now, std::vector<Action>& actions);
   void begin_ending(Outcome outcome, SteadyTime now);
   void end(SteadyTime now, std::vector<Action>& actions);
@@ -159,6 +170,7 @@ class Supervisor {
   double discovery_s_ = -1.0;
   double hearing_s_ = -1.0;
   std::size_t next_script_ = 0;
+  std::uint64_t goal_version_ = 0;
   std::uint32_t stops_to_send_ = 0;
   SteadyTime next_stop_;
   SteadyTime stop_ends_;

@@ -14,7 +14,7 @@
 /// become domain objects only through swarm_link/validation.hpp.
 namespace swarm::link {
 
-inline constexpr std::uint16_t kSchemaVersion = 1;
+inline constexpr std::uint16_t kSchemaVersion = 2;
 inline constexpr std::size_t kMaxCellStates = 256;
 
 /// Event::source of whoever is not a robot.
@@ -40,14 +40,55 @@ struct PlanLegMessage {
   bool operator==(const PlanLegMessage&) const = default;
 };
 
+struct PlanEntryMessage {
+  std::uint16_t source = 0, share = 0;
+  bool operator==(const PlanEntryMessage&) const = default;
+};
+
 struct PlanMessage {
   std::uint16_t schema_version = kSchemaVersion;
   std::uint32_t version = 0;
   std::uint64_t epoch = 0;
+  std::uint64_t scene_version = 0;
   std::int64_t t0_utc_ns = 0;
   std::vector<PlanNodeMessage> nodes{};
   std::vector<PlanLegMessage> legs{};
+  std::vector<PlanEntryMessage> entries{};
   bool operator==(const PlanMessage&) const = default;
+};
+
+struct PointMessage {
+  double x_m = 0, y_m = 0;
+  bool operator==(const PointMessage&) const = default;
+};
+
+struct SceneObstacleMessage {
+  std::uint32_t obstacle_id = 0;
+  std::uint32_t vertices = 0;
+  PointMessage center{};
+  double radius_m = 0;
+  double velocity_x_mps = 0, velocity_y_mps = 0;
+  std::int64_t moving_from_utc_ns = 0, moving_until_utc_ns = 0;
+  bool operator==(const SceneObstacleMessage&) const = default;
+};
+
+struct GoalComponentMessage {
+  double mean_x_m = 0, mean_y_m = 0;
+  double covariance_xx_m2 = 0, covariance_xy_m2 = 0, covariance_yy_m2 = 0;
+  double weight = 0;
+  bool operator==(const GoalComponentMessage&) const = default;
+};
+
+struct SceneMessage {
+  std::uint16_t schema_version = kSchemaVersion;
+  std::uint64_t version = 0;
+  double risk_alpha = 0;
+  std::uint32_t next_id = 0;
+  std::vector<std::uint32_t> removed{};
+  std::vector<SceneObstacleMessage> obstacles{};
+  std::vector<PointMessage> vertices{};
+  std::vector<GoalComponentMessage> goal{};
+  bool operator==(const SceneMessage&) const = default;
 };
 
 struct HeartbeatMessage {
@@ -100,6 +141,7 @@ struct StatusMessage {
   std::uint32_t process_id = 0;
   std::uint32_t plan_version = 0;
   std::uint64_t plan_epoch = 0;
+  std::uint64_t plan_scene_version = 0;
   std::int64_t stamp_utc_ns = 0;
   double x_m = 0, y_m = 0;
   double remaining_m = 0;

@@ -52,6 +52,7 @@ class Participant {
   virtual ~Participant() = default;
 
   virtual Result<WriterPtr<PlanMessage>> make_writer(const Topic<PlanMessage>&) = 0;
+  virtual Result<WriterPtr<SceneMessage>> make_writer(const Topic<SceneMessage>&) = 0;
   virtual Result<WriterPtr<HeartbeatMessage>> make_writer(const Topic<HeartbeatMessage>&) = 0;
   virtual Result<WriterPtr<CellStatesMessage>> make_writer(const Topic<CellStatesMessage>&) = 0;
   virtual Result<WriterPtr<CommandMessage>> make_writer(const Topic<CommandMessage>&) = 0;
@@ -59,6 +60,7 @@ class Participant {
   virtual Result<WriterPtr<EventMessage>> make_writer(const Topic<EventMessage>&) = 0;
 
   virtual Result<ReaderPtr<PlanMessage>> make_reader(const Topic<PlanMessage>&) = 0;
+  virtual Result<ReaderPtr<SceneMessage>> make_reader(const Topic<SceneMessage>&) = 0;
   virtual Result<ReaderPtr<HeartbeatMessage>> make_reader(const Topic<HeartbeatMessage>&) = 0;
   virtual Result<ReaderPtr<CellStatesMessage>> make_reader(const Topic<CellStatesMessage>&) = 0;
   virtual Result<ReaderPtr<CommandMessage>> make_reader(const Topic<CommandMessage>&) = 0;

@@ -49,6 +49,14 @@ inline Topic<PlanMessage> plan_topic() {
            .large = true}};
 }
 
+inline Topic<SceneMessage> scene_topic() {
+  return {"swarm/scene",
+          {.reliability = Reliability::kReliable,
+           .durability = Durability::kTransientLocal,
+           .depth = 1,
+           .large = true}};
+}
+
 inline Topic<HeartbeatMessage> heartbeat_topic() {
   return {"swarm/heartbeat", {.reliability = Reliability::kBestEffort, .depth = 1}};
 }
@@ -60,6 +68,13 @@ inline Topic<CellStatesMessage> cell_topic(Cell cell) {
 
 inline Topic<StatusMessage> status_topic() {
   return {"swarm/status", {.reliability = Reliability::kReliable, .depth = 1}};
+}
+
+/// For who wants to know where robots are without making them wait for an acknowledgement.
+inline Topic<StatusMessage> status_topic_unacknowledged() {
+  Topic<StatusMessage> topic = status_topic();
+  topic.qos.reliability = Reliability::kBestEffort;
+  return topic;
 }
 
 inline Topic<EventMessage> event_topic() {

@@ -72,7 +72,8 @@ Verdict check_leg(const PlanLegMessage& leg, const std::vector<PlanNodeMessage>&
   return {};
 }
 
-Checked<Gaussian> to_gaussian(const PlanNodeMessage& node) {
+template <class Node>
+Checked<Gaussian> to_gaussian(const Node& node) {
   Mat2 covariance_m2;
   covariance_m2 << node.covariance_xx_m2, node.covariance_xy_m2, node.covariance_xy_m2,
       node.covariance_yy_m2;
@@ -117,6 +118,14 @@ std::uint64_t RefusalCounters::total() const {
   return std::accumulate(counts_.begin(), counts_.end(), std::uint64_t{0});
 }
 
+WireLimits wire_limits(const Mission& mission) {
+  return {.robots = mission.robots.count,
+          .bounds_m = mission.world.bounds_m(),
+          .speed_max_mps = mission.robots.speed_max_mps,
+          .clock_skew_warn = from_seconds(mission.timing.clock_skew_warn_s),
+          .clock_skew_refuse = from_seconds(mission.timing.clock_skew_refuse_s)};
+}
+
 Checked<FlowPlan> check_plan(const PlanMessage& message, const WireLimits& limits) {
   if (message.schema_version != kSchemaVersion) return refuse(RefusalReason::kSchema);
   if (!fits_wire(message)) return refuse(RefusalReason::kOversized);
@@ -136,6 +145,12 @@ Checked<FlowPlan> check_plan(const PlanMessage& message, const WireLimits& limit
   }
   auto plan = FlowPlan::make(std::move(nodes), std::move(legs));
   if (!plan) return refuse(RefusalReason::kBadMass);  // all else was checked above
+  if (message.entries.size() > limits.robots) return refuse(RefusalReason::kOutOfRange);
+  for (const PlanEntryMessage& entry : message.entries) {
+    if (entry.source != kAnySource && entry.source >= plan->sources().size()) {
+      return refuse(RefusalReason::kOutOfRange);
+    }
+  }
   return *std::move(plan);
 }
 

@@ -8,6 +8,8 @@
 
 #include "swarm_core/base/ids.hpp"
 #include "swarm_core/base/time.hpp"
+#include "swarm_core/mission/mission.hpp"
+#include "swarm_core/mission/scene.hpp"
 #include "swarm_core/plan/flow_plan.hpp"
 #include "swarm_core/world/world.hpp"
 #include "swarm_link/messages.hpp"
@@ -61,12 +63,21 @@ struct WireLimits {
   Duration clock_skew_refuse{};
 };
 
+/// The limits of a mission.
+WireLimits wire_limits(const Mission& mission);
+
 template <class T>
 using Checked = tl::expected<T, RefusalReason>;
 
+/// PlanEntryMessage::source of a robot that may enter where it likes.
+inline constexpr std::uint16_t kAnySource = 0xFFFF;
+
 /// Schema, size and content of a plan (FlowPlan::make decides on Gaussians and masses; means must
-/// lie inside the bounds plus slack).
+/// lie inside the bounds plus slack; robots enter at sources there are).
 Checked<FlowPlan> check_plan(const PlanMessage& message, const WireLimits& limits);
+
+/// Schema, size and content of a scene: shapes are valid, obstacles in order, vertices all used.
+Checked<Scene> check_scene(const SceneMessage& message);
 
 Checked<void> check_heartbeat(const HeartbeatMessage& message);
 Checked<void> check_command(const CommandMessage& message);
@@ -78,6 +89,7 @@ Checked<void> check_batch(const CellStatesMessage& message);
 Checked<void> check_state(const RobotStateMessage& state, const WireLimits& limits, UtcTime now);
 
 PlanMessage to_message(const FlowPlan& plan, PlannerEpoch epoch, PlanVersion version, UtcTime t0);
+SceneMessage to_message(const Scene& scene);
 
 /// Sorts epochs and versions of plans and heartbeats: accepts what is newer than everything before.
 class PlanSequence {

@@ -11,6 +11,11 @@ namespace swarm::link {
 
 inline constexpr std::size_t kMaxPlanNodes = 4096;
 inline constexpr std::size_t kMaxPlanLegs = 8192;
+inline constexpr std::size_t kMaxPlanRobots = 20'000;
+inline constexpr std::size_t kMaxSceneObstacles = 256;
+inline constexpr std::size_t kMaxSceneRemoved = 256;
+inline constexpr std::size_t kMaxSceneVertices = 4096;
+inline constexpr std::size_t kMaxSceneGoals = 255;
 inline constexpr std::size_t kMaxRefusalReasons = 16;
 inline constexpr std::size_t kMaxHistogramBins = 464;
 inline constexpr std::size_t kMaxEventCode = 64;
@@ -22,7 +27,12 @@ bool fits_wire(const M&) {
   return true;
 }
 inline bool fits_wire(const PlanMessage& m) {
-  return m.nodes.size() <= kMaxPlanNodes && m.legs.size() <= kMaxPlanLegs;
+  return m.nodes.size() <= kMaxPlanNodes && m.legs.size() <= kMaxPlanLegs &&
+         m.entries.size() <= kMaxPlanRobots;
+}
+inline bool fits_wire(const SceneMessage& m) {
+  return m.removed.size() <= kMaxSceneRemoved && m.obstacles.size() <= kMaxSceneObstacles &&
+         m.vertices.size() <= kMaxSceneVertices && m.goal.size() <= kMaxSceneGoals;
 }
 inline bool fits_wire(const CellStatesMessage& m) { return m.states.size() <= kMaxCellStates; }
 inline bool fits_wire(const StatusMessage& m) {

@@ -61,7 +61,7 @@ std::optional<double> stop_latency_ms(const Track& track, UtcTime begin) {
   return std::max(0.0, 1e3 * (at_rest_s - to_seconds(stopped->caused - begin)));
 }
 
-RobotAudit audit_robot(const Track& track, const Mission& mission, UtcTime begin) {
+RobotAudit audit_robot(const Track& track, const RecordedRun& run) {
   RobotAudit result{.robot = track.robot};
   result.lost = !track.ended_gracefully || track.points.empty();
   if (track.points.empty()) return result;
@@ -70,14 +70,15 @@ RobotAudit audit_robot(const Track& track, const Mission& mission, UtcTime begin
   }
   result.left_bounds =
       std::any_of(track.points.begin(), track.points.end(), [&](const TrackPoint& point) {
-        return !mission.world.bounds_m().contains(point.position_m);
+        return !run.mission.world.bounds_m().contains(point.position_m);
       });
   const TrackPoint& last = track.points.back();
-  if (last.goal < mission.goal.components().size()) result.goal = last.goal;
-  result.arrived = !result.lost && result.goal &&
-                   mission.goal.components()[*result.goal].gaussian.contains_99(last.position_m);
+  const auto& goals = run.goal().components();
+  if (last.goal < goals.size()) result.goal = last.goal;
+  result.arrived =
+      !result.lost && result.goal && goals[*result.goal].gaussian.contains_99(last.position_m);
   result.arrived_at_s = stays_arrived_from(track);
-  result.stop_ms = stop_latency_ms(track, begin);
+  result.stop_ms = stop_latency_ms(track, run.begin);
   return result;
 }
 
@@ -109,9 +110,9 @@ void count_robots(const RecordedRun& run, Audit& audit) {
   std::vector<double> stop_ms;
   Histogram age;
   audit.robots = static_cast<std::uint32_t>(run.tracks.size());
-  audit.arrived_per_goal.assign(run.mission.goal.components().size(), 0);
+  audit.arrived_per_goal.assign(run.goal().components().size(), 0);
   for (const Track& track : run.tracks) {
-    const RobotAudit robot = audit_robot(track, run.mission, run.begin);
+    const RobotAudit robot = audit_robot(track, run);
     if (robot.lost) audit.lost.push_back(robot.robot);
     if (robot.arrived) {
       ++audit.arrived;
@@ -159,8 +160,8 @@ void measure_paths(const RecordedRun& run, Audit& audit) {
   }
   if (starts.empty()) return;
   audit.mean_path_m = sum / static_cast<double>(starts.size());
-  const double bound =
-      geodesic_bound_m(run.mission.world, run.mission.robots.radius_m, starts, ends);
+  const double bound = geodesic_bound_m(lasting_world(run.mission.world, run.scenes),
+                                        run.mission.robots.radius_m, starts, ends);
   if (!std::isfinite(bound)) return;
   audit.geodesic_bound_m = bound;
   if (bound > 0.0) audit.path_ratio = *audit.mean_path_m / bound;
@@ -189,7 +190,7 @@ void judge(const AuditedRun& audited, Audit& audit) {
   if (audit.collisions_obstacle > 0) {
     audit.reasons.push_back(fmt::format("{} robots touched obstacles", audit.collisions_obstacle));
   }
-  const auto& goals = audited.run.mission.goal.components();
+  const auto& goals = audited.run.goal().components();
   const double tolerance = std::max(2.0, 0.02 * audit.robots);
   for (std::size_t g = 0; g < goals.size(); ++g) {
     const double wanted = goals[g].weight * audit.robots;
@@ -221,7 +222,8 @@ AuditedRun audit_recorded(RecordedRun recorded) {
   AuditedRun audited{.run = std::move(recorded)};
   const RecordedRun& run = audited.run;
   audited.robots = robot_clearance(run.tracks);
-  audited.obstacles = obstacle_clearance(run.tracks, run.mission.world);
+  audited.obstacles =
+      obstacle_clearance(run.tracks, world_phases(run.mission.world, run.scenes), run.begin);
   Audit& audit = audited.audit;
   count_robots(run, audit);
   measure_paths(run, audit);

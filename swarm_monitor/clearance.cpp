@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 
+#include "swarm_core/base/assert.hpp"
 #include "swarm_monitor/pair_grid.hpp"
 
 namespace swarm::monitor {
@@ -132,33 +133,58 @@ Clearance robot_clearance_within(std::span<const Track> tracks, double search_m)
   return clearance;
 }
 
-/// Adds one robot's motion past all obstacles.
-void add_obstacle_approaches(std::uint32_t robot, const Track& track, const World& world,
+/// A phase of the map in the time of the tracks.
+struct PhaseSpan {
+  const World& world;
+  double begin_s;
+  double end_s;
+  double fastest_mps;  // obstacle
+};
+
+/// Adds one robot's motion past all obstacles of a phase.
+void add_obstacle_approaches(std::uint32_t robot, const Track& track, const PhaseSpan& phase,
                              Clearance& clearance, Contacts& contacts) {
-  // How far the robot may still go before any gap can be of interest.
+  const auto& points = track.points;
+  const auto later = std::upper_bound(points.begin(), points.end(), phase.begin_s,
+                                      [](double t, const TrackPoint& p) { return t < p.time_s; });
+  // How far robot and obstacles may still go before any gap can be of interest.
   double idle_m = 0.0;
-  for (std::size_t k = 0; k < track.points.size(); ++k) {
-    const Vec2& from = track.points[k].position_m;
+  const auto passed = static_cast<std::size_t>(later - points.begin());
+  for (std::size_t k = passed - std::min<std::size_t>(passed, 1);
+       k < points.size() && points[k].time_s < phase.end_s; ++k) {
     // The last point is a piece of length 0: a track of one point has a gap, too.
-    const Vec2& to = track.points[std::min(k + 1, track.points.size() - 1)].position_m;
-    const double length = (to - from).norm();
+    const std::size_t next = std::min(k + 1, points.size() - 1);
+    const double from_s = std::max(points[k].time_s, phase.begin_s);
+    const double to_s = std::min(points[next].time_s, phase.end_s);
+    if (from_s > to_s) continue;
+    const double duration_s = points[next].time_s - points[k].time_s;
+    const auto place_at = [&](double t) -> Vec2 {
+      const double share = duration_s > 0.0 ? (t - points[k].time_s) / duration_s : 0.0;
+      return points[k].position_m + share * (points[next].position_m - points[k].position_m);
+    };
+    const Vec2 from = place_at(from_s);
+    const Vec2 to = place_at(to_s);
+    const double way_m = (to - from).norm() + phase.fastest_mps * (to_s - from_s);
     const double reach_m = std::max(Clearance::kCap_m, clearance.nearest.gap_m);
-    idle_m -= length;
+    idle_m -= way_m;
     if (idle_m > 0.0) continue;
-    idle_m = world.distance_m(from) - track.radius_m - reach_m - length;
+    const double moved_m = phase.fastest_mps * (from_s - phase.begin_s);
+    idle_m = phase.world.distance_m(from) - moved_m - track.radius_m - reach_m - way_m;
     if (idle_m > 0.0) continue;
-    const std::size_t window = window_of(track.points[k].time_s);
-    for (const ConvexObstacle& obstacle : world.convex_obstacles()) {
-      const double at_least = obstacle.box.distance_m(from) - length - track.radius_m;
+    const std::size_t window = window_of(points[k].time_s);
+    for (const ConvexObstacle& obstacle : phase.world.convex_obstacles()) {
+      // Seen from the obstacle, which then stands where it is at the begin of the phase.
+      const Vec2 from_m = from - (from_s - phase.begin_s) * obstacle.velocity_mps;
+      const Vec2 to_m = to - (to_s - phase.begin_s) * obstacle.velocity_mps;
+      const double at_least =
+          obstacle.box.distance_m(from_m) - (to_m - from_m).norm() - track.radius_m;
       if (at_least >= reach_m) continue;
-      const auto [gap, share] = approach_of(from, to, track.radius_m, obstacle);
-      const double next_s = track.points[std::min(k + 1, track.points.size() - 1)].time_s;
-      const Approach approach{
-          .gap_m = gap,
-          .time_s = track.points[k].time_s + share * (next_s - track.points[k].time_s),
-          .at_m = from + share * (to - from),
-          .robot = robot,
-          .other = static_cast<std::uint32_t>(obstacle.obstacle)};
+      const auto [gap, share] = approach_of(from_m, to_m, track.radius_m, obstacle);
+      const Approach approach{.gap_m = gap,
+                              .time_s = from_s + share * (to_s - from_s),
+                              .at_m = from + share * (to - from),
+                              .robot = robot,
+                              .other = static_cast<std::uint32_t>(obstacle.obstacle)};
       if (gap < clearance.nearest.gap_m) clearance.nearest = approach;
       clearance.by_window_m[window] = std::min(clearance.by_window_m[window], gap);
       clearance.by_robot_m[robot] = std::min(clearance.by_robot_m[robot], gap);
@@ -244,12 +270,24 @@ Clearance robot_clearance(std::span<const Track> tracks) {
   }
 }
 
-Clearance obstacle_clearance(std::span<const Track> tracks, const World& world) {
+Clearance obstacle_clearance(std::span<const Track> tracks, std::span<const WorldPhase> phases,
+                             UtcTime begin) {
+  SWARM_ASSERT(!phases.empty());
   Clearance clearance = empty_clearance(tracks);
   Contacts contacts;
-  if (!world.convex_obstacles().empty()) {
+  for (std::size_t p = 0; p < phases.size(); ++p) {
+    const World& world = phases[p].world;
+    if (world.convex_obstacles().empty()) continue;
+    double fastest_mps = 0.0;
+    for (const ConvexObstacle& obstacle : world.convex_obstacles()) {
+      fastest_mps = std::max(fastest_mps, obstacle.velocity_mps.norm());
+    }
+    // Tracks begin at 0: the first phase, from the beginning of time, begins there for them.
+    const PhaseSpan span{
+        world, std::max(0.0, to_seconds(phases[p].begin - begin)),
+        p + 1 < phases.size() ? to_seconds(phases[p + 1].begin - begin) : kInfinity, fastest_mps};
     for (std::uint32_t i = 0; i < tracks.size(); ++i) {
-      add_obstacle_approaches(i, tracks[i], world, clearance, contacts);
+      add_obstacle_approaches(i, tracks[i], span, clearance, contacts);
     }
   }
   clearance.contacts = contacts.take();

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "swarm_core/mission/scene.hpp"
 #include "swarm_monitor/recorded_run.hpp"
 
 /// Surface-to-surface gaps of the recorded motion, exact in continuous time: between two points a
@@ -47,7 +48,10 @@ std::pair<double, double> approach_of(const Vec2& from_m, const Vec2& to_m, doub
 /// same as that of comparing all pairs.
 Clearance robot_clearance(std::span<const Track> tracks);
 
-/// Robots against obstacles.
-Clearance obstacle_clearance(std::span<const Track> tracks, const World& world);
+/// Robots against the obstacles of each phase of the map, moving ones included: between two points
+/// of a track and within a phase both move evenly, so that the robot is seen to move straight past
+/// an obstacle that stands. `begin` is time 0 of the tracks. \pre some phase
+Clearance obstacle_clearance(std::span<const Track> tracks, std::span<const WorldPhase> phases,
+                             UtcTime begin);
 
 }  // namespace swarm::monitor

@@ -13,6 +13,7 @@
 
 #include "swarm_core/blackbox/blackbox_file.hpp"
 #include "swarm_core/mission/mission_file.hpp"
+#include "swarm_core/mission/scene_log.hpp"
 #include "swarm_core/plan/plan_json.hpp"
 #include "swarm_core/shell/run_directory.hpp"
 
@@ -21,6 +22,7 @@ namespace {
 
 constexpr std::size_t kMaxEventsBytes = 256U << 20U;
 constexpr std::size_t kMaxPlanBytes = 64U << 20U;
+constexpr std::size_t kMaxSceneBytes = 64U << 20U;
 
 UtcTime stamp_of(const blackbox::Record& record) {
   return std::visit([](const auto& r) { return r.stamp; }, record);
@@ -93,6 +95,10 @@ Track TrackMaker::finish() {
   return std::move(track_);
 }
 
+const Mixture& RecordedRun::goal() const {
+  return scenes.empty() || !scenes.back().goal ? mission.goal : *scenes.back().goal;
+}
+
 Result<RecordedRun> read_run(const std::filesystem::path& run_dir) {
   auto mission = load_mission(run_dir / shell::kMissionFile);
   if (!mission) {
@@ -135,6 +141,9 @@ Result<RecordedRun> read_run(const std::filesystem::path& run_dir) {
   if (const auto text = shell::read_file(run_dir / shell::kPlanFile, kMaxPlanBytes)) {
     if (auto plan = plan_from_json(*text)) run.plan = std::move(*plan);
   }
+  run.scenes =
+      replay_scene_log(shell::read_file(run_dir / shell::kSceneFile, kMaxSceneBytes).value_or(""),
+                       run.mission.world);
   run.events = read_events(run_dir / shell::kEventsFile, run.begin);
   return run;
 }

@@ -53,6 +53,10 @@ struct RecordedRun {
   UtcTime begin{};              ///< first step in any black box
   std::vector<Track> tracks{};  ///< by robot id, mission.robots.count of them
   std::vector<RunEvent> events{};
+  std::vector<Scene> scenes{};  ///< the first as in the mission file
+
+  /// Where the swarm was to be in the end.
+  const Mixture& goal() const;
 };
 
 /// Fails (kEnvironment) if there is no readable mission or no black box at all. What single robots

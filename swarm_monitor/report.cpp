@@ -205,9 +205,10 @@ void add_events(Page& page, const RecordedRun& run) {
 
 std::string paths_svg(const AuditedRun& audited) {
   const RecordedRun& run = audited.run;
-  MapSvg map(run.mission.world);
+  // As it stood in the end.
+  MapSvg map(world_phases(run.mission.world, run.scenes).back().world);
   map.add_start(run.mission.start);
-  map.add_goal(run.mission.goal);
+  map.add_goal(run.goal());
   if (run.plan) map.add_plan(*run.plan);
   for (std::size_t i = 0; i < run.tracks.size(); ++i) {
     std::vector<Vec2> points;

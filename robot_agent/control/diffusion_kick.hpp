@@ -26,6 +26,9 @@ class DiffusionKick {
   /// `wants_to_move` false (waiting, arrived) forgets everything.
   Vec2 update(SteadyTime now, double progress_m, bool wants_to_move, Rng& rng);
 
+  /// The way is another one: its progress is not to be compared with the last one's.
+  void forget() { watching_ = false; }
+
   std::uint32_t kicks() const { return kicks_; }
 
  private:

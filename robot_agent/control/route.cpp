@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "swarm_core/base/assert.hpp"
@@ -93,11 +95,14 @@ std::vector<Vec2> free_vertices(const std::vector<Station>& stations, const Worl
 }
 
 Route finish(const FlowPlan& plan, std::uint32_t node, double share, std::vector<Station> stations,
-             const World& world, const RouteOptions& options) {
+             const World& world, const RouteOptions& options,
+             std::optional<Vec2> begin_m = std::nullopt) {
   const std::uint32_t last = follow(plan, node, share, stations);
   const auto sink = std::find(plan.sinks().begin(), plan.sinks().end(), last);
   SWARM_ASSERT(sink != plan.sinks().end());
-  return {.path = Polyline(free_vertices(stations, world, options)),
+  std::vector<Vec2> vertices = free_vertices(stations, world, options);
+  if (begin_m) vertices.insert(vertices.begin(), *begin_m);
+  return {.path = Polyline(std::move(vertices)),
           .sink = static_cast<std::uint32_t>(sink - plan.sinks().begin()),
           .goal = plan.nodes()[last].gaussian};
 }
@@ -112,6 +117,14 @@ Route route_from_start(const FlowPlan& plan, double share, const Vec2& position_
   const Gaussian& g = plan.nodes()[sources[pick]].gaussian;
   const Vec2 offset = clamp_offset(g, position_m - g.mean_m(), options.offset_max);
   return finish(plan, sources[pick], share, {{g, offset}}, world, options);
+}
+
+Route route_from_source(const FlowPlan& plan, std::uint32_t source, double share,
+                        const Vec2& position_m, const World& world, const RouteOptions& options) {
+  const std::uint32_t node = plan.sources()[source];
+  const Gaussian& g = plan.nodes()[node].gaussian;
+  const Vec2 offset = clamp_offset(g, position_m - g.mean_m(), options.offset_max);
+  return finish(plan, node, share, {{g, offset}}, world, options, position_m);
 }
 
 Route route_from_here(const FlowPlan& plan, double share, const Vec2& position_m,
@@ -141,7 +154,7 @@ Route route_from_here(const FlowPlan& plan, double share, const Vec2& position_m
   const Gaussian& to = plan.nodes()[next].gaussian;
   const Vec2 offset = clamp_offset(here, position_m - here.mean_m(), options.offset_max);
   return finish(plan, next, share, {{here, offset}, {to, transport_map(here, to) * offset}}, world,
-                options);
+                options, position_m);
 }
 
 }  // namespace swarm::agent

@@ -36,9 +36,15 @@ struct RouteOptions {
 Route route_from_start(const FlowPlan& plan, double share, const Vec2& position_m,
                        const World& world, const RouteOptions& options);
 
-/// The way of a robot that is somewhere in the middle when a different plan arrives: it joins the
-/// leg whose geodesic passes nearest (in Mahalanobis distance, and in line of sight if any is),
-/// then goes on as above.
+/// The way of a robot that is told by the planner, in mid-flight, which source of a new plan is its
+/// group's. It begins where the robot is, so nothing jumps; then it goes on as above. \pre `source`
+/// is an index into plan.sources()
+Route route_from_source(const FlowPlan& plan, std::uint32_t source, double share,
+                        const Vec2& position_m, const World& world, const RouteOptions& options);
+
+/// The way of a robot that the planner did not hear when it made a new plan: it joins the leg whose
+/// geodesic passes nearest (in Mahalanobis distance, and in line of sight if any is), from where it
+/// is, then goes on as above.
 Route route_from_here(const FlowPlan& plan, double share, const Vec2& position_m,
                       const World& world, const RouteOptions& options);
 

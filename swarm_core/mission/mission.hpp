@@ -4,9 +4,12 @@
 
 #include <cstdint>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "swarm_core/gmm/mixture.hpp"
+#include "swarm_core/mission/phase.hpp"
+#include "swarm_core/mission/scene.hpp"
 #include "swarm_core/risk/cvar.hpp"
 #include "swarm_core/world/world.hpp"
 
@@ -91,11 +94,12 @@ struct LauncherSpec {
   std::uint32_t respawn_agent_max = 0;
 };
 
-enum class ScriptAction { kPause, kResume, kStop };
+/// What script and user may ask of a running mission: a command to all, or a change of the scene.
+using MissionAction = std::variant<CommandKind, SceneChange>;
 
 struct ScriptEvent {
   double at_s = 0.0;  ///< mission time
-  ScriptAction action = ScriptAction::kPause;
+  MissionAction action = CommandKind::kPause;
 };
 
 struct Mission {

@@ -35,10 +35,9 @@ inline constexpr std::size_t kMaxScriptEvents = 1'000;
 inline constexpr std::size_t kMaxNameLength = 64;
 inline constexpr std::array<std::string_view, 1> kPlannerMethods{"swarmprm"};
 inline constexpr std::array<std::string_view, 2> kPlannerSamplers{"fit", "uniform"};
-inline constexpr std::array<std::pair<std::string_view, ScriptAction>, 3> kScriptActions{
-    {{"pause", ScriptAction::kPause},
-     {"resume", ScriptAction::kResume},
-     {"stop", ScriptAction::kStop}}};
+inline constexpr std::array<std::string_view, 8> kScriptActions{
+    "pause", "resume", "stop", "add_obstacle", "move_obstacle", "remove_obstacle", "goto", "risk"};
+inline constexpr yaml::Range kRiskAlpha = between(1e-6, 1 - 1e-6);
 inline constexpr yaml::Range kScriptTime_s = between(0.0, 1e6);
 
 inline constexpr std::array<Field<RobotsSpec>, 4> kRobots{{
@@ -51,7 +50,7 @@ inline constexpr std::array<Field<RobotsSpec>, 4> kRobots{{
 inline constexpr std::array<Field<PlannerSpec>, 11> kPlanner{{
     {"samples", &PlannerSpec::samples, between(1, 100'000)},
     {"connection_radius_m", &PlannerSpec::connection_radius_m, positive(kMaxExtent_m)},
-    {"risk_alpha", &PlannerSpec::risk_alpha, between(1e-6, 1 - 1e-6)},
+    {"risk_alpha", &PlannerSpec::risk_alpha, kRiskAlpha},
     {"risk_delta_m", &PlannerSpec::risk_delta_m, between(-1000, 0)},
     {"sigma_min_m", &PlannerSpec::sigma_min_m, between(0.01, 1000)},
     {"sigma_max_m", &PlannerSpec::sigma_max_m, between(0.01, 1000)},

@@ -16,6 +16,7 @@
 
 #include "swarm_core/mission/mission_fields.hpp"
 #include "swarm_core/mission/mission_rules.hpp"
+#include "swarm_core/mission/scene_change_file.hpp"
 #include "swarm_core/mission/yaml_reader.hpp"
 
 namespace swarm {
@@ -25,12 +26,6 @@ using mission_fields::Field;
 using yaml::MapReader;
 using yaml::Node;
 using yaml::Position;
-using yaml::Range;
-
-constexpr Range kCoordinate_m =
-    mission_fields::between(-mission_fields::kMaxExtent_m, mission_fields::kMaxExtent_m);
-constexpr Range kVariance_m2 = mission_fields::between(-1e12, 1e12);
-constexpr Range kWeight = mission_fields::positive(1);
 
 /// The name becomes part of file names.
 bool is_good_name(std::string_view name) {
@@ -135,7 +130,7 @@ class MissionReader {
   void read_world(const Node& node) {
     MapReader keys(node, "world", violations_);
     std::optional<Box> bounds;
-    if (const Node* value = keys.take("bounds_m", true)) bounds = read_bounds(*value);
+    if (const Node* value = keys.take("bounds_m", true)) bounds = shapes_.read_bounds(*value);
     std::vector<Obstacle> obstacles;
     if (const Node* value = keys.take("obstacles")) obstacles = read_obstacles(*value);
     keys.finish();
@@ -149,17 +144,6 @@ class MissionReader {
     has_world_ = true;
   }
 
-  std::optional<Box> read_bounds(const Node& node) {
-    const auto b = yaml::read_numbers(node, "world.bounds_m", 4, kCoordinate_m, violations_);
-    if (!b) return std::nullopt;
-    if (!((*b)[0] < (*b)[2] && (*b)[1] < (*b)[3])) {
-      violations_.add(node.at,
-                      "world.bounds_m is empty; must be [x0, y0, x1, y1] with x0 < x1 and y0 < y1");
-      return std::nullopt;
-    }
-    return Box{.min_m = {(*b)[0], (*b)[1]}, .max_m = {(*b)[2], (*b)[3]}};
-  }
-
   std::vector<Obstacle> read_obstacles(const Node& node) {
     std::vector<Obstacle> obstacles;
     const auto* items =
@@ -168,135 +152,22 @@ class MissionReader {
     for (std::size_t i = 0; i < items->size(); ++i) {
       const std::string path = fmt::format("world.obstacles[{}]", i);
       MapReader keys((*items)[i], path, violations_);
-      const Node* polygon = keys.take("polygon_m");
-      const Node* circle = keys.take("circle_m");
-      keys.finish();
-      if (keys.is_map() && (polygon == nullptr) == (circle == nullptr)) {
-        violations_.add((*items)[i].at,
-                        fmt::format("{} has {}; must have one of polygon_m and circle_m", path,
-                                    polygon == nullptr ? "no shape" : "two shapes"));
-        continue;
+      if (auto shape = shapes_.read_obstacle(keys, path, (*items)[i].at)) {
+        obstacles.push_back(std::move(*shape));
       }
-      if (polygon != nullptr) read_polygon(*polygon, path + ".polygon_m", obstacles);
-      if (circle != nullptr) read_circle(*circle, path + ".circle_m", obstacles);
+      keys.finish();
     }
     return obstacles;
-  }
-
-  void read_polygon(const Node& node, const std::string& path, std::vector<Obstacle>& obstacles) {
-    const auto* items = yaml::read_list(node, path, 3, Polygon::kMaxVertices, violations_);
-    if (items == nullptr) return;
-    vertices_ += items->size();
-    if (vertices_ > mission_fields::kMaxVertices) {
-      violations_.add(node.at, fmt::format("{}: {} vertices so far; must be <= {} in all polygons "
-                                           "together",
-                                           path, vertices_, mission_fields::kMaxVertices));
-      return;
-    }
-    std::vector<Vec2> vertices;
-    for (std::size_t i = 0; i < items->size(); ++i) {
-      const auto p = yaml::read_numbers((*items)[i], fmt::format("{}[{}]", path, i), 2,
-                                        kCoordinate_m, violations_);
-      if (p) vertices.emplace_back((*p)[0], (*p)[1]);
-    }
-    if (vertices.size() != items->size()) return;
-    auto polygon = Polygon::make(std::move(vertices));
-    if (polygon) {
-      obstacles.emplace_back(std::move(*polygon));
-    } else {
-      violations_.add(node.at, fmt::format("{}: {}", path, polygon.error().message));
-    }
-  }
-
-  void read_circle(const Node& node, const std::string& path, std::vector<Obstacle>& obstacles) {
-    MapReader keys(node, path, violations_);
-    std::optional<std::vector<double>> center;
-    std::optional<double> radius;
-    if (const Node* value = keys.take("center", true)) {
-      center = yaml::read_numbers(*value, keys.path_of("center"), 2, kCoordinate_m, violations_);
-    }
-    if (const Node* value = keys.take("radius", true)) {
-      radius =
-          yaml::read_number(*value, keys.path_of("radius"),
-                            mission_fields::positive(mission_fields::kMaxExtent_m), violations_);
-    }
-    keys.finish();
-    if (!center || !radius) return;
-    obstacles.emplace_back(Circle{.center_m = {(*center)[0], (*center)[1]}, .radius_m = *radius});
   }
 
   Mixture read_mixture(MapReader& top, const std::string& key) {
     const Node* node = top.take(key, true);
     if (node == nullptr) return {};
-    const auto* items = yaml::read_list(*node, key, 1, mission_fields::kMaxComponents, violations_);
-    if (items == nullptr) return {};
-    std::vector<WeightedGaussian> components;
-    for (std::size_t i = 0; i < items->size(); ++i) {
-      auto component = read_component((*items)[i], fmt::format("{}[{}]", key, i));
-      if (component) components.push_back(std::move(*component));
-    }
-    if (components.size() != items->size()) return {};
-    auto mixture = Mixture::make(std::move(components));
-    if (!mixture) {
-      violations_.add(node->at, fmt::format("{}: {}", key, mixture.error().message));
-      return {};
-    }
-    return std::move(*mixture);
-  }
-
-  std::optional<WeightedGaussian> read_component(const Node& node, const std::string& path) {
-    MapReader keys(node, path, violations_);
-    std::optional<std::vector<double>> mean;
-    std::optional<Mat2> covariance;
-    std::optional<double> weight;
-    const Node* mean_node = keys.take("mean_m", true);
-    const Node* covariance_node = keys.take("covariance_m2", true);
-    if (mean_node != nullptr) {
-      mean = yaml::read_numbers(*mean_node, path + ".mean_m", 2, kCoordinate_m, violations_);
-    }
-    if (covariance_node != nullptr) {
-      covariance = read_covariance(*covariance_node, path + ".covariance_m2");
-    }
-    if (const Node* value = keys.take("weight", true)) {
-      weight = yaml::read_number(*value, path + ".weight", kWeight, violations_);
-    }
-    keys.finish();
-    if (mean) check_mean(mean_node->at, path + ".mean_m", {(*mean)[0], (*mean)[1]});
-    if (!mean || !covariance || !weight) return std::nullopt;
-    auto gaussian = Gaussian::make({(*mean)[0], (*mean)[1]}, *covariance);
-    if (!gaussian) {
-      violations_.add(covariance_node->at,
-                      fmt::format("{}.covariance_m2: {}", path, gaussian.error().message));
-      return std::nullopt;
-    }
-    return WeightedGaussian{.weight = *weight, .gaussian = *gaussian};
-  }
-
-  std::optional<Mat2> read_covariance(const Node& node, const std::string& path) {
-    const auto* rows = yaml::read_list(node, path, 2, 2, violations_);
-    if (rows == nullptr) return std::nullopt;
-    const auto row0 = yaml::read_numbers((*rows)[0], path + "[0]", 2, kVariance_m2, violations_);
-    const auto row1 = yaml::read_numbers((*rows)[1], path + "[1]", 2, kVariance_m2, violations_);
-    if (!row0 || !row1) return std::nullopt;
-    Mat2 covariance;
-    covariance << (*row0)[0], (*row0)[1], (*row1)[0], (*row1)[1];
-    return covariance;
-  }
-
-  void check_mean(Position at, const std::string& path, const Vec2& mean) {
-    if (!has_world_) return;
-    const std::string is = fmt::format("{} is ({}, {})", path, mean.x(), mean.y());
-    if (!mission_.world.bounds_m().contains(mean)) {
-      violations_.add(at, is + ", outside the world; must lie within world.bounds_m");
-      return;
-    }
-    const double distance_m = mission_.world.distance_m(mean);
-    if (distance_m >= mission_.robots.radius_m) return;
-    violations_.add(at, distance_m < 0.0
-                            ? is + ", inside an obstacle; must be free"
-                            : fmt::format("{}, {:.3g} m from an obstacle; must be at least "
-                                          "robots.radius_m ({})",
-                                          is, distance_m, mission_.robots.radius_m));
+    return shapes_
+        .read_mixture(
+            *node, key,
+            {.world = has_world_ ? &mission_.world : nullptr, .radius_m = mission_.robots.radius_m})
+        .value_or(Mixture{});
   }
 
   void read_script(const Node& node) {
@@ -304,10 +175,12 @@ class MissionReader {
         yaml::read_list(node, "script", 0, mission_fields::kMaxScriptEvents, violations_);
     if (items == nullptr) return;
     double previous_s = 0.0;
+    Scene scene = first_scene(mission_.world.obstacles().size());
     for (std::size_t i = 0; i < items->size(); ++i) {
-      MapReader keys((*items)[i], fmt::format("script[{}]", i), violations_);
+      const std::string path = fmt::format("script[{}]", i);
+      MapReader keys((*items)[i], path, violations_);
       std::optional<double> at_s;
-      std::optional<ScriptAction> action;
+      std::optional<MissionAction> action;
       if (const Node* value = keys.take("at_s", true)) {
         at_s = yaml::read_number(*value, keys.path_of("at_s"), mission_fields::kScriptTime_s,
                                  violations_);
@@ -317,22 +190,41 @@ class MissionReader {
         }
         previous_s = at_s.value_or(previous_s);
       }
-      if (const Node* value = keys.take("action", true)) action = read_action(*value, keys);
+      const Node* word = keys.take("action", true);
+      const auto name = word == nullptr
+                            ? std::nullopt
+                            : yaml::read_choice(*word, keys.path_of("action"),
+                                                mission_fields::kScriptActions, violations_);
+      if (!name) continue;  // which other keys belong here is not known
+      action = read_action(*name, keys, path, (*items)[i].at);
       keys.finish();
-      if (at_s && action) mission_.script.push_back({.at_s = *at_s, .action = *action});
+      if (!at_s || !action) continue;
+      if (has_world_) follow_scene(scene, *action, *at_s, (*items)[i].at, path);
+      mission_.script.push_back({.at_s = *at_s, .action = std::move(*action)});
     }
   }
 
-  std::optional<ScriptAction> read_action(const Node& node, const MapReader& keys) {
-    const std::string path = keys.path_of("action");
-    const auto word = yaml::read_text(node, path, violations_);
-    if (!word) return std::nullopt;
-    for (const auto& [name, action] : mission_fields::kScriptActions) {
-      if (*word == name) return action;
+  /// Obstacles that a script moves or removes must be there by then.
+  void follow_scene(Scene& scene, const MissionAction& action, double at_s, Position at,
+                    const std::string& path) {
+    const auto* change = std::get_if<SceneChange>(&action);
+    if (change == nullptr) return;
+    auto next = after(scene, *change, mission_.world, UtcTime(from_seconds(at_s)));
+    if (next) {
+      scene = std::move(*next);
+    } else {
+      violations_.add(at, fmt::format("{}: {}", path, next.error().message));
     }
-    violations_.add(node.at,
-                    fmt::format("{} is {}; must be pause, resume or stop", path, describe(node)));
-    return std::nullopt;
+  }
+
+  std::optional<MissionAction> read_action(const std::string& name, MapReader& keys,
+                                           const std::string& path, Position at) {
+    for (const CommandKind kind : {CommandKind::kPause, CommandKind::kResume, CommandKind::kStop}) {
+      if (name == to_string(kind)) return kind;
+    }
+    auto change = read_scene_change(name, keys, path, at, shapes_, mission_.world, violations_);
+    if (!change) return std::nullopt;
+    return *std::move(change);
   }
 
   /// A rule is shown where one of its keys is given; a rule whose key is broken by itself waits.
@@ -349,8 +241,8 @@ class MissionReader {
 
   yaml::Violations& violations_;
   Mission mission_;
+  ShapeReader shapes_{violations_};
   bool has_world_ = false;
-  std::size_t vertices_ = 0;
   std::map<std::string, Position> places_;  // of scalar keys, by path
   std::set<std::string> bad_;               // paths of scalar keys with a violation
 };

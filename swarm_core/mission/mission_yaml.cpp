@@ -6,6 +6,7 @@
 
 #include "swarm_core/mission/mission_fields.hpp"
 #include "swarm_core/mission/mission_file.hpp"
+#include "swarm_core/mission/scene_change_file.hpp"
 
 namespace swarm {
 namespace {
@@ -59,9 +60,12 @@ void write_script(Out out, const std::vector<ScriptEvent>& script) {
   if (script.empty()) return;
   fmt::format_to(out, "script:\n");
   for (const ScriptEvent& event : script) {
-    for (const auto& [name, action] : mission_fields::kScriptActions) {
-      if (action != event.action) continue;
-      fmt::format_to(out, "  - {{at_s: {}, action: {}}}\n", event.at_s, name);
+    if (const auto* kind = std::get_if<CommandKind>(&event.action)) {
+      fmt::format_to(out, "  - {{at_s: {}, action: {}}}\n", event.at_s, to_string(*kind));
+    } else {
+      const auto& change = std::get<SceneChange>(event.action);
+      fmt::format_to(out, "  - {{at_s: {}, action: {}, {}}}\n", event.at_s, name_of(change),
+                     keys_of(change));
     }
   }
 }

@@ -18,6 +18,7 @@ inline constexpr std::string_view kPlanFile = "plan.json";
 inline constexpr std::string_view kPlanStatsFile = "plan_stats.json";
 inline constexpr std::string_view kSummaryFile = "summary.json";
 inline constexpr std::string_view kEventsFile = "events.jsonl";
+inline constexpr std::string_view kSceneFile = "scene.jsonl";
 inline constexpr std::string_view kRunFile = "run.json";
 inline constexpr std::string_view kControlSocket = "control.sock";
 inline constexpr std::string_view kLogsFolder = "logs";

@@ -7,7 +7,11 @@
 namespace swarm::link::fastdds {
 
 static_assert(kMaxPlanNodes == wire::MAX_PLAN_NODES && kMaxPlanLegs == wire::MAX_PLAN_LEGS &&
-              kMaxCellStates == wire::MAX_CELL_STATES &&
+              kMaxCellStates == wire::MAX_CELL_STATES && kMaxPlanRobots == wire::MAX_PLAN_ROBOTS &&
+              kMaxSceneObstacles == wire::MAX_SCENE_OBSTACLES &&
+              kMaxSceneRemoved == wire::MAX_SCENE_REMOVED &&
+              kMaxSceneVertices == wire::MAX_SCENE_VERTICES &&
+              kMaxSceneGoals == wire::MAX_SCENE_GOALS &&
               kMaxRefusalReasons == wire::MAX_REFUSAL_REASONS &&
               kMaxHistogramBins == wire::MAX_HISTOGRAM_BINS &&
               kSchemaVersion == wire::SCHEMA_VERSION);
@@ -17,6 +21,7 @@ bool to_wire(const PlanMessage& in, wire::FlowPlan& out) {
   out.schema_version(in.schema_version);
   out.version(in.version);
   out.epoch(in.epoch);
+  out.scene_version(in.scene_version);
   out.t0_utc_ns(in.t0_utc_ns);
   out.nodes().resize(in.nodes.size());
   for (std::size_t i = 0; i < in.nodes.size(); ++i) {
@@ -36,6 +41,11 @@ bool to_wire(const PlanMessage& in, wire::FlowPlan& out) {
     out.legs()[i].to_node(in.legs[i].to_node);
     out.legs()[i].mass(in.legs[i].mass);
   }
+  out.entries().resize(in.entries.size());
+  for (std::size_t i = 0; i < in.entries.size(); ++i) {
+    out.entries()[i].source(in.entries[i].source);
+    out.entries()[i].share(in.entries[i].share);
+  }
   return true;
 }
 
@@ -43,6 +53,7 @@ void from_wire(const wire::FlowPlan& in, PlanMessage& out) {
   out.schema_version = in.schema_version();
   out.version = in.version();
   out.epoch = in.epoch();
+  out.scene_version = in.scene_version();
   out.t0_utc_ns = in.t0_utc_ns();
   out.nodes.clear();
   out.nodes.reserve(in.nodes().size());
@@ -60,6 +71,81 @@ void from_wire(const wire::FlowPlan& in, PlanMessage& out) {
   for (const auto& leg : in.legs()) {
     out.legs.push_back(
         {.from_node = leg.from_node(), .to_node = leg.to_node(), .mass = leg.mass()});
+  }
+  out.entries.clear();
+  out.entries.reserve(in.entries().size());
+  for (const auto& entry : in.entries()) {
+    out.entries.push_back({.source = entry.source(), .share = entry.share()});
+  }
+}
+
+bool to_wire(const SceneMessage& in, wire::Scene& out) {
+  if (!fits_wire(in)) return false;
+  out.schema_version(in.schema_version);
+  out.version(in.version);
+  out.risk_alpha(in.risk_alpha);
+  out.next_id(in.next_id);
+  out.removed(in.removed);
+  out.obstacles().resize(in.obstacles.size());
+  for (std::size_t i = 0; i < in.obstacles.size(); ++i) {
+    const auto& obstacle = in.obstacles[i];
+    auto& wire_obstacle = out.obstacles()[i];
+    wire_obstacle.obstacle_id(obstacle.obstacle_id);
+    wire_obstacle.vertices(obstacle.vertices);
+    wire_obstacle.center().x_m(obstacle.center.x_m);
+    wire_obstacle.center().y_m(obstacle.center.y_m);
+    wire_obstacle.radius_m(obstacle.radius_m);
+    wire_obstacle.velocity_x_mps(obstacle.velocity_x_mps);
+    wire_obstacle.velocity_y_mps(obstacle.velocity_y_mps);
+    wire_obstacle.moving_from_utc_ns(obstacle.moving_from_utc_ns);
+    wire_obstacle.moving_until_utc_ns(obstacle.moving_until_utc_ns);
+  }
+  out.vertices().resize(in.vertices.size());
+  for (std::size_t i = 0; i < in.vertices.size(); ++i) {
+    out.vertices()[i].x_m(in.vertices[i].x_m);
+    out.vertices()[i].y_m(in.vertices[i].y_m);
+  }
+  out.goal().resize(in.goal.size());
+  for (std::size_t i = 0; i < in.goal.size(); ++i) {
+    const auto& goal = in.goal[i];
+    auto& wire_goal = out.goal()[i];
+    wire_goal.mean_x_m(goal.mean_x_m);
+    wire_goal.mean_y_m(goal.mean_y_m);
+    wire_goal.covariance_xx_m2(goal.covariance_xx_m2);
+    wire_goal.covariance_xy_m2(goal.covariance_xy_m2);
+    wire_goal.covariance_yy_m2(goal.covariance_yy_m2);
+    wire_goal.weight(goal.weight);
+  }
+  return true;
+}
+
+void from_wire(const wire::Scene& in, SceneMessage& out) {
+  out.schema_version = in.schema_version();
+  out.version = in.version();
+  out.risk_alpha = in.risk_alpha();
+  out.next_id = in.next_id();
+  out.removed = in.removed();
+  out.obstacles.clear();
+  for (const auto& obstacle : in.obstacles()) {
+    out.obstacles.push_back({.obstacle_id = obstacle.obstacle_id(),
+                             .vertices = obstacle.vertices(),
+                             .center = {obstacle.center().x_m(), obstacle.center().y_m()},
+                             .radius_m = obstacle.radius_m(),
+                             .velocity_x_mps = obstacle.velocity_x_mps(),
+                             .velocity_y_mps = obstacle.velocity_y_mps(),
+                             .moving_from_utc_ns = obstacle.moving_from_utc_ns(),
+                             .moving_until_utc_ns = obstacle.moving_until_utc_ns()});
+  }
+  out.vertices.clear();
+  for (const auto& vertex : in.vertices()) out.vertices.push_back({vertex.x_m(), vertex.y_m()});
+  out.goal.clear();
+  for (const auto& goal : in.goal()) {
+    out.goal.push_back({.mean_x_m = goal.mean_x_m(),
+                        .mean_y_m = goal.mean_y_m(),
+                        .covariance_xx_m2 = goal.covariance_xx_m2(),
+                        .covariance_xy_m2 = goal.covariance_xy_m2(),
+                        .covariance_yy_m2 = goal.covariance_yy_m2(),
+                        .weight = goal.weight()});
   }
 }
 
@@ -148,6 +234,7 @@ bool to_wire(const StatusMessage& in, wire::Status& out) {
   out.process_id(in.process_id);
   out.plan_version(in.plan_version);
   out.plan_epoch(in.plan_epoch);
+  out.plan_scene_version(in.plan_scene_version);
   out.stamp_utc_ns(in.stamp_utc_ns);
   out.x_m(in.x_m);
   out.y_m(in.y_m);
@@ -176,6 +263,7 @@ void from_wire(const wire::Status& in, StatusMessage& out) {
   out.process_id = in.process_id();
   out.plan_version = in.plan_version();
   out.plan_epoch = in.plan_epoch();
+  out.plan_scene_version = in.plan_scene_version();
   out.stamp_utc_ns = in.stamp_utc_ns();
   out.x_m = in.x_m();
   out.y_m = in.y_m();

@@ -19,6 +19,11 @@ struct WireOf<PlanMessage> {
   using Support = wire::FlowPlanPubSubType;
 };
 template <>
+struct WireOf<SceneMessage> {
+  using Type = wire::Scene;
+  using Support = wire::ScenePubSubType;
+};
+template <>
 struct WireOf<HeartbeatMessage> {
   using Type = wire::Heartbeat;
   using Support = wire::HeartbeatPubSubType;
@@ -47,6 +52,7 @@ struct WireOf<EventMessage> {
 /// False when a sequence is longer than the contract allows; `out` is unspecified then. Over-long
 /// strings are cut.
 bool to_wire(const PlanMessage& in, wire::FlowPlan& out);
+bool to_wire(const SceneMessage& in, wire::Scene& out);
 bool to_wire(const HeartbeatMessage& in, wire::Heartbeat& out);
 bool to_wire(const CellStatesMessage& in, wire::CellStates& out);
 bool to_wire(const CommandMessage& in, wire::Command& out);
@@ -55,6 +61,7 @@ bool to_wire(const EventMessage& in, wire::Event& out);
 
 /// Takes everything over as it came; the edge judges it.
 void from_wire(const wire::FlowPlan& in, PlanMessage& out);
+void from_wire(const wire::Scene& in, SceneMessage& out);
 void from_wire(const wire::Heartbeat& in, HeartbeatMessage& out);
 void from_wire(const wire::CellStates& in, CellStatesMessage& out);
 void from_wire(const wire::Command& in, CommandMessage& out);

@@ -33,6 +33,7 @@ class FastDdsParticipant final : public Participant {
         subscriber_(participant->create_subscriber(dds::SUBSCRIBER_QOS_DEFAULT)),
         topics_(*participant) {
     register_type<PlanMessage>();
+    register_type<SceneMessage>();
     register_type<HeartbeatMessage>();
     register_type<CellStatesMessage>();
     register_type<CommandMessage>();
@@ -48,6 +49,9 @@ class FastDdsParticipant final : public Participant {
   bool usable() const { return publisher_ != nullptr && subscriber_ != nullptr; }
 
   Result<WriterPtr<PlanMessage>> make_writer(const Topic<PlanMessage>& t) override {
+    return writer(t);
+  }
+  Result<WriterPtr<SceneMessage>> make_writer(const Topic<SceneMessage>& t) override {
     return writer(t);
   }
   Result<WriterPtr<HeartbeatMessage>> make_writer(const Topic<HeartbeatMessage>& t) override {
@@ -66,6 +70,9 @@ class FastDdsParticipant final : public Participant {
     return writer(t);
   }
   Result<ReaderPtr<PlanMessage>> make_reader(const Topic<PlanMessage>& t) override {
+    return reader(t);
+  }
+  Result<ReaderPtr<SceneMessage>> make_reader(const Topic<SceneMessage>& t) override {
     return reader(t);
   }
   Result<ReaderPtr<HeartbeatMessage>> make_reader(const Topic<HeartbeatMessage>& t) override {

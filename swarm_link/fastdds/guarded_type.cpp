@@ -16,6 +16,10 @@ namespace {
 // Bytes an element takes at least, from the IDL.
 constexpr std::size_t kPlanNodeBytes = 56;
 constexpr std::size_t kPlanLegBytes = 16;
+constexpr std::size_t kPlanEntryBytes = 4;
+constexpr std::size_t kSceneObstacleBytes = 64;
+constexpr std::size_t kPointBytes = 16;
+constexpr std::size_t kGoalComponentBytes = 48;
 constexpr std::size_t kRobotStateBytes = 49;
 constexpr std::size_t kHistogramBinBytes = 6;
 
@@ -65,11 +69,33 @@ class Walker {
 template <>
 bool lengths_fit<wire::FlowPlan>(const Payload& payload) {
   Walker walker(payload);
-  walker.skip<std::uint16_t, std::uint32_t, std::uint64_t, std::int64_t>();
+  walker.skip<std::uint16_t, std::uint32_t, std::uint64_t, std::uint64_t, std::int64_t>();
   const auto nodes = walker.length();
   if (!walker.fits(nodes, kPlanNodeBytes)) return false;
   walker.skip_times<double>(nodes * static_cast<std::uint32_t>(kPlanNodeBytes / sizeof(double)));
-  return walker.fits(walker.length(), kPlanLegBytes);
+  const auto legs = walker.length();
+  if (!walker.fits(legs, kPlanLegBytes)) return false;
+  for (std::uint32_t i = 0; i < legs; ++i) walker.skip<std::uint32_t, std::uint32_t, double>();
+  return walker.fits(walker.length(), kPlanEntryBytes);
+}
+
+template <>
+bool lengths_fit<wire::Scene>(const Payload& payload) {
+  Walker walker(payload);
+  walker.skip<std::uint16_t, std::uint64_t, double, std::uint32_t>();
+  const auto removed = walker.length();
+  if (!walker.fits(removed, sizeof(std::uint32_t))) return false;
+  walker.skip_times<std::uint32_t>(removed);
+  const auto obstacles = walker.length();
+  if (!walker.fits(obstacles, kSceneObstacleBytes)) return false;
+  for (std::uint32_t i = 0; i < obstacles; ++i) {
+    walker.skip<std::uint32_t, std::uint32_t, double, double, double, double, double, std::int64_t,
+                std::int64_t>();
+  }
+  const auto vertices = walker.length();
+  if (!walker.fits(vertices, kPointBytes)) return false;
+  walker.skip_times<double>(2 * vertices);
+  return walker.fits(walker.length(), kGoalComponentBytes);
 }
 
 template <>
@@ -83,7 +109,7 @@ template <>
 bool lengths_fit<wire::Status>(const Payload& payload) {
   Walker walker(payload);
   walker.skip<std::uint32_t, std::uint16_t, std::uint8_t, bool, bool, std::uint32_t, std::uint32_t,
-              std::uint64_t, std::int64_t, double, double, double, double>();
+              std::uint64_t, std::uint64_t, std::int64_t, double, double, double, double>();
   walker.skip_times<std::uint32_t>(5);
   const auto refused = walker.length();
   if (!walker.fits(refused, sizeof(std::uint32_t))) return false;

@@ -17,6 +17,8 @@ bool lengths_fit(const eprosima::fastrtps::rtps::SerializedPayload_t& payload);
 template <>
 bool lengths_fit<wire::FlowPlan>(const eprosima::fastrtps::rtps::SerializedPayload_t& payload);
 template <>
+bool lengths_fit<wire::Scene>(const eprosima::fastrtps::rtps::SerializedPayload_t& payload);
+template <>
 bool lengths_fit<wire::Heartbeat>(const eprosima::fastrtps::rtps::SerializedPayload_t& payload);
 template <>
 bool lengths_fit<wire::CellStates>(const eprosima::fastrtps::rtps::SerializedPayload_t& payload);

@@ -30,8 +30,9 @@ struct InprocBus::Impl {
     return channel;
   }
 
-  std::tuple<Channels<PlanMessage>, Channels<HeartbeatMessage>, Channels<CellStatesMessage>,
-             Channels<CommandMessage>, Channels<StatusMessage>, Channels<EventMessage>>
+  std::tuple<Channels<PlanMessage>, Channels<SceneMessage>, Channels<HeartbeatMessage>,
+             Channels<CellStatesMessage>, Channels<CommandMessage>, Channels<StatusMessage>,
+             Channels<EventMessage>>
       all;
 };
 
@@ -43,6 +44,9 @@ class InprocParticipant final : public Participant {
   InprocParticipant(Impl& bus, std::uint32_t strength) : bus_(bus), strength_(strength) {}
 
   Result<WriterPtr<PlanMessage>> make_writer(const Topic<PlanMessage>& t) override {
+    return writer(t);
+  }
+  Result<WriterPtr<SceneMessage>> make_writer(const Topic<SceneMessage>& t) override {
     return writer(t);
   }
   Result<WriterPtr<HeartbeatMessage>> make_writer(const Topic<HeartbeatMessage>& t) override {
@@ -61,6 +65,9 @@ class InprocParticipant final : public Participant {
     return writer(t);
   }
   Result<ReaderPtr<PlanMessage>> make_reader(const Topic<PlanMessage>& t) override {
+    return reader(t);
+  }
+  Result<ReaderPtr<SceneMessage>> make_reader(const Topic<SceneMessage>& t) override {
     return reader(t);
   }
   Result<ReaderPtr<HeartbeatMessage>> make_reader(const Topic<HeartbeatMessage>& t) override {

@@ -54,6 +54,7 @@ TEST_P(Participants, PassTheirSelfCheck) {
 }
 
 TEST_P(Participants, CarryPlansUnchanged) { round_trip<PlanMessage>(); }
+TEST_P(Participants, CarryScenesUnchanged) { round_trip<SceneMessage>(); }
 TEST_P(Participants, CarryHeartbeatsUnchanged) { round_trip<HeartbeatMessage>(); }
 TEST_P(Participants, CarryCellStatesUnchanged) { round_trip<CellStatesMessage>(); }
 TEST_P(Participants, CarryCommandsUnchanged) { round_trip<CommandMessage>(); }

@@ -28,6 +28,7 @@ Integer integer(Rng& rng) {
 inline PlanMessage plan_of_size(Rng& rng, std::size_t nodes, std::size_t legs) {
   PlanMessage plan{.version = integer<std::uint32_t>(rng),
                    .epoch = integer<std::uint64_t>(rng),
+                   .scene_version = integer<std::uint64_t>(rng),
                    .t0_utc_ns = integer<std::int64_t>(rng)};
   for (std::size_t i = 0; i < nodes; ++i) {
     plan.nodes.push_back({number(rng), number(rng), number(rng), number(rng), number(rng),
@@ -36,12 +37,36 @@ inline PlanMessage plan_of_size(Rng& rng, std::size_t nodes, std::size_t legs) {
   for (std::size_t i = 0; i < legs; ++i) {
     plan.legs.push_back({integer<std::uint32_t>(rng), integer<std::uint32_t>(rng), number(rng)});
   }
+  for (int i = 0; i < 7; ++i)
+    plan.entries.push_back({integer<std::uint16_t>(rng), integer<std::uint16_t>(rng)});
   return plan;
 }
 
 template <>
 inline PlanMessage sample<PlanMessage>(Rng& rng) {
   return plan_of_size(rng, 3, 5);
+}
+
+template <>
+inline SceneMessage sample<SceneMessage>(Rng& rng) {
+  SceneMessage scene{.version = integer<std::uint64_t>(rng),
+                     .risk_alpha = number(rng),
+                     .next_id = integer<std::uint32_t>(rng)};
+  for (int i = 0; i < 3; ++i) {
+    scene.removed.push_back(integer<std::uint32_t>(rng));
+    scene.obstacles.push_back({.obstacle_id = integer<std::uint32_t>(rng),
+                               .vertices = integer<std::uint32_t>(rng),
+                               .center = {number(rng), number(rng)},
+                               .radius_m = number(rng),
+                               .velocity_x_mps = number(rng),
+                               .velocity_y_mps = number(rng),
+                               .moving_from_utc_ns = integer<std::int64_t>(rng),
+                               .moving_until_utc_ns = integer<std::int64_t>(rng)});
+    scene.vertices.push_back({number(rng), number(rng)});
+    scene.goal.push_back(
+        {number(rng), number(rng), number(rng), number(rng), number(rng), number(rng)});
+  }
+  return scene;
 }
 
 template <>
@@ -87,6 +112,7 @@ inline StatusMessage sample<StatusMessage>(Rng& rng) {
                        .process_id = integer<std::uint32_t>(rng),
                        .plan_version = integer<std::uint32_t>(rng),
                        .plan_epoch = integer<std::uint64_t>(rng),
+                       .plan_scene_version = integer<std::uint64_t>(rng),
                        .stamp_utc_ns = integer<std::int64_t>(rng),
                        .x_m = number(rng),
                        .y_m = number(rng),
@@ -116,6 +142,10 @@ inline EventMessage sample<EventMessage>(Rng& rng) {
 template <>
 inline Topic<PlanMessage> topic_of<PlanMessage>() {
   return plan_topic();
+}
+template <>
+inline Topic<SceneMessage> topic_of<SceneMessage>() {
+  return scene_topic();
 }
 template <>
 inline Topic<HeartbeatMessage> topic_of<HeartbeatMessage>() {

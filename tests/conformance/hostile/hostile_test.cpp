@@ -89,12 +89,31 @@ TEST_F(HostilePeers, ClaimStatesTheyDoNotSend) {
 
 TEST_F(HostilePeers, ClaimNodesAndLegsTheyDoNotSend) {
   const auto reader = us.make_reader(plan_topic()).value();
-  for (const auto& [nodes, legs] :
-       {std::pair{1U, 0U}, {0xFFFF'FFFFU, 0U}, {0U, 1U}, {0U, 0xFFFF'FFFFU}}) {
-    EXPECT_TRUE(provoke(reader, [&] { return peer.send_lying_plan(nodes, legs); }).empty());
+  constexpr std::uint32_t kMany = 0xFFFF'FFFF;
+  for (const auto& [nodes, legs, entries] : {std::tuple{1U, 0U, 0U},
+                                             {kMany, 0U, 0U},
+                                             {0U, 1U, 0U},
+                                             {0U, kMany, 0U},
+                                             {0U, 0U, 1U},
+                                             {0U, 0U, kMany}}) {
+    EXPECT_TRUE(
+        provoke(reader, [&] { return peer.send_lying_plan(nodes, legs, entries); }).empty());
+  }
+  EXPECT_EQ(reader->undecodable(), 6U);
+  expect_good_samples_still_pass(plan_topic(), reader);
+}
+
+TEST_F(HostilePeers, ClaimASceneTheyDoNotSend) {
+  const auto reader = us.make_reader(scene_topic()).value();
+  for (std::size_t lie = 0; lie < 4; ++lie) {
+    std::array<std::uint32_t, 4> counts{};
+    counts[lie] = 0xFFFF'FFFF;
+    EXPECT_TRUE(provoke(reader, [&] {
+                  return peer.send_lying_scene(counts[0], counts[1], counts[2], counts[3]);
+                }).empty());
   }
   EXPECT_EQ(reader->undecodable(), 4U);
-  expect_good_samples_still_pass(plan_topic(), reader);
+  expect_good_samples_still_pass(scene_topic(), reader);
 }
 
 TEST_F(HostilePeers, ClaimBinsTheyDoNotSendAndFlagsThatAreNone) {

@@ -112,14 +112,27 @@ bool HostilePeer::send_lying_batch(std::uint32_t count) {
                     &sample);
 }
 
-bool HostilePeer::send_lying_plan(std::uint32_t nodes, std::uint32_t legs) {
+bool HostilePeer::send_lying_plan(std::uint32_t nodes, std::uint32_t legs, std::uint32_t entries) {
   hostile::LyingFlowPlan sample;
   sample.schema_version(kSchemaVersion);
   sample.nodes(nodes);
   sample.legs(legs);
+  sample.entries(entries);
   return Impl::send(
       impl_->writer<hostile::LyingFlowPlanPubSubType>(plan_topic(), "swarm::wire::FlowPlan"),
       &sample);
+}
+
+bool HostilePeer::send_lying_scene(std::uint32_t removed, std::uint32_t obstacles,
+                                   std::uint32_t vertices, std::uint32_t goal) {
+  hostile::LyingScene sample;
+  sample.schema_version(kSchemaVersion);
+  sample.removed(removed);
+  sample.obstacles(obstacles);
+  sample.vertices(vertices);
+  sample.goal(goal);
+  return Impl::send(
+      impl_->writer<hostile::LyingScenePubSubType>(scene_topic(), "swarm::wire::Scene"), &sample);
 }
 
 bool HostilePeer::send_lying_status(std::uint8_t arrived, std::uint32_t refused,

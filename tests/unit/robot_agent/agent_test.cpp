@@ -116,6 +116,56 @@ TEST(Agent, CarriesACrowdAroundTheBlockWithoutAContact) {
     EXPECT_TRUE(sut.spec.goal.components()[0].gaussian.contains_99(p));
 }
 
+/// Another flow, from two groups in the middle of the first one, under the block's upper edge.
+FlowPlan plan_from_the_middle() {
+  const auto node = [](Vec2 mean, double sigma, double time, double mass) {
+    return PlanNode{Gaussian::from_parameters(mean, sigma, sigma, 0), MissionTime(time), mass};
+  };
+  return *FlowPlan::make({node({16, 12}, 1, 0, 0.5), node({20, 16}, 1, 0, 0.5),
+                          node({30, 24}, 1.5, 15, 1), node({50, 8}, 2, 40, 1)},
+                         {{0, 2, 0.5}, {1, 2, 0.5}, {2, 3, 1}});
+}
+
+TEST(Agent, ChangesOverToAnotherPlanWithoutAJump) {
+  Swarm sut(20);
+  for (std::size_t i = 0; i < sut.agents.size(); ++i)
+    sut.agents[i].accept_plan(plan_over_the_block(), sut.positions[i]);
+  for (int step = 0; step < 80; ++step) sut.tick(MissionPhase::kRunning, true);
+
+  // By the planner's word or, for every third, on its own: the way begins where the robot is.
+  for (std::size_t i = 0; i < sut.agents.size(); ++i) {
+    std::optional<PlanEntry> entry;
+    if (i % 3 != 0) entry = PlanEntry{static_cast<std::uint32_t>(i % 2), 0.5};
+    sut.agents[i].accept_plan(plan_from_the_middle(), sut.positions[i], entry);
+    EXPECT_LT((sut.agents[i].way_begin_m() - sut.positions[i]).norm(), 1e-6);
+  }
+  int steps = 0;
+  const auto all_arrived = [&] {
+    return std::all_of(sut.outputs.begin(), sut.outputs.end(),
+                       [](const AgentOutput& o) { return o.mode == RobotMode::kArrived; });
+  };
+  for (; steps < 1500 && !all_arrived(); ++steps) {
+    sut.tick(MissionPhase::kRunning, true);
+    ASSERT_GT(sut.least_gap(), 0.0);
+    for (const Vec2& p : sut.positions) ASSERT_GT(sut.spec.world.distance_m(p), 0.2);
+  }
+  EXPECT_TRUE(all_arrived()) << steps;
+}
+
+TEST(Agent, StaysWhereItArrivedWhenThePlanLeavesItThere) {
+  Swarm sut(1);
+  sut.positions[0] = {49.0, 9.0};
+  const Gaussian home = Gaussian::from_parameters({50, 8}, 2, 2, 0);
+  const FlowPlan plan =
+      *FlowPlan::make({{home, MissionTime(0), 1.0}, {home, MissionTime(1), 1.0}}, {{0, 1, 1.0}});
+  sut.agents[0].accept_plan(plan, sut.positions[0], PlanEntry{0, 0.5});
+
+  for (int step = 0; step < 20; ++step) sut.tick(MissionPhase::kRunning, true);
+
+  EXPECT_EQ(sut.outputs[0].mode, RobotMode::kArrived);
+  EXPECT_LT((sut.positions[0] - Vec2(49.0, 9.0)).norm(), 0.1);
+}
+
 TEST(Agent, WaitsUntilTheMissionStarts) {
   Swarm sut(1);
   sut.tick(MissionPhase::kRunning, true);

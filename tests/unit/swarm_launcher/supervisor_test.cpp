@@ -20,6 +20,7 @@ struct Bench {
   std::optional<Supervisor> sut;
   std::vector<std::uint32_t> started;
   std::vector<CommandKind> commands;
+  std::vector<SceneChange> changes;
   std::vector<std::pair<std::uint32_t, EndSignal>> signals;
   std::vector<std::string> log;
   bool obedient = true;  // children end when they are asked to
@@ -41,6 +42,10 @@ struct Bench {
     if (const auto* start = std::get_if<StartProcess>(&action))
       started.push_back(start->process.value());
     if (const auto* command = std::get_if<SendCommand>(&action)) commands.push_back(command->kind);
+    if (const auto* scene = std::get_if<ChangeScene>(&action)) {
+      changes.push_back(scene->change);
+      if (std::holds_alternative<GoTo>(scene->change)) sut->on_new_goal(77);
+    }
     if (const auto* event = std::get_if<LogEvent>(&action))
       log.push_back(event->code + ": " + event->text);
     if (const auto* signal = std::get_if<SignalProcess>(&action)) {
@@ -49,9 +54,10 @@ struct Bench {
     }
   }
 
-  void report_all(RobotMode mode, bool settled = false) {
-    for (std::uint32_t i = 0; i < options.robots; ++i)
-      sut->on_status(RobotId(i), {true, true, mode, settled});
+  void report_all(RobotMode mode, bool settled = false, std::uint64_t scene_version = 0) {
+    for (std::uint32_t i = 0; i < options.robots; ++i) {
+      sut->on_status(RobotId(i), {true, true, mode, settled, scene_version});
+    }
   }
 
   bool logged(const std::string& fragment) const {
@@ -272,7 +278,8 @@ TEST(Supervisor, KillsAtTheSecondInterrupt) {
 
 TEST(Supervisor, PlaysTheScript) {
   Running bench(2);
-  bench.options.script = {{1.0, ScriptAction::kPause}, {3.0, ScriptAction::kResume}};
+  bench.options.script = {
+      {1.0, CommandKind::kPause}, {2.0, SetRisk{0.3}}, {3.0, CommandKind::kResume}};
   bench.start();
 
   bench.run_for(seconds(2));
@@ -280,6 +287,27 @@ TEST(Supervisor, PlaysTheScript) {
   bench.run_for(seconds(2));
 
   EXPECT_EQ(bench.sut->phase(), MissionPhase::kRunning);
+  ASSERT_EQ(bench.changes.size(), 1U);
+  EXPECT_EQ(std::get<SetRisk>(bench.changes[0]).alpha, 0.3);
+}
+
+TEST(Supervisor, GoesOnUntilEveryoneIsAtTheLastGoalOfTheScript) {
+  Running bench(2);
+  const Mixture goal = Mixture::make({{1.0, Gaussian{}}}).value();
+  bench.options.script = {{10.0, GoTo{goal}}};
+  bench.start();
+
+  bench.report_all(RobotMode::kArrived, true);
+  bench.run_for(seconds(8));
+  EXPECT_EQ(bench.sut->stage(), Supervisor::Stage::kRunning) << "a goal is still to come";
+  bench.run_for(seconds(4));
+  ASSERT_EQ(bench.changes.size(), 1U);
+  bench.run_for(seconds(20));
+  EXPECT_EQ(bench.sut->stage(), Supervisor::Stage::kRunning) << "at rest by the old plan";
+  bench.report_all(RobotMode::kArrived, true, 77);
+  bench.run_for(seconds(1));
+
+  EXPECT_EQ(bench.sut->outcome(), Outcome::kCompleted);
 }
 
 TEST(Supervisor, SplitsRobotsOverProcesses) {

@@ -74,7 +74,7 @@ TEST(PlanCheck, AcceptsAFlowAndKeepsEveryNumber) {
 }
 
 TEST(PlanCheck, RefusesUnknownSchemas) {
-  const auto plan = changed(good_plan(), [](auto& p) { p.schema_version = 2; });
+  const auto plan = changed(good_plan(), [](auto& p) { p.schema_version = 1; });
   EXPECT_TRUE(refused(check_plan(plan, limits()), RefusalReason::kSchema));
 }
 
@@ -188,7 +188,7 @@ TEST(StatusCheck, RefusesEachKindOfNonsense) {
     return check_status(changed(good_status(), change), limits());
   };
   EXPECT_TRUE(verdict([](auto&) {}));
-  EXPECT_TRUE(refused(verdict([](auto& m) { m.schema_version = 2; }), RefusalReason::kSchema));
+  EXPECT_TRUE(refused(verdict([](auto& m) { m.schema_version = 1; }), RefusalReason::kSchema));
   EXPECT_TRUE(refused(verdict([](auto& m) { m.refused.resize(17); }), RefusalReason::kOversized));
   EXPECT_TRUE(
       refused(verdict([](auto& m) { m.state_age.resize(465); }), RefusalReason::kOversized));
@@ -207,7 +207,7 @@ TEST(EventCheck, RefusesLongTextsAndControlCharacters) {
   const EventMessage good{.severity = Severity::kError, .code = "plan-refused", .text = "Größe 3"};
   const auto verdict = [&](auto change) { return check_event(changed(good, change)); };
   EXPECT_TRUE(verdict([](auto&) {}));
-  EXPECT_TRUE(refused(verdict([](auto& m) { m.schema_version = 2; }), RefusalReason::kSchema));
+  EXPECT_TRUE(refused(verdict([](auto& m) { m.schema_version = 1; }), RefusalReason::kSchema));
   EXPECT_TRUE(refused(verdict([](auto& m) { m.code.assign(65, 'a'); }), RefusalReason::kOversized));
   EXPECT_TRUE(
       refused(verdict([](auto& m) { m.text.assign(513, 'a'); }), RefusalReason::kOversized));
@@ -219,7 +219,7 @@ TEST(EventCheck, RefusesLongTextsAndControlCharacters) {
 TEST(BatchCheck, RefusesSchemaAndSize) {
   const CellStatesMessage good{.states = std::vector<RobotStateMessage>(kMaxCellStates)};
   EXPECT_TRUE(check_batch(good));
-  EXPECT_TRUE(refused(check_batch(changed(good, [](auto& m) { m.schema_version = 2; })),
+  EXPECT_TRUE(refused(check_batch(changed(good, [](auto& m) { m.schema_version = 1; })),
                       RefusalReason::kSchema));
   EXPECT_TRUE(refused(check_batch(changed(good, [](auto& m) { m.states.emplace_back(); })),
                       RefusalReason::kOversized));
@@ -297,6 +297,74 @@ TEST(PlanSequence, RisesOverAnyStream) {
     EXPECT_EQ(sequence.accept(next.first, next.second), next > newest);
     newest = std::max(newest, next);
   }
+}
+
+TEST(CheckPlan, RefusesEntriesAtSourcesThatAreNone) {
+  const auto entered = [](std::uint16_t source, std::size_t robots) {
+    auto plan = good_plan();
+    plan.entries.assign(robots, {source, 7});
+    return check_plan(plan, limits());
+  };
+  EXPECT_TRUE(entered(0, 100).has_value());
+  EXPECT_TRUE(entered(kAnySource, 100).has_value());
+  EXPECT_TRUE(refused(entered(1, 100), RefusalReason::kOutOfRange));
+  EXPECT_TRUE(refused(entered(0, 101), RefusalReason::kOutOfRange));
+  EXPECT_TRUE(refused(entered(0, kMaxPlanRobots + 1), RefusalReason::kOversized));
+}
+
+/// A scene with a moving circle, a triangle and a new goal.
+SceneMessage good_scene() {
+  SceneMessage scene{.version = 5, .risk_alpha = 0.2, .next_id = 9, .removed = {1}};
+  scene.obstacles = {{.obstacle_id = 3,
+                      .center = {4, 5},
+                      .radius_m = 1,
+                      .velocity_x_mps = 0.5,
+                      .moving_from_utc_ns = 100,
+                      .moving_until_utc_ns = 200},
+                     {.obstacle_id = 8, .vertices = 3}};
+  scene.vertices = {{1, 1}, {3, 1}, {2, 4}};
+  scene.goal = {{10, 10, 1.0, 0.2, 2.0, 0.4}, {20, 10, 1.0, 0.0, 1.0, 0.6}};
+  return scene;
+}
+
+TEST(CheckScene, TakesWhatIsGoodAndSaysItAgainUnchanged) {
+  const auto scene = check_scene(good_scene());
+
+  ASSERT_TRUE(scene.has_value());
+  EXPECT_EQ(to_message(*scene), good_scene());
+  EXPECT_TRUE(check_scene(to_message(first_scene(4))).has_value());
+}
+
+TEST(CheckScene, RefusesEveryField) {
+  const auto verdict = [](auto change) { return check_scene(changed(good_scene(), change)); };
+  EXPECT_TRUE(refused(verdict([](auto& s) { s.schema_version = 1; }), RefusalReason::kSchema));
+  EXPECT_TRUE(refused(verdict([](auto& s) { s.removed.resize(kMaxSceneRemoved + 1); }),
+                      RefusalReason::kOversized));
+  EXPECT_TRUE(refused(verdict([](auto& s) { s.vertices.resize(kMaxSceneVertices + 1); }),
+                      RefusalReason::kOversized));
+  const auto out_of_range = [&](auto change) {
+    return refused(verdict(change), RefusalReason::kOutOfRange);
+  };
+  for (const double bad : {kNaN, kInfinity, -kInfinity, 1e9}) {
+    EXPECT_TRUE(out_of_range([&](auto& s) { s.obstacles[0].center.x_m = bad; }));
+    EXPECT_TRUE(out_of_range([&](auto& s) { s.obstacles[0].center.y_m = bad; }));
+    EXPECT_TRUE(out_of_range([&](auto& s) { s.obstacles[0].radius_m = bad; }));
+    EXPECT_TRUE(out_of_range([&](auto& s) { s.obstacles[0].velocity_x_mps = bad; }));
+    EXPECT_TRUE(out_of_range([&](auto& s) { s.obstacles[1].velocity_y_mps = bad; }));
+    EXPECT_TRUE(out_of_range([&](auto& s) { s.vertices[1].x_m = bad; }));
+    EXPECT_TRUE(out_of_range([&](auto& s) { s.goal[0].mean_x_m = bad; }));
+    EXPECT_TRUE(out_of_range([&](auto& s) { s.risk_alpha = bad; }));
+  }
+  EXPECT_TRUE(out_of_range([](auto& s) { s.obstacles[0].radius_m = 0; }));
+  EXPECT_TRUE(out_of_range([](auto& s) { s.obstacles[0].moving_from_utc_ns = 201; }));
+  EXPECT_TRUE(out_of_range([](auto& s) { s.obstacles[0].obstacle_id = 8; }));  // not ascending
+  EXPECT_TRUE(out_of_range([](auto& s) { s.obstacles[1].obstacle_id = 9; }));  // not given out yet
+  EXPECT_TRUE(out_of_range([](auto& s) { s.obstacles[1].vertices = 4; }));     // has only three
+  EXPECT_TRUE(out_of_range([](auto& s) { s.vertices.push_back({9, 9}); }));    // nobody's
+  EXPECT_TRUE(out_of_range([](auto& s) { s.vertices[2] = {2, 1}; }));          // no area
+  EXPECT_TRUE(refused(verdict([](auto& s) { s.goal[0].covariance_xx_m2 = -1; }),
+                      RefusalReason::kBadGaussian));
+  EXPECT_TRUE(refused(verdict([](auto& s) { s.goal[0].weight = 0.7; }), RefusalReason::kBadMass));
 }
 
 }  // namespace

@@ -34,6 +34,8 @@ Track random_walk(Rng& rng, double size_m, int steps) {
   return make(points);
 }
 
+std::vector<WorldPhase> always(const World& world) { return {{UtcTime{}, world}}; }
+
 Vec2 position_at(const Track& track, double time_s) {
   for (std::size_t k = 1; k < track.points.size(); ++k) {
     const TrackPoint& a = track.points[k - 1];
@@ -141,7 +143,7 @@ TEST(ObstacleClearance, OfAStraightLinePastACircleIsTheClosedForm) {
   // Nearest in the middle of one long interval, where no step is.
   const std::vector<Track> tracks{make({{0.0, {1, 12.5}}, {7.0, {19, 12.5}}})};
 
-  const Clearance clearance = obstacle_clearance(tracks, *world);
+  const Clearance clearance = obstacle_clearance(tracks, always(*world), UtcTime{});
 
   EXPECT_NEAR(clearance.nearest.gap_m, 0.3, 1e-9);
   EXPECT_NEAR(clearance.nearest.time_s, 3.5, 1e-4);
@@ -171,7 +173,7 @@ TEST(ObstacleClearance, EqualsFineSamplingInRandomWorlds) {
       }
     }
 
-    const Clearance clearance = obstacle_clearance(tracks, *world);
+    const Clearance clearance = obstacle_clearance(tracks, always(*world), UtcTime{});
 
     if (sampled > 0.0) {
       EXPECT_LE(clearance.nearest.gap_m, sampled + 1e-9);
@@ -190,12 +192,39 @@ TEST(ObstacleClearance, NamesWhoTouchedWhat) {
   const std::vector<Track> tracks{make({{0.0, {2, 2}}, {1.0, {3, 2}}}),
                                   make({{0.0, {15, 10}}, {4.0, {15, 14}}})};
 
-  const Clearance clearance = obstacle_clearance(tracks, *world);
+  const Clearance clearance = obstacle_clearance(tracks, always(*world), UtcTime{});
 
   ASSERT_EQ(clearance.contacts.size(), 1U);
   EXPECT_EQ(clearance.contacts[0].robot, 1U);
   EXPECT_EQ(clearance.contacts[0].other, 1U);
   EXPECT_NEAR(clearance.contacts[0].gap_m, -0.2, 1e-9);
+}
+
+// Time 0 of the tracks is second 1000.
+UtcTime at_s(double s) { return UtcTime(from_seconds(1000.0 + s)); }
+
+TEST(ObstacleClearance, SeesAnObstacleComeByOnlyWhileItIsThere) {
+  const auto empty = World::make({{0, 0}, {40, 20}}, {});
+  ASSERT_TRUE(empty.has_value());
+  // Added 3 m away at 2 s; from 4 s on it moves past the robot at 1 m/s for 12 s, 0.5 m from it in
+  // the middle of a step; gone at 20 s, when the robot drives to where it was.
+  std::vector<Scene> scenes{first_scene(0)};
+  const auto change = [&](const SceneChange& c, double s) {
+    auto next = after(scenes.back(), c, *empty, at_s(s));
+    ASSERT_TRUE(next.has_value()) << next.error().message;
+    scenes.push_back(*next);
+  };
+  change(AddObstacle{Circle{{10.0, 8.3}, 1.0}}, 2.0);
+  change(MoveObstacle{0, {12.0, 0.0}, 12.0}, 4.0);
+  change(RemoveObstacle{0}, 20.0);
+  const std::vector<Track> tracks{
+      make({{0.0, {13.35, 10.0}}, {20.5, {13.35, 10.0}}, {25.0, {22.0, 8.3}}})};
+
+  const Clearance clearance = obstacle_clearance(tracks, world_phases(*empty, scenes), at_s(0.0));
+
+  EXPECT_NEAR(clearance.nearest.gap_m, 1.7 - 1.0 - 0.2, 1e-9);
+  EXPECT_NEAR(clearance.nearest.time_s, 4.0 + 3.35, 1e-4);
+  EXPECT_TRUE(clearance.contacts.empty());
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "swarm_core/mission/mission_fields.hpp"
+#include "swarm_core/mission/scene_change_file.hpp"
 #include "swarm_core/risk/cvar.hpp"
 
 namespace swarm {
@@ -48,6 +49,15 @@ timing: {heartbeat_hz: 10}
 launcher: {quorum_share: 0.9, respawn_agent_max: 2}
 script:
   - {at_s: 5, action: pause}
+  - {at_s: 5, action: add_obstacle, circle_m: {center: [8, 8], radius: 0.3}}
+  - {at_s: 5.5, action: move_obstacle, obstacle: 3, by_m: [1, -2], over_s: 4}
+  - {at_s: 6, action: remove_obstacle, obstacle: 0}
+  - at_s: 6
+    action: goto
+    goal:
+      - {mean_m: [9, 9], covariance_m2: [[0.1, 0], [0, 0.1]], weight: 0.5}
+      - {mean_m: [3, 9], covariance_m2: [[0.1, 0], [0, 0.1]], weight: 0.5}
+  - {at_s: 7, action: risk, alpha: 0.3}
   - {at_s: 7.25, action: resume}
   - {at_s: 60, action: stop}
 )";
@@ -122,7 +132,16 @@ void expect_same(const Mission& a, const Mission& b) {
   ASSERT_EQ(a.script.size(), b.script.size());
   for (std::size_t i = 0; i < a.script.size(); ++i) {
     EXPECT_EQ(a.script[i].at_s, b.script[i].at_s);
-    EXPECT_EQ(a.script[i].action, b.script[i].action);
+    ASSERT_EQ(a.script[i].action.index(), b.script[i].action.index());
+    if (const auto* kind = std::get_if<CommandKind>(&a.script[i].action)) {
+      EXPECT_EQ(*kind, std::get<CommandKind>(b.script[i].action));
+    } else {
+      // A change is what its keys say; the keys are written with all digits.
+      const auto& change = std::get<SceneChange>(a.script[i].action);
+      const auto& other = std::get<SceneChange>(b.script[i].action);
+      EXPECT_EQ(name_of(change), name_of(other));
+      EXPECT_EQ(keys_of(change), keys_of(other));
+    }
   }
 }
 
@@ -165,9 +184,19 @@ TEST(MissionFile, ReadsEverySection) {
   EXPECT_EQ(mission->start.components().size(), 2U);
   EXPECT_EQ(mission->control.rate_hz, 20.0);
   EXPECT_EQ(mission->launcher.respawn_agent_max, 2U);
-  ASSERT_EQ(mission->script.size(), 3U);
-  EXPECT_EQ(mission->script[1].at_s, 7.25);
-  EXPECT_EQ(mission->script[2].action, ScriptAction::kStop);
+  ASSERT_EQ(mission->script.size(), 8U);
+  EXPECT_EQ(mission->script[6].at_s, 7.25);
+  const auto change = [&](std::size_t i) {
+    return std::get<SceneChange>(mission->script[i].action);
+  };
+  EXPECT_EQ(std::get<Circle>(std::get<AddObstacle>(change(1)).shape).radius_m, 0.3);
+  EXPECT_EQ(std::get<MoveObstacle>(change(2)).obstacle, 3U);
+  EXPECT_EQ(std::get<MoveObstacle>(change(2)).by_m, Vec2(1, -2));
+  EXPECT_EQ(std::get<MoveObstacle>(change(2)).over_s, 4.0);
+  EXPECT_EQ(std::get<RemoveObstacle>(change(3)).obstacle, 0U);
+  EXPECT_EQ(std::get<GoTo>(change(4)).goal.components().size(), 2U);
+  EXPECT_EQ(std::get<SetRisk>(change(5)).alpha, 0.3);
+  EXPECT_EQ(std::get<CommandKind>(mission->script[7].action), CommandKind::kStop);
 }
 
 TEST(MissionFile, ReadsBackWhatItWrote) {

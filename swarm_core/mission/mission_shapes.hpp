@@ -1,0 +1,52 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "swarm_core/gmm/mixture.hpp"
+#include "swarm_core/mission/yaml_reader.hpp"
+#include "swarm_core/world/world.hpp"
+
+namespace swarm {
+
+/// Where the means of a mixture may lie.
+struct MeanRule {
+  const World* world = nullptr;    ///< inside its bounds; null = anywhere
+  bool clear_of_obstacles = true;  ///< and as far as `radius_m` from its obstacles
+  double radius_m = 0.0;
+};
+
+/// Reads obstacles and mixtures of mission files and of what is said to a running mission. What is
+/// wrong with them goes to `violations`, which must outlive the reader.
+class ShapeReader {
+ public:
+  explicit ShapeReader(yaml::Violations& violations) : violations_(violations) {}
+
+  /// The shape that one of the keys polygon_m and circle_m gives. `path` is that of the mapping, at
+  /// `at`; its other keys are left to the caller.
+  std::optional<Obstacle> read_obstacle(yaml::MapReader& keys, const std::string& path,
+                                        yaml::Position at);
+
+  std::optional<Box> read_bounds(const yaml::Node& node);
+
+  /// A list of components with mean_m, covariance_m2 and weight.
+  std::optional<Mixture> read_mixture(const yaml::Node& node, const std::string& path,
+                                      const MeanRule& rule);
+
+ private:
+  std::optional<Obstacle> read_polygon(const yaml::Node& node, const std::string& path);
+  std::optional<Obstacle> read_circle(const yaml::Node& node, const std::string& path);
+  std::optional<WeightedGaussian> read_component(const yaml::Node& node, const std::string& path,
+                                                 const MeanRule& rule);
+  std::optional<Mat2> read_covariance(const yaml::Node& node, const std::string& path);
+  void check_mean(yaml::Position at, const std::string& path, const Vec2& mean_m,
+                  const MeanRule& rule);
+
+  yaml::Violations& violations_;
+  std::size_t vertices_ = 0;  // of all polygons so far
+};
+
+}  // namespace swarm

@@ -1,0 +1,142 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <utility>
+
+#include "swarm_link/validation.hpp"
+#include "swarm_link/wire_bounds.hpp"
+
+namespace swarm::link {
+namespace {
+
+// Beyond this it is no place robots drive in, and no speed they could get out of the way of.
+constexpr double kMaxCoordinate_m = 1e6;
+constexpr double kMaxSpeed_mps = 1e6;
+
+tl::unexpected<RefusalReason> refuse(RefusalReason reason) {
+  return tl::unexpected<RefusalReason>(reason);
+}
+
+bool is_place(const PointMessage& p) {
+  // False for NaN as well.
+  return std::abs(p.x_m) <= kMaxCoordinate_m && std::abs(p.y_m) <= kMaxCoordinate_m;
+}
+
+Checked<Obstacle> to_shape(const SceneObstacleMessage& message,
+                           std::span<const PointMessage> vertices) {
+  if (message.vertices == 0) {
+    if (!is_place(message.center) ||
+        !(message.radius_m > 0.0 && message.radius_m <= kMaxCoordinate_m)) {
+      return refuse(RefusalReason::kOutOfRange);
+    }
+    return Circle{.center_m = {message.center.x_m, message.center.y_m},
+                  .radius_m = message.radius_m};
+  }
+  std::vector<Vec2> corners;
+  for (const PointMessage& p : vertices) {
+    if (!is_place(p)) return refuse(RefusalReason::kOutOfRange);
+    corners.emplace_back(p.x_m, p.y_m);
+  }
+  auto polygon = Polygon::make(std::move(corners));
+  if (!polygon) return refuse(RefusalReason::kOutOfRange);
+  return std::move(*polygon);
+}
+
+Checked<std::vector<SceneObstacle>> to_obstacles(const SceneMessage& message) {
+  std::vector<SceneObstacle> obstacles;
+  std::span<const PointMessage> vertices_left(message.vertices);
+  for (const SceneObstacleMessage& o : message.obstacles) {
+    const bool ordered = obstacles.empty() || obstacles.back().id < o.obstacle_id;
+    const bool slow = std::hypot(o.velocity_x_mps, o.velocity_y_mps) <= kMaxSpeed_mps;
+    if (!ordered || !slow || o.obstacle_id >= message.next_id ||
+        o.moving_from_utc_ns > o.moving_until_utc_ns || o.vertices > vertices_left.size()) {
+      return refuse(RefusalReason::kOutOfRange);
+    }
+    auto shape = to_shape(o, vertices_left.first(o.vertices));
+    if (!shape) return refuse(shape.error());
+    vertices_left = vertices_left.subspan(o.vertices);
+    obstacles.push_back({.id = o.obstacle_id,
+                         .shape = std::move(*shape),
+                         .velocity_mps = {o.velocity_x_mps, o.velocity_y_mps},
+                         .moving_from = UtcTime(Duration(o.moving_from_utc_ns)),
+                         .moving_until = UtcTime(Duration(o.moving_until_utc_ns))});
+  }
+  if (!vertices_left.empty()) return refuse(RefusalReason::kOutOfRange);
+  return obstacles;
+}
+
+Checked<std::optional<Mixture>> to_goal(const SceneMessage& message) {
+  if (message.goal.empty()) return std::optional<Mixture>();
+  std::vector<WeightedGaussian> components;
+  for (const GoalComponentMessage& c : message.goal) {
+    if (!is_place({c.mean_x_m, c.mean_y_m})) return refuse(RefusalReason::kOutOfRange);
+    Mat2 covariance_m2;
+    covariance_m2 << c.covariance_xx_m2, c.covariance_xy_m2, c.covariance_xy_m2, c.covariance_yy_m2;
+    const auto gaussian = Gaussian::make({c.mean_x_m, c.mean_y_m}, covariance_m2);
+    if (!gaussian) return refuse(RefusalReason::kBadGaussian);
+    components.push_back({c.weight, *gaussian});
+  }
+  auto mixture = Mixture::make(std::move(components));
+  if (!mixture) return refuse(RefusalReason::kBadMass);
+  return std::optional<Mixture>(std::move(*mixture));
+}
+
+}  // namespace
+
+Checked<Scene> check_scene(const SceneMessage& message) {
+  if (message.schema_version != kSchemaVersion) return refuse(RefusalReason::kSchema);
+  if (!fits_wire(message)) return refuse(RefusalReason::kOversized);
+  if (!(message.risk_alpha >= 0.0 && message.risk_alpha < 1.0)) {
+    return refuse(RefusalReason::kOutOfRange);
+  }
+  auto obstacles = to_obstacles(message);
+  if (!obstacles) return refuse(obstacles.error());
+  auto goal = to_goal(message);
+  if (!goal) return refuse(goal.error());
+  Scene scene{.version = message.version,
+              .removed = message.removed,
+              .obstacles = std::move(*obstacles),
+              .next_id = message.next_id,
+              .goal = std::move(*goal),
+              .risk_alpha = std::nullopt};
+  if (message.risk_alpha > 0.0) scene.risk_alpha = message.risk_alpha;
+  return scene;
+}
+
+SceneMessage to_message(const Scene& scene) {
+  SceneMessage message{.version = scene.version,
+                       .risk_alpha = scene.risk_alpha.value_or(0.0),
+                       .next_id = scene.next_id,
+                       .removed = scene.removed};
+  for (const SceneObstacle& o : scene.obstacles) {
+    SceneObstacleMessage& out = message.obstacles.emplace_back();
+    out.obstacle_id = o.id;
+    out.velocity_x_mps = o.velocity_mps.x();
+    out.velocity_y_mps = o.velocity_mps.y();
+    out.moving_from_utc_ns = o.moving_from.time_since_epoch().count();
+    out.moving_until_utc_ns = o.moving_until.time_since_epoch().count();
+    if (const auto* circle = std::get_if<Circle>(&o.shape)) {
+      out.center = {circle->center_m.x(), circle->center_m.y()};
+      out.radius_m = circle->radius_m;
+      continue;
+    }
+    const auto& vertices = std::get<Polygon>(o.shape).vertices_m();
+    out.vertices = static_cast<std::uint32_t>(vertices.size());
+    for (const Vec2& v : vertices) message.vertices.push_back({v.x(), v.y()});
+  }
+  if (!scene.goal) return message;
+  for (const auto& [weight, gaussian] : scene.goal->components()) {
+    const Mat2& c = gaussian.covariance_m2();
+    message.goal.push_back({.mean_x_m = gaussian.mean_m().x(),
+                            .mean_y_m = gaussian.mean_m().y(),
+                            .covariance_xx_m2 = c(0, 0),
+                            .covariance_xy_m2 = c(0, 1),
+                            .covariance_yy_m2 = c(1, 1),
+                            .weight = weight});
+  }
+  return message;
+}
+
+}  // namespace swarm::link
