@@ -238,6 +238,8 @@ void Supervisor::run(SteadyTime now, std::vector<Action>& actions) {
     begin_ending(Outcome::kStopped, now);
     return;
   }
+  // Who arrives after a new goal is not known before that goal is out.
+  const bool had_goals_left = script_moves_on();
   play_script(now, actions);
   const Counts c = counts();
   const std::uint32_t living = options_.robots - c.lost;
@@ -245,7 +247,7 @@ void Supervisor::run(SteadyTime now, std::vector<Action>& actions) {
     begin_ending(Outcome::kAllLost, now);
     return;
   }
-  const bool arrived = c.arrived == living && !script_moves_on();
+  const bool arrived = c.arrived == living && !had_goals_left;
   if (arrived && !all_arrived_) all_arrived_at_ = now;
   all_arrived_ = arrived;
   if ((arrived && c.settled == living) || (arrived && now - all_arrived_at_ > kSettlePatience)) {
