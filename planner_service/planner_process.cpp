@@ -232,8 +232,11 @@ void PlannerProcess::Impl::try_again(SteadyTime now) {
   if (!planned) {
     if (failed_scene == scene.version) return;
     failed_scene = scene.version;
-    announce(link::Severity::kWarning, "replan-failed",
-             "the last plan stays: " + planned.error().message);
+    std::string why = planned.error().message;
+    for (std::size_t at = 0; (at = why.find('\n', at)) != std::string::npos;) {
+      why.replace(at, 1, "; ");  // an event is one line
+    }
+    announce(link::Severity::kWarning, "replan-failed", "the last plan stays: " + why);
     return;
   }
   newest = *std::move(planned);
