@@ -38,7 +38,8 @@ bool is_good_name(std::string_view name) {
 
 class MissionReader {
  public:
-  explicit MissionReader(yaml::Violations& violations) : violations_(violations) {}
+  MissionReader(const std::filesystem::path& directory, yaml::Violations& violations)
+      : violations_(violations), shapes_(violations, directory) {}
 
   Mission read(const Node& root) {
     MapReader top(root, "", violations_);
@@ -241,7 +242,7 @@ class MissionReader {
 
   yaml::Violations& violations_;
   Mission mission_;
-  ShapeReader shapes_{violations_};
+  ShapeReader shapes_;
   bool has_world_ = false;
   std::map<std::string, Position> places_;  // of scalar keys, by path
   std::set<std::string> bad_;               // paths of scalar keys with a violation
@@ -249,7 +250,8 @@ class MissionReader {
 
 }  // namespace
 
-Result<Mission> parse_mission(std::string_view text, const std::string& name) {
+Result<Mission> parse_mission(std::string_view text, const std::string& name,
+                              const std::filesystem::path& directory) {
   if (text.size() > kMaxMissionBytes) {
     return fail(ErrorCode::kBadInput, fmt::format("{}:1:1: {} bytes; must be <= {}", name,
                                                   text.size(), kMaxMissionBytes));
@@ -260,7 +262,7 @@ Result<Mission> parse_mission(std::string_view text, const std::string& name) {
     violations.add(root.error().at, root.error().what);
     return tl::unexpected(violations.to_error(name));
   }
-  Mission mission = MissionReader(violations).read(*root);
+  Mission mission = MissionReader(directory, violations).read(*root);
   if (!violations.empty()) return tl::unexpected(violations.to_error(name));
   return mission;
 }
@@ -285,7 +287,7 @@ Result<Mission> load_mission(const std::filesystem::path& file) {
     return fail(ErrorCode::kBadInput,
                 fmt::format("{}: cannot be read; is it a file?", file.string()));
   }
-  return parse_mission(text, file.filename().string());
+  return parse_mission(text, file.filename().string(), file.parent_path());
 }
 
 }  // namespace swarm

@@ -16,8 +16,9 @@ inline constexpr std::size_t kMaxMissionBytes = 16U << 20U;
 /// Reads a mission from YAML. Strict: every key is known, used once, in range and of the right
 /// type; the world is well-formed; start and goal lie inside it. On failure the error holds *all*
 /// violations, one per line, as `file:line:column: what is wrong; what would be right`. `name` is
-/// only used in messages. Never throws.
-Result<Mission> parse_mission(std::string_view yaml, const std::string& name);
+/// only used in messages; a goal's bitmap is looked for in `directory`. Never throws.
+Result<Mission> parse_mission(std::string_view yaml, const std::string& name,
+                              const std::filesystem::path& directory = {});
 
 /// Reads and parses a file.
 Result<Mission> load_mission(const std::filesystem::path& file);

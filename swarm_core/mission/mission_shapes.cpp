@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "swarm_core/mission/goal_shape.hpp"
 #include "swarm_core/mission/mission_fields.hpp"
 
 namespace swarm {
@@ -90,6 +91,7 @@ std::optional<Obstacle> ShapeReader::read_circle(const Node& node, const std::st
 
 std::optional<Mixture> ShapeReader::read_mixture(const Node& node, const std::string& path,
                                                  const MeanRule& rule) {
+  if (node.kind == Node::Kind::kMap) return read_shape(node, path, rule);
   const auto* items = yaml::read_list(node, path, 1, mission_fields::kMaxComponents, violations_);
   if (items == nullptr) return std::nullopt;
   std::vector<WeightedGaussian> components;
@@ -102,6 +104,17 @@ std::optional<Mixture> ShapeReader::read_mixture(const Node& node, const std::st
   if (mixture) return std::move(*mixture);
   violations_.add(node.at, fmt::format("{}: {}", path, mixture.error().message));
   return std::nullopt;
+}
+
+std::optional<Mixture> ShapeReader::read_shape(const Node& node, const std::string& path,
+                                               const MeanRule& rule) {
+  auto mixture = read_goal_shape(node, path, directory_, violations_);
+  if (!mixture) return std::nullopt;
+  for (std::size_t i = 0; i < mixture->components().size(); ++i) {
+    check_mean(node.at, fmt::format("{}: mean of fitted component {}", path, i),
+               mixture->components()[i].gaussian.mean_m(), rule);
+  }
+  return mixture;
 }
 
 std::optional<WeightedGaussian> ShapeReader::read_component(const Node& node,

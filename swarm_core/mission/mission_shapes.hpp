@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "swarm_core/gmm/mixture.hpp"
@@ -23,7 +25,9 @@ struct MeanRule {
 /// wrong with them goes to `violations`, which must outlive the reader.
 class ShapeReader {
  public:
-  explicit ShapeReader(yaml::Violations& violations) : violations_(violations) {}
+  /// Files that are named are relative to `directory`.
+  explicit ShapeReader(yaml::Violations& violations, std::filesystem::path directory = {})
+      : violations_(violations), directory_(std::move(directory)) {}
 
   /// The shape that one of the keys polygon_m and circle_m gives. `path` is that of the mapping, at
   /// `at`; its other keys are left to the caller.
@@ -32,7 +36,8 @@ class ShapeReader {
 
   std::optional<Box> read_bounds(const yaml::Node& node);
 
-  /// A list of components with mean_m, covariance_m2 and weight.
+  /// A list of components with mean_m, covariance_m2 and weight, or a shape to fit them to
+  /// (goal_shape.hpp).
   std::optional<Mixture> read_mixture(const yaml::Node& node, const std::string& path,
                                       const MeanRule& rule);
 
@@ -45,7 +50,11 @@ class ShapeReader {
   void check_mean(yaml::Position at, const std::string& path, const Vec2& mean_m,
                   const MeanRule& rule);
 
+  std::optional<Mixture> read_shape(const yaml::Node& node, const std::string& path,
+                                    const MeanRule& rule);
+
   yaml::Violations& violations_;
+  std::filesystem::path directory_;
   std::size_t vertices_ = 0;  // of all polygons so far
 };
 

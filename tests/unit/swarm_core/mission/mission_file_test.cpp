@@ -149,7 +149,7 @@ std::vector<std::filesystem::path> shipped_missions() {
   std::vector<std::filesystem::path> files;
   for (const auto& entry : std::filesystem::directory_iterator(
            std::filesystem::path(SWARM_SOURCE_DIR) / "deploy/missions")) {
-    files.push_back(entry);
+    if (entry.path().extension() == ".yaml") files.push_back(entry);
   }
   return files;
 }

@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "swarm_core/gmm/mixture.hpp"
+#include "swarm_core/mission/yaml_reader.hpp"
+
+namespace swarm {
+
+/// Reads a goal that is a shape instead of a list of components, and fits a mixture to it:
+///
+///   {polygon_m: [[x, y], …], components: 12, sigma_min_m: 0.5}
+///   {bitmap: {file: q.png, origin_m: [x0, y0], pixel_m: 0.5, dark: true}, components: 20}
+///
+/// `components` is the number asked for; without it the BIC chooses one up to `components_max`
+/// (16). `sigma_min_m` (0.5) is the smallest standard deviation. A bitmap's file is relative to
+/// `directory`, its origin_m is the lower left corner. The same shape gives the same mixture, so a
+/// resolved mission holds the mixture only.
+///
+/// The planner refuses a goal component whose CVaR exceeds δ: at the default α and δ a stroke's
+/// middle must be 2.06 σ + 0.2 m from every obstacle, σ being its standard deviation towards it, at
+/// least sigma_min_m. Empty after a violation that names `path`.
+std::optional<Mixture> read_goal_shape(const yaml::Node& node, const std::string& path,
+                                       const std::filesystem::path& directory,
+                                       yaml::Violations& violations);
+
+}  // namespace swarm
