@@ -3,25 +3,17 @@
 #include "planner_service/planner.hpp"
 
 #include <algorithm>
-#include <chrono>
+#include <array>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <optional>
-#include <string>
+#include <string_view>
 #include <utility>
-#include <vector>
 
-#include <fmt/format.h>
-
-#include "planner_service/roadmap/edge_check.hpp"
-#include "planner_service/roadmap/endpoints.hpp"
-#include "planner_service/transport/build_plan.hpp"
-#include "planner_service/transport/route.hpp"
-#include "planner_service/transport/shortcuts.hpp"
-#include "planner_service/transport/shortest_routes.hpp"
-#include "planner_service/transport/tighten.hpp"
-#include "planner_service/transport/transport_lp.hpp"
+#include "planner_service/plan_routes.hpp"
+#include "planner_service/stage_timer.hpp"
+#include "planner_service/swarmprm.hpp"
+#include "swarm_core/base/assert.hpp"
 #include "swarm_core/gmm/wasserstein.hpp"
 
 namespace swarm::planner {
@@ -29,128 +21,87 @@ namespace {
 
 constexpr int kFineGrid = 200;
 
-// Takes the time between calls.
-class StageTimer {
- public:
-  explicit StageTimer(const StageClock& clock) : clock_(clock), last_(clock()) {}
-  double lap_ms() {
-    const SteadyTime now = clock_();
-    const double lap_ms = std::chrono::duration<double, std::milli>(now - last_).count();
-    last_ = now;
-    return lap_ms;
-  }
-
- private:
-  const StageClock& clock_;
-  SteadyTime last_;
-};
-
-std::vector<double> weights_of(const Mixture& mixture) {
-  std::vector<double> weights;
-  for (const WeightedGaussian& component : mixture.components())
-    weights.push_back(component.weight);
-  return weights;
-}
-
-Result<void> check_endpoints(const PlanRequest& request, const RiskLimit& risk) {
-  std::string violations = describe_violations(request.start, "start", request.world, risk);
-  const std::string at_goal = describe_violations(request.goal, "goal", request.world, risk);
-  if (!violations.empty() && !at_goal.empty()) violations += '\n';
-  violations += at_goal;
-  if (violations.empty()) return {};
-  return fail(ErrorCode::kInfeasible, std::move(violations));
-}
-
-std::vector<Gaussian> roadmap_nodes(const PlanRequest& request, const PlannerOptions& options,
-                                    Rng& rng) {
-  std::vector<Gaussian> nodes;
-  for (const Mixture* mixture : {&request.start, &request.goal}) {
-    for (const WeightedGaussian& component : mixture->components()) {
-      nodes.push_back(component.gaussian);
-    }
-  }
-  const std::vector<Gaussian> samples =
-      sample_free(request.world, options.risk, options.sampler, options.samples, rng);
-  nodes.insert(nodes.end(), samples.begin(), samples.end());
-  return nodes;
-}
-
-Error no_route(std::span<const double> costs_m, std::size_t starts, std::size_t goals,
-               const PlannerOptions& options) {
-  std::string pairs;
-  for (std::size_t i = 0; i < starts; ++i) {
-    for (std::size_t j = 0; j < goals; ++j) {
-      if (std::isfinite(costs_m[i * goals + j])) continue;
-      pairs += fmt::format("{}{} -> {}", pairs.empty() ? "" : ", ", i, j);
-    }
-  }
-  return {
-      ErrorCode::kInfeasible,
-      fmt::format("no route on the roadmap joins these start and goal components, and the swarm "
-                  "cannot avoid them: {}; raise planner.samples ({}) or "
-                  "planner.connection_radius_m ({}), lower planner.sigma_min_m ({}), or raise "
-                  "planner.risk_alpha ({}) or planner.risk_delta_m ({})",
-                  pairs, options.samples, options.connection_radius_m, options.sampler.sigma_min_m,
-                  options.risk.alpha, options.risk.delta_m)};
-}
-
-// The routes of the cheapest transport, all of whose edges are proven. A closed edge is rare (an
-// edge that breaks the limit by less than the roadmap's tolerance), so the search starts over.
-Result<std::vector<Route>> choose_routes(Roadmap& roadmap, const PlanRequest& request,
-                                         const PlannerOptions& options, EdgeChecker& checker,
-                                         StageTimer& stage, PlanStats& stats) {
-  const std::vector<double> supplies = weights_of(request.start);
-  const std::vector<double> demands = weights_of(request.goal);
-  const std::size_t starts = supplies.size();
-  std::vector<std::uint32_t> goal_nodes(demands.size());
-  std::iota(goal_nodes.begin(), goal_nodes.end(), static_cast<std::uint32_t>(starts));
-  for (;;) {
-    std::vector<ShortestRoutes> searches;
-    std::vector<double> costs_m;
-    for (std::uint32_t i = 0; i < starts; ++i) {
-      searches.emplace_back(roadmap, i, goal_nodes);
-      for (const std::uint32_t goal : goal_nodes) costs_m.push_back(searches[i].length_m(goal));
-    }
-    stats.search_ms += stage.lap_ms();
-    const auto shipments = solve_transport(supplies, demands, costs_m);
-    stats.transport_ms += stage.lap_ms();
-    if (!shipments) {
-      return tl::unexpected(no_route(costs_m, starts, demands.size(), options));
-    }
-    std::vector<Route> routes;
-    bool proven = true;
-    for (const Shipment& shipment : *shipments) {
-      const std::vector<std::uint32_t> nodes =
-          searches[shipment.from].nodes_to(goal_nodes[shipment.to]);
-      Route route{shipment.from, shipment.to, shipment.mass, {}};
-      for (std::size_t i = 0; i < nodes.size(); ++i) {
-        route.waypoints.push_back(roadmap.nodes[nodes[i]]);
-        if (i == 0 ||
-            checker.is_free(route.waypoints[i - 1], route.waypoints[i], kPlanTolerance_m)) {
-          continue;
-        }
-        roadmap.close_edge(nodes[i - 1], nodes[i]);
-        proven = false;
-      }
-      routes.push_back(std::move(route));
-    }
-    stats.search_ms += stage.lap_ms();
-    if (proven) return routes;
-  }
-}
-
-void smooth(Waypoints& waypoints, const World& world, const PlannerOptions& options,
-            EdgeChecker& checker, Rng& rng) {
-  take_shortcuts(waypoints, options.shortcuts, checker, rng);
-  const TightenOptions band{.sigma_min_m = kSqueezeBelowMin * options.sampler.sigma_min_m};
-  tighten(waypoints, world, options.risk, band, checker);
-  drop_superfluous(waypoints, checker);
-}
+constexpr std::array<std::pair<std::string_view, Method>, 2> kMethods{
+    {{"swarmprm", Method::kSwarmPrm}, {"crops", Method::kCrops}}};
 
 }  // namespace
 
+/// What the methods keep; they refer to the world of the last request, which is kept with them.
+struct Planner::Memory {
+  World world;
+  std::optional<CropsGuide> guide;
+
+  Result<PlanResult> plan_crops(const PlanRequest& request, const PlannerOptions& options, Rng& rng,
+                                const StageClock& clock);
+};
+
+/// The graph is kept while the map is the same: so are the edges that were made dear.
+Result<PlanResult> Planner::Memory::plan_crops(const PlanRequest& request,
+                                               const PlannerOptions& options, Rng& rng,
+                                               const StageClock& clock) {
+  StageTimer whole(clock);
+  StageTimer stage(clock);
+  bool ready = guide && world == request.world;
+  if (ready) ready = guide->move_ends(request.start, request.goal).has_value();
+  if (!ready) {
+    guide.reset();
+    world = request.world;
+    auto made =
+        CropsGuide::make(world, request.start, request.goal, options.risk, options.crops, rng);
+    if (!made) return tl::unexpected(made.error());
+    guide.emplace(*std::move(made));
+  }
+  PlanResult result;
+  result.roadmap = guide->roadmap();
+  result.stats.roadmap_ms = stage.lap_ms();
+  return plan_of_routes(guide->routes(), guide->routes(), request, options.speed_mps,
+                        std::move(result), whole);
+}
+
+Planner::Planner(const PlannerOptions& options)
+    : options_(options), memory_(std::make_unique<Memory>()) {}
+Planner::~Planner() = default;
+Planner::Planner(Planner&&) noexcept = default;
+Planner& Planner::operator=(Planner&&) noexcept = default;
+
+Result<PlanResult> Planner::plan(const PlanRequest& request, Rng& rng, const StageClock& clock) {
+  switch (options_.method) {
+    case Method::kSwarmPrm:
+      return plan_swarmprm(request, options_, rng, clock);
+    case Method::kCrops:
+      return memory_->plan_crops(request, options_, rng, clock);
+  }
+  SWARM_ASSERT(false);
+}
+
+void Planner::set_risk(const RiskLimit& risk) {
+  if (risk.alpha == options_.risk.alpha && risk.delta_m == options_.risk.delta_m) return;
+  options_.risk = risk;
+  memory_->guide.reset();
+}
+
+bool Planner::avoid(const Vec2& stuck_at_m) {
+  if (!memory_->guide) return false;
+  const std::vector<Route>& routes = memory_->guide->routes();
+  double nearest_m = std::numeric_limits<double>::infinity();
+  std::optional<std::size_t> nearest;
+  for (std::size_t r = 0; r < routes.size(); ++r) {
+    for (const Gaussian& g : routes[r].waypoints) {
+      const double distance_m = (g.mean_m() - stuck_at_m).norm();
+      if (distance_m >= nearest_m) continue;
+      nearest_m = distance_m;
+      nearest = r;
+    }
+  }
+  return nearest && memory_->guide->reweight(*nearest, stuck_at_m);
+}
+
 PlannerOptions planner_options(const PlannerSpec& spec) {
-  return {.samples = spec.samples,
+  const auto named = std::find_if(kMethods.begin(), kMethods.end(),
+                                  [&](const auto& m) { return m.first == spec.method; });
+  SWARM_ASSERT(named != kMethods.end());
+  return {.method = named->second,
+          .samples = spec.samples,
           .connection_radius_m = spec.connection_radius_m,
           .risk = {.alpha = spec.risk_alpha, .delta_m = spec.risk_delta_m},
           .sampler = {.kind = spec.sampler == "uniform" ? SamplerKind::kUniform : SamplerKind::kFit,
@@ -160,41 +111,17 @@ PlannerOptions planner_options(const PlannerSpec& spec) {
                       .bridge_share = spec.bridge_share,
                       .bridge_sigma_m = spec.bridge_sigma_m},
           .shortcuts = spec.shortcuts,
-          .speed_mps = spec.speed_mps};
+          .speed_mps = spec.speed_mps,
+          .crops = {.samples = spec.samples,
+                    .connection_radius_m = spec.connection_radius_m,
+                    .clearance_min_m = spec.crops_clearance_m,
+                    .clearance_power = spec.crops_power,
+                    .goal_radius_m = spec.crops_goal_radius_m}};
 }
 
 Result<PlanResult> plan(const PlanRequest& request, const PlannerOptions& options, Rng& rng,
                         const StageClock& clock) {
-  StageTimer whole(clock);
-  StageTimer stage(clock);
-  if (auto checked = check_endpoints(request, options.risk); !checked) {
-    return tl::unexpected(checked.error());
-  }
-  const std::size_t starts = request.start.components().size();
-  const std::size_t goals = request.goal.components().size();
-  PlanResult result;
-  EdgeChecker checker(request.world, options.risk);
-  result.roadmap = connect(roadmap_nodes(request, options, rng), options.connection_radius_m,
-                           checker, starts + goals);
-  result.stats.nodes = result.roadmap.nodes.size();
-  result.stats.edges = result.roadmap.edge_count();
-  result.stats.roadmap_ms = stage.lap_ms();
-
-  auto routes = choose_routes(result.roadmap, request, options, checker, stage, result.stats);
-  if (!routes) return tl::unexpected(routes.error());
-
-  for (Route& route : *routes) {
-    result.stats.raw_mean_path_m += route.mass * mean_length_m(route.waypoints);
-    if (options.shortcuts > 0) smooth(route.waypoints, request.world, options, checker, rng);
-    result.stats.planned_mean_path_m += route.mass * mean_length_m(route.waypoints);
-    result.stats.cost_m += route.mass * w2_length_m(route.waypoints);
-  }
-  Result<FlowPlan> flow = build_plan(*routes, starts, goals, options.speed_mps);
-  if (!flow) return tl::unexpected(flow.error());
-  result.plan = *std::move(flow);
-  result.stats.smoothing_ms = stage.lap_ms();
-  result.stats.total_ms = whole.lap_ms();
-  return result;
+  return Planner(options).plan(request, rng, clock);
 }
 
 double planned_max_cvar_m(const FlowPlan& plan, const World& world, double alpha) {

@@ -5,7 +5,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <memory>
 
+#include "planner_service/roadmap/crops_guide.hpp"
 #include "planner_service/roadmap/roadmap.hpp"
 #include "planner_service/roadmap/sampler.hpp"
 #include "swarm_core/base/random.hpp"
@@ -18,7 +20,13 @@
 
 namespace swarm::planner {
 
+enum class Method {
+  kSwarmPrm,  ///< Gaussian roadmap, LP, smoothing: swarmprm.hpp
+  kCrops,     ///< a guide of points that prefers open space: roadmap/crops_guide.hpp
+};
+
 struct PlannerOptions {
+  Method method = Method::kSwarmPrm;
   std::size_t samples = 500;          ///< n of Alg. 1
   double connection_radius_m = 20.0;  ///< r of Alg. 1, in W₂
   RiskLimit risk;
@@ -26,6 +34,7 @@ struct PlannerOptions {
   std::uint32_t shortcuts =
       200;                  ///< smoothing tries per route; 0 leaves the roadmap's routes alone
   double speed_mps = 1.25;  ///< of the means along a route
+  CropsOptions crops;
 };
 
 /// The options a mission asks for.
@@ -60,11 +69,35 @@ struct PlanResult {
 /// Tells the time for PlanStats; the planner itself does not depend on it.
 using StageClock = std::function<SteadyTime()>;
 
-/// SwarmPRM, Alg. 2, lines 1–7: roadmap, shortest routes, transport problem, smoothing. The same
-/// request, options and generator state give the same plan.
-///
-/// kInfeasible says which component breaks the risk limit at which obstacle, or which components no
-/// route joins, and what to loosen.
+/// A planner that keeps what it learnt of the map from one plan to the next.
+class Planner {
+ public:
+  explicit Planner(const PlannerOptions& options);
+  ~Planner();
+  Planner(Planner&&) noexcept;
+  Planner& operator=(Planner&&) noexcept;
+
+  /// The flow from start to goal by the method of the options. The same sequence of requests,
+  /// options and generator states gives the same plans.
+  ///
+  /// kInfeasible says which component breaks the risk limit at which obstacle, or which components
+  /// no route joins, and what to loosen.
+  Result<PlanResult> plan(const PlanRequest& request, Rng& rng, const StageClock& clock);
+
+  const RiskLimit& risk() const { return options_.risk; }
+  /// For plans from now on.
+  void set_risk(const RiskLimit& risk);
+
+  /// Many robots are stuck about here. True when the method has another way for them: plan again.
+  bool avoid(const Vec2& stuck_at_m);
+
+ private:
+  struct Memory;
+  PlannerOptions options_;
+  std::unique_ptr<Memory> memory_;
+};
+
+/// One plan by a planner that is made for it.
 Result<PlanResult> plan(const PlanRequest& request, const PlannerOptions& options, Rng& rng,
                         const StageClock& clock);
 

@@ -34,6 +34,10 @@ constexpr Duration kStep = std::chrono::milliseconds(5);
 constexpr Duration kScenePatience = std::chrono::seconds(3);
 // A planner that comes back in mid-flight waits this long for robots it does not hear.
 constexpr Duration kHearPatience = std::chrono::milliseconds(1500);
+// Robots that stand for this long are stuck; kicks of their own have not helped by then.
+constexpr Duration kStuckAfter = std::chrono::seconds(8);
+// … and so many of them are reason to lead the swarm another way.
+constexpr double kStuckShare = 0.1;
 // While obstacles move, and while there is no plan for the scene.
 constexpr Duration kReplanPeriod = std::chrono::seconds(2);
 
@@ -64,6 +68,7 @@ struct PlannerProcess::Impl {
   ProcessOptions options;
   Mission mission;
   std::uint64_t seed = 0;
+  std::optional<Planner> planner;
   Scene scene;
   bool scene_heard = false;
   Replan newest;
@@ -100,6 +105,7 @@ struct PlannerProcess::Impl {
   void keep_planned(SteadyTime now);
   Result<Replan> plan_anew(UtcTime now, std::span<const HeardRobot> heard);
   void try_again(SteadyTime now);
+  void avoid_jams(SteadyTime now);
   void publish();
   void announce(link::Severity severity, const std::string& code, const std::string& text);
   void beat(UtcTime now);
@@ -107,8 +113,9 @@ struct PlannerProcess::Impl {
 
 Result<void> PlannerProcess::Impl::plan_first() {
   Rng rng(seed);
-  auto planned = plan({mission.world, mission.start, mission.goal},
-                      planner_options(mission.planner), rng, &std::chrono::steady_clock::now);
+  planner.emplace(planner_options(mission.planner));
+  auto planned = planner->plan({mission.world, mission.start, mission.goal}, rng,
+                               &std::chrono::steady_clock::now);
   if (!planned) return tl::unexpected(planned.error());
   newest = {*std::move(planned), {}};
   if (auto w = shell::write_file(options.run_dir / shell::kPlanFile, to_json(newest.planned.plan));
@@ -201,7 +208,7 @@ void PlannerProcess::Impl::hear_robots(SteadyTime now) {
     robots->hear({.robot = RobotId(status.robot_id),
                   .position_m = {status.x_m, status.y_m},
                   .arrived = status.arrived},
-                 now);
+                 status.mode == RobotMode::kMoving, now);
   }
 }
 
@@ -210,16 +217,16 @@ void PlannerProcess::Impl::hear_robots(SteadyTime now) {
 Result<Replan> PlannerProcess::Impl::plan_anew(UtcTime now, std::span<const HeardRobot> heard) {
   const World world = world_during(mission.world, scene, now, kReplanPeriod);
   const Mixture& goal = scene.goal ? *scene.goal : mission.goal;
-  PlannerOptions wanted = planner_options(mission.planner);
-  wanted.risk.alpha = scene.risk_alpha.value_or(wanted.risk.alpha);
+  planner->set_risk({.alpha = scene.risk_alpha.value_or(mission.planner.risk_alpha),
+                     .delta_m = mission.planner.risk_delta_m});
   Rng rng(mix_seed(seed, version));
-  if (phase == MissionPhase::kReady) {
-    auto planned = plan({world, mission.start, goal}, wanted, rng, &std::chrono::steady_clock::now);
-    if (!planned) return tl::unexpected(planned.error());
-    return Replan{*std::move(planned), {}};
+  if (phase != MissionPhase::kReady) {
+    return replan(*planner, world, goal, heard, mission.robots.count, rng,
+                  &std::chrono::steady_clock::now);
   }
-  return replan(world, goal, heard, mission.robots.count, wanted, rng,
-                &std::chrono::steady_clock::now);
+  auto planned = planner->plan({world, mission.start, goal}, rng, &std::chrono::steady_clock::now);
+  if (!planned) return tl::unexpected(planned.error());
+  return Replan{*std::move(planned), {}};
 }
 
 void PlannerProcess::Impl::try_again(SteadyTime now) {
@@ -254,6 +261,22 @@ void PlannerProcess::Impl::keep_planned(SteadyTime now) {
   const bool tried = failed_scene == scene.version;
   const bool due = now - tried_at >= kReplanPeriod;
   if ((news && (!tried || due)) || (scene.moves(utc_now()) && due)) try_again(now);
+}
+
+/// CRoPS: where many are stuck the guide becomes dear, and may lead another way.
+void PlannerProcess::Impl::avoid_jams(SteadyTime now) {
+  if (phase != MissionPhase::kRunning) return;
+  const std::vector<HeardRobot> stuck = robots->stuck(now, kStuckAfter);
+  if (stuck.empty() || static_cast<double>(stuck.size()) < kStuckShare * mission.robots.count) {
+    return;
+  }
+  robots->forgive(now);
+  const Vec2& at_m = stuck[stuck.size() / 2].position_m;
+  if (!planner->avoid(at_m)) return;
+  announce(link::Severity::kInfo, "jam",
+           fmt::format("{} robots are stuck, about ({:.1f}, {:.1f}) m: the guide leads another way",
+                       stuck.size(), at_m.x(), at_m.y()));
+  try_again(now);
 }
 
 void PlannerProcess::Impl::publish() {
@@ -333,6 +356,7 @@ Result<void> PlannerProcess::run() {
     p.hear_scene(utc_now());
     p.hear_robots(now);
     p.keep_planned(now);
+    p.avoid_jams(now);
     if (now >= next_beat) {
       p.beat(utc_now());
       next_beat = std::max(next_beat + beat_period, now);

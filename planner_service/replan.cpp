@@ -25,12 +25,12 @@ std::vector<PlanEntry> entries_of(std::span<const RobotGroup> groups, std::uint3
 
 }  // namespace
 
-Result<Replan> replan(const World& world, const Mixture& goal, std::span<const HeardRobot> robots,
-                      std::uint32_t robot_count, const PlannerOptions& options, Rng& rng,
+Result<Replan> replan(Planner& planner, const World& world, const Mixture& goal,
+                      std::span<const HeardRobot> robots, std::uint32_t robot_count, Rng& rng,
                       const StageClock& clock) {
-  const auto groups = group_robots(robots, world, goal, options.risk, {});
+  const auto groups = group_robots(robots, world, goal, planner.risk(), {});
   if (!groups) return tl::unexpected(groups.error());
-  auto planned = plan({world, mixture_of(*groups), goal}, options, rng, clock);
+  auto planned = planner.plan({world, mixture_of(*groups), goal}, rng, clock);
   if (!planned) return tl::unexpected(planned.error());
   SWARM_ASSERT(planned->plan.sources().size() == groups->size());
   return Replan{*std::move(planned), entries_of(*groups, robot_count)};

@@ -27,8 +27,8 @@ struct Replan {
 /// right to within one robot for every source with a split, as at the start of a mission; drawing
 /// by id alone would not: the robots of a group are no fair sample of all ids. Robots that were not
 /// heard enter where they like. \pre ids are below `robot_count`; some robots
-Result<Replan> replan(const World& world, const Mixture& goal, std::span<const HeardRobot> robots,
-                      std::uint32_t robot_count, const PlannerOptions& options, Rng& rng,
+Result<Replan> replan(Planner& planner, const World& world, const Mixture& goal,
+                      std::span<const HeardRobot> robots, std::uint32_t robot_count, Rng& rng,
                       const StageClock& clock);
 
 }  // namespace swarm::planner

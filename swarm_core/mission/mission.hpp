@@ -26,7 +26,7 @@ struct RobotsSpec {
 };
 
 struct PlannerSpec {
-  std::string method = "swarmprm";
+  std::string method = "swarmprm";  ///< or crops
   /// Means by a low-discrepancy sequence, shapes squeezed to keep the risk limit (fit), or uniform
   /// with rejection, as printed in the paper (uniform: finds a plan less often).
   std::string sampler = "fit";
@@ -36,11 +36,14 @@ struct PlannerSpec {
   double risk_delta_m = -0.2;         ///< δ
   double sigma_min_m = 1.0;           ///< sampler range of σ₁, σ₂
   double sigma_max_m = 3.0;
-  double rho_max = 0.6;           ///< sampler range of |ρ|
-  double bridge_share = 0.3;      ///< share of samples drawn by the Gaussian sampler of ref. [20]
-  double bridge_sigma_m = 10.0;   ///< spread of its pairs
-  std::uint32_t shortcuts = 200;  ///< smoothing tries per route, 0 = publish the roadmap's routes
-  double speed_mps = 1.25;        ///< speed of the Gaussians along a route
+  double rho_max = 0.6;            ///< sampler range of |ρ|
+  double bridge_share = 0.3;       ///< share of samples drawn by the Gaussian sampler of ref. [20]
+  double bridge_sigma_m = 10.0;    ///< spread of its pairs
+  std::uint32_t shortcuts = 200;   ///< smoothing tries per route, 0 = publish the roadmap's routes
+  double speed_mps = 1.25;         ///< speed of the Gaussians along a route
+  double crops_clearance_m = 0.5;  ///< crops: nodes nearer to an obstacle are discarded
+  double crops_power = 3.0;  ///< crops: p of w(q) = (Σ dist)ᵖ; 3 in the paper, 1 in its code
+  double crops_goal_radius_m = 1.0;  ///< crops: of the intermediate goals
 };
 
 struct ControlSpec {

@@ -33,7 +33,7 @@ inline constexpr std::size_t kMaxObstacles = 10'000;
 inline constexpr std::size_t kMaxVertices = 100'000;  ///< of all polygons together
 inline constexpr std::size_t kMaxScriptEvents = 1'000;
 inline constexpr std::size_t kMaxNameLength = 64;
-inline constexpr std::array<std::string_view, 1> kPlannerMethods{"swarmprm"};
+inline constexpr std::array<std::string_view, 2> kPlannerMethods{"swarmprm", "crops"};
 inline constexpr std::array<std::string_view, 2> kPlannerSamplers{"fit", "uniform"};
 inline constexpr std::array<std::string_view, 8> kScriptActions{
     "pause", "resume", "stop", "add_obstacle", "move_obstacle", "remove_obstacle", "goto", "risk"};
@@ -47,7 +47,7 @@ inline constexpr std::array<Field<RobotsSpec>, 4> kRobots{{
     {"placement_gap_m", &RobotsSpec::placement_gap_m, between(0, 100)},
 }};
 
-inline constexpr std::array<Field<PlannerSpec>, 11> kPlanner{{
+inline constexpr std::array<Field<PlannerSpec>, 14> kPlanner{{
     {"samples", &PlannerSpec::samples, between(1, 100'000)},
     {"connection_radius_m", &PlannerSpec::connection_radius_m, positive(kMaxExtent_m)},
     {"risk_alpha", &PlannerSpec::risk_alpha, kRiskAlpha},
@@ -59,6 +59,9 @@ inline constexpr std::array<Field<PlannerSpec>, 11> kPlanner{{
     {"bridge_sigma_m", &PlannerSpec::bridge_sigma_m, positive(kMaxExtent_m)},
     {"shortcuts", &PlannerSpec::shortcuts, between(0, 1'000'000)},
     {"speed_mps", &PlannerSpec::speed_mps, positive(100)},
+    {"crops_clearance_m", &PlannerSpec::crops_clearance_m, between(0, 1000)},
+    {"crops_power", &PlannerSpec::crops_power, between(0, 10)},
+    {"crops_goal_radius_m", &PlannerSpec::crops_goal_radius_m, between(0.1, 1000)},
 }};
 
 inline constexpr std::array<Field<ControlSpec>, 11> kControl{{

@@ -23,6 +23,8 @@ class Polygon {
   /// edges).
   static Result<Polygon> make(std::vector<Vec2> vertices_m);
 
+  bool operator==(const Polygon& other) const { return vertices_m_ == other.vertices_m_; }
+
   const std::vector<Vec2>& vertices_m() const { return vertices_m_; }
   bool is_convex() const { return convex_; }
   bool contains(const Vec2& point_m) const;

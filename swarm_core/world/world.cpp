@@ -228,6 +228,11 @@ Result<World> World::make(Box bounds_m, std::vector<Obstacle> obstacles,
   return world;
 }
 
+bool World::operator==(const World& other) const {
+  return bounds_m_.min_m == other.bounds_m_.min_m && bounds_m_.max_m == other.bounds_m_.max_m &&
+         obstacles_ == other.obstacles_;
+}
+
 SignedDistance World::signed_distance(const Vec2& point_m) const {
   SignedDistance best{std::numeric_limits<double>::infinity(), Vec2::UnitX()};
   for (std::size_t i = 0; i < obstacles_.size(); ++i) {

@@ -15,6 +15,7 @@ namespace swarm {
 struct Circle {
   Vec2 center_m = Vec2::Zero();
   double radius_m = 0.0;
+  bool operator==(const Circle&) const = default;
 };
 
 /// An obstacle as the mission file gives it.
@@ -81,6 +82,9 @@ class World {
   /// `velocities_mps` is empty (nothing moves) or has one for each obstacle.
   static Result<World> make(Box bounds_m, std::vector<Obstacle> obstacles,
                             std::span<const Vec2> velocities_mps = {});
+
+  /// Whether it is the same rectangle with the same obstacles in the same order, to the last bit.
+  bool operator==(const World& other) const;
 
   const Box& bounds_m() const { return bounds_m_; }
   const std::vector<Obstacle>& obstacles() const { return obstacles_; }

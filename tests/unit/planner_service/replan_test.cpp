@@ -114,7 +114,8 @@ TEST(RobotGroups, SayWhereThereIsNoRoom) {
 TEST(Replan, GivesEveryRobotAnEntryThatMakesTheCountsComeOutRight) {
   const auto robots = robots_in_flight(200);
   Rng rng(3);
-  const auto anew = replan(scene().world, scene().goal, robots, 200, {}, rng, &no_time);
+  Planner planner({});
+  const auto anew = replan(planner, scene().world, scene().goal, robots, 200, rng, &no_time);
   ASSERT_TRUE(anew.has_value()) << anew.error().message;
   const FlowPlan& flow = anew->planned.plan;
   ASSERT_EQ(anew->entries.size(), 200U);
@@ -154,7 +155,8 @@ TEST(Replan, FindsAWayAroundAnObstacleThatWasDropped) {
   const World world = World::make(scene().world.bounds_m(), obstacles).value();
   Rng rng(4);
 
-  const auto anew = replan(world, scene().goal, robots, 100, {}, rng, &no_time);
+  Planner planner({});
+  const auto anew = replan(planner, world, scene().goal, robots, 100, rng, &no_time);
 
   ASSERT_TRUE(anew.has_value()) << anew.error().message;
   EXPECT_LE(planned_max_cvar_m(anew->planned.plan, world, 0.05), -0.2 + 1e-3);
@@ -167,7 +169,8 @@ TEST(Replan, RefusesAGoalThatWasBuriedAndNamesIt) {
   const World world = World::make(scene().world.bounds_m(), obstacles).value();
   Rng rng(4);
 
-  const auto anew = replan(world, scene().goal, robots, 20, {}, rng, &no_time);
+  Planner planner({});
+  const auto anew = replan(planner, world, scene().goal, robots, 20, rng, &no_time);
 
   ASSERT_FALSE(anew.has_value());
   EXPECT_EQ(anew.error().code, ErrorCode::kInfeasible);

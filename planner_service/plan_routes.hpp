@@ -1,0 +1,19 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+
+#include "planner_service/planner.hpp"
+#include "planner_service/stage_timer.hpp"
+#include "planner_service/transport/route.hpp"
+
+namespace swarm::planner {
+
+/// The result of a method that ends in routes: their flow, and what they cost, into `result`, which
+/// holds the roadmap and the times so far. `raw` are the routes as the roadmap gave them.
+Result<PlanResult> plan_of_routes(std::span<const Route> raw, std::span<const Route> routes,
+                                  const PlanRequest& request, double speed_mps, PlanResult result,
+                                  StageTimer& whole);
+
+}  // namespace swarm::planner

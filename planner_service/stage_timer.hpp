@@ -1,0 +1,27 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+
+#include "planner_service/planner.hpp"
+
+namespace swarm::planner {
+
+/// Takes the time between calls.
+class StageTimer {
+ public:
+  explicit StageTimer(const StageClock& clock) : clock_(clock), last_(clock()) {}
+  double lap_ms() {
+    const SteadyTime now = clock_();
+    const double lap_ms = std::chrono::duration<double, std::milli>(now - last_).count();
+    last_ = now;
+    return lap_ms;
+  }
+
+ private:
+  const StageClock& clock_;
+  SteadyTime last_;
+};
+
+}  // namespace swarm::planner
