@@ -20,19 +20,23 @@ constexpr double kShy = 1.0 - 1e-9;
 
 std::optional<Gaussian> squeeze_into_free(const Gaussian& g, const World& world, double k,
                                           double delta_m, double sigma_min_m) {
+  const Vec2 mean_m = g.mean_m();
   Gaussian squeezed = g;
   for (int round = 0; round < kRounds; ++round) {
     double worst_m = delta_m;
     SignedDistance at_worst;
-    for (const ConvexObstacle& obstacle : world.convex_obstacles()) {
-      if (obstacle.box.distance_m(g.mean_m()) >= k * squeezed.max_sigma_m() - worst_m) continue;
-      const SignedDistance at_mean = obstacle.signed_distance(g.mean_m());
+    const double spread_m = k * squeezed.max_sigma_m();
+    const auto look_at = [&](std::uint32_t i) {
+      const ConvexObstacle& obstacle = world.convex_obstacles()[i];
+      if (world.convex_boxes().boxes()[i].distance_m(mean_m) >= spread_m - worst_m) return;
+      const SignedDistance at_mean = obstacle.signed_distance(mean_m);
       const double cvar_m = obstacle_cvar_m(squeezed, at_mean, k);
       if (cvar_m > worst_m) {
         worst_m = cvar_m;
         at_worst = at_mean;
       }
-    }
+    };
+    world.convex_boxes().for_each_within({mean_m, mean_m}, spread_m - delta_m, look_at);
     if (worst_m <= delta_m) return squeezed;
     const double room_m = at_worst.distance_m + delta_m;
     if (room_m <= 0.0) return std::nullopt;
@@ -52,14 +56,15 @@ Gaussian push_out(const Gaussian& g, const World& world, double room_m) {
   for (int push = 0; push < kPushes; ++push) {
     double nearest_m = room_m;
     Vec2 away = Vec2::Zero();
-    for (const ConvexObstacle& obstacle : world.convex_obstacles()) {
-      if (obstacle.box.distance_m(mean_m) >= nearest_m) continue;
+    world.convex_boxes().for_each_within({mean_m, mean_m}, room_m, [&](std::uint32_t i) {
+      const ConvexObstacle& obstacle = world.convex_obstacles()[i];
+      if (obstacle.box.distance_m(mean_m) >= nearest_m) return;
       const SignedDistance at_mean = obstacle.signed_distance(mean_m);
       if (at_mean.distance_m < nearest_m) {
         nearest_m = at_mean.distance_m;
         away = at_mean.gradient;
       }
-    }
+    });
     if (nearest_m >= room_m) break;
     mean_m += (room_m - nearest_m) * away;
   }

@@ -60,22 +60,33 @@ double obstacle_cvar_m(const Gaussian& g, const SignedDistance& at_mean, double 
 }
 
 double max_cvar_m(const Gaussian& g, const World& world, double k) {
-  double worst_m = -std::numeric_limits<double>::infinity();
+  const Vec2& mean_m = g.mean_m();
+  const std::vector<ConvexObstacle>& obstacles = world.convex_obstacles();
   const double spread_m = k * g.max_sigma_m();
-  for (const ConvexObstacle& obstacle : world.convex_obstacles()) {
-    if (box_rules_out(obstacle, g.mean_m(), spread_m, worst_m)) continue;
-    worst_m = std::max(worst_m, obstacle_cvar_m(g, obstacle.signed_distance(g.mean_m()), k));
-  }
+  const auto cvar_m = [&](std::uint32_t i) {
+    return obstacle_cvar_m(g, obstacles[i].signed_distance(mean_m), k);
+  };
+  constexpr double kInfinity_m = std::numeric_limits<double>::infinity();
+  double bound_m = -kInfinity_m;
+  world.convex_boxes().for_some_near(
+      mean_m, [&](std::uint32_t i) { bound_m = std::max(bound_m, cvar_m(i)); });
+  double worst_m = -kInfinity_m;
+  world.convex_boxes().for_each_within({mean_m, mean_m}, spread_m - bound_m, [&](std::uint32_t i) {
+    if (box_rules_out(obstacles[i], mean_m, spread_m, worst_m)) return;
+    worst_m = std::max(worst_m, cvar_m(i));
+  });
   return worst_m;
 }
 
 bool in_free(const Gaussian& g, const World& world, double k, double delta_m) {
+  const Vec2& mean_m = g.mean_m();
+  const std::vector<ConvexObstacle>& obstacles = world.convex_obstacles();
   const double spread_m = k * g.max_sigma_m();
-  for (const ConvexObstacle& obstacle : world.convex_obstacles()) {
-    if (box_rules_out(obstacle, g.mean_m(), spread_m, delta_m)) continue;
-    if (obstacle_cvar_m(g, obstacle.signed_distance(g.mean_m()), k) > delta_m) return false;
-  }
-  return true;
+  return !world.convex_boxes().any_within(
+      {mean_m, mean_m}, spread_m - delta_m, [&](std::uint32_t i) {
+        return !box_rules_out(obstacles[i], mean_m, spread_m, delta_m) &&
+               obstacle_cvar_m(g, obstacles[i].signed_distance(mean_m), k) > delta_m;
+      });
 }
 
 }  // namespace swarm

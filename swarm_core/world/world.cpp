@@ -174,12 +174,6 @@ bool polygon_blocks(const Polygon& polygon, const Vec2& from, const Vec2& step, 
 
 }  // namespace
 
-double Box::distance_m(const Vec2& p) const {
-  const double dx = std::max({min_m.x() - p.x(), 0.0, p.x() - max_m.x()});
-  const double dy = std::max({min_m.y() - p.y(), 0.0, p.y() - max_m.y()});
-  return std::sqrt(dx * dx + dy * dy);
-}
-
 ConvexObstacle::Faced ConvexObstacle::faced(const Vec2& point_m) const {
   if (vertices_m.empty()) return {circle_distance(circle, point_m)};
   return convex_distance(edges, point_m);
@@ -194,7 +188,9 @@ Result<World> World::make(Box bounds_m, std::vector<Obstacle> obstacles,
   }
   World world;
   world.bounds_m_ = bounds_m;
-  world.boxes_.reserve(obstacles.size());
+  std::vector<Box> boxes;
+  std::vector<Box> convex_boxes;
+  boxes.reserve(obstacles.size());
   for (std::size_t i = 0; i < obstacles.size(); ++i) {
     if (const auto* circle = std::get_if<Circle>(&obstacles[i])) {
       if (!circle->center_m.allFinite() || !std::isfinite(circle->radius_m) ||
@@ -204,18 +200,20 @@ Result<World> World::make(Box bounds_m, std::vector<Obstacle> obstacles,
                                 "positive radius (radius {} m)",
                                 i, circle->radius_m));
       }
-      world.boxes_.push_back(box_of(*circle));
-      world.convex_obstacles_.push_back({{}, *circle, world.boxes_.back(), i});
+      boxes.push_back(box_of(*circle));
+      convex_boxes.push_back(boxes.back());
+      world.convex_obstacles_.push_back({{}, *circle, boxes.back(), i});
       continue;
     }
     const Polygon& polygon = std::get<Polygon>(obstacles[i]);
     if (polygon.vertices_m().empty()) {
       return fail(ErrorCode::kBadInput, fmt::format("world: obstacle {} has no vertices", i));
     }
-    world.boxes_.push_back(box_of(polygon.vertices_m()));
+    boxes.push_back(box_of(polygon.vertices_m()));
     for (std::vector<Vec2>& part : decompose_convex(polygon)) {
       const Box box = box_of(part);
       auto edges = edges_of(part);
+      convex_boxes.push_back(box);
       world.convex_obstacles_.push_back({std::move(part), {}, box, i, std::move(edges)});
     }
   }
@@ -225,6 +223,8 @@ Result<World> World::make(Box bounds_m, std::vector<Obstacle> obstacles,
     }
   }
   world.obstacles_ = std::move(obstacles);
+  world.boxes_ = BoxIndex(std::move(boxes));
+  world.convex_boxes_ = BoxIndex(std::move(convex_boxes));
   return world;
 }
 
@@ -234,23 +234,26 @@ bool World::operator==(const World& other) const {
 }
 
 SignedDistance World::signed_distance(const Vec2& point_m) const {
-  SignedDistance best{std::numeric_limits<double>::infinity(), Vec2::UnitX()};
-  for (std::size_t i = 0; i < obstacles_.size(); ++i) {
+  constexpr double kInfinity_m = std::numeric_limits<double>::infinity();
+  double bound_m = kInfinity_m;
+  boxes_.for_some_near(point_m, [&](std::uint32_t i) {
+    bound_m = std::min(bound_m, obstacle_distance(obstacles_[i], point_m).distance_m);
+  });
+  SignedDistance best{kInfinity_m, Vec2::UnitX()};
+  boxes_.for_each_within({point_m, point_m}, bound_m, [&](std::uint32_t i) {
     // Outside its box an obstacle is farther than the box, so never nearer than one that holds p.
-    const double box_distance_m = boxes_[i].distance_m(point_m);
-    if (box_distance_m > 0.0 && box_distance_m >= best.distance_m) continue;
+    const double box_distance_m = boxes_.boxes()[i].distance_m(point_m);
+    if (box_distance_m > 0.0 && box_distance_m >= best.distance_m) return;
     const SignedDistance candidate = obstacle_distance(obstacles_[i], point_m);
     if (candidate.distance_m < best.distance_m) best = candidate;
-  }
+  });
   return best;
 }
 
 bool World::is_clear(const Vec2& point_m, double clearance_m) const {
-  return std::none_of(convex_obstacles_.begin(), convex_obstacles_.end(),
-                      [&](const ConvexObstacle& obstacle) {
-                        return obstacle.box.distance_m(point_m) <= clearance_m &&
-                               obstacle.signed_distance(point_m).distance_m <= clearance_m;
-                      });
+  return !convex_boxes_.any_within({point_m, point_m}, clearance_m, [&](std::uint32_t i) {
+    return convex_obstacles_[i].signed_distance(point_m).distance_m <= clearance_m;
+  });
 }
 
 bool World::segment_is_free(const Vec2& from_m, const Vec2& to_m, double clearance_m) const {
@@ -258,18 +261,13 @@ bool World::segment_is_free(const Vec2& from_m, const Vec2& to_m, double clearan
   const double reach_m = std::max(clearance_m - kTiny_m, kTiny_m);
   const Box swept{from_m.cwiseMin(to_m), from_m.cwiseMax(to_m)};
   const Vec2 step = to_m - from_m;
-  for (std::size_t i = 0; i < obstacles_.size(); ++i) {
-    if (boxes_apart(boxes_[i], swept, reach_m)) continue;
+  return !boxes_.any_within(swept, reach_m, [&](std::uint32_t i) {
     if (const auto* circle = std::get_if<Circle>(&obstacles_[i])) {
       const double blocked_m = circle->radius_m + reach_m;
-      if (segment_point_squared(from_m, step, circle->center_m) < blocked_m * blocked_m) {
-        return false;
-      }
-    } else if (polygon_blocks(std::get<Polygon>(obstacles_[i]), from_m, step, swept, reach_m)) {
-      return false;
+      return segment_point_squared(from_m, step, circle->center_m) < blocked_m * blocked_m;
     }
-  }
-  return true;
+    return polygon_blocks(std::get<Polygon>(obstacles_[i]), from_m, step, swept, reach_m);
+  });
 }
 
 }  // namespace swarm

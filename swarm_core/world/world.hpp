@@ -8,6 +8,8 @@
 
 #include "swarm_core/base/linalg.hpp"
 #include "swarm_core/base/result.hpp"
+#include "swarm_core/world/box.hpp"
+#include "swarm_core/world/box_index.hpp"
 #include "swarm_core/world/polygon.hpp"
 
 namespace swarm {
@@ -20,17 +22,6 @@ struct Circle {
 
 /// An obstacle as the mission file gives it.
 using Obstacle = std::variant<Polygon, Circle>;
-
-/// Axis-aligned box.
-struct Box {
-  Vec2 min_m = Vec2::Zero();
-  Vec2 max_m = Vec2::Zero();
-  bool contains(const Vec2& p) const {
-    return (p.array() >= min_m.array()).all() && (p.array() <= max_m.array()).all();
-  }
-  /// Distance from a point to the box, 0 inside [m].
-  double distance_m(const Vec2& p) const;
-};
 
 /// Signed distance to an obstacle, positive outside [m], and its gradient: a unit vector that
 /// points from the obstacle towards free space. At a corner's medial axis any of the valid
@@ -92,9 +83,12 @@ class World {
   /// The obstacles, non-convex ones decomposed into convex parts.
   const std::vector<ConvexObstacle>& convex_obstacles() const { return convex_obstacles_; }
 
+  /// The boxes of the convex obstacles, for what asks only about those near a place.
+  const BoxIndex& convex_boxes() const { return convex_boxes_; }
+
   /// Signed distance to the nearest obstacle: exact outside and, where obstacles do not overlap,
   /// inside; ≥ the true penetration where they do. +∞ distance in a world without obstacles.
-  /// O(edges), obstacles farther than the best so far are skipped by their box.
+  /// Of obstacles at the same distance the first counts.
   SignedDistance signed_distance(const Vec2& point_m) const;
   double distance_m(const Vec2& point_m) const { return signed_distance(point_m).distance_m; }
 
@@ -103,15 +97,16 @@ class World {
   bool is_clear(const Vec2& point_m, double clearance_m) const;
 
   /// Whether every point of the segment is at least `clearance_m` ≥ 0 from every obstacle. Exact up
-  /// to 1 nm, from distances between segments: O(edges), also along a wall. Touching at clearance 0
-  /// is not free.
+  /// to 1 nm, from distances between segments: O(edges) of those near, also along a wall. Touching
+  /// at clearance 0 is not free.
   bool segment_is_free(const Vec2& from_m, const Vec2& to_m, double clearance_m) const;
 
  private:
   Box bounds_m_;
   std::vector<Obstacle> obstacles_;
   std::vector<ConvexObstacle> convex_obstacles_;
-  std::vector<Box> boxes_;  // of obstacles_
+  BoxIndex boxes_;         // of obstacles_
+  BoxIndex convex_boxes_;  // of convex_obstacles_
 };
 
 }  // namespace swarm
