@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <optional>
 
 namespace swarm::planner {
@@ -33,13 +34,26 @@ EdgeChecker::Sample EdgeChecker::sample(const ConvexObstacle& obstacle, const Sw
   return {t, delta_m_ - cvar_m, to_obstacle.distance_m, face};
 }
 
-EdgeChecker::Rates::Rates(const Gaussian& a, const Gaussian& b, double k, double delta_m) {
+const EdgeEnd::Seen& EdgeChecker::look(EdgeEnd& end, std::uint32_t obstacle) const {
+  const std::size_t place = obstacle % EdgeEnd::kSeen;
+  EdgeEnd::Seen& seen = end.seen_[place];
+  if (end.seen_obstacle_[place] != obstacle) {
+    const auto [to_obstacle, face] = world_->convex_obstacles()[obstacle].faced(end.mean_m());
+    const double cvar_m = obstacle_cvar_m(end.gaussian(), to_obstacle, k_);
+    end.seen_obstacle_[place] = obstacle;
+    seen = {delta_m_ - cvar_m, to_obstacle.distance_m, face};
+  }
+  return seen;
+}
+
+EdgeChecker::Rates::Rates(const EdgeEnd& a, const EdgeEnd& b, double k, double delta_m) {
   // Along a W₂ geodesic σ_max is convex and σ_min concave: the ends bound both.
-  const double sigma_max_m = std::max(a.max_sigma_m(), b.max_sigma_m());
-  const double sigma_min_m = std::min(a.min_sigma_m(), b.min_sigma_m());
-  mean_way_m = (b.mean_m() - a.mean_m()).norm();
+  const double sigma_max_m = std::max(a.sigma_max_m(), b.sigma_max_m());
+  const double sigma_min_m = std::min(a.sigma_min_m(), b.sigma_min_m());
+  const double mean_way_squared = (b.mean_m() - a.mean_m()).squaredNorm();
+  mean_way_m = std::sqrt(mean_way_squared);
   const double shape_way_m =
-      std::sqrt(std::max(0.0, wasserstein2_squared(a, b) - mean_way_m * mean_way_m));
+      std::sqrt(std::max(0.0, wasserstein2_squared(a.gaussian(), b.gaussian()) - mean_way_squared));
   straight_m = mean_way_m + k * shape_way_m;
   turn_m2 = k * (sigma_max_m - sigma_min_m) * mean_way_m;
   distance_min_m = k * sigma_min_m - delta_m;
@@ -54,30 +68,32 @@ bool EdgeChecker::is_proven(const Interval& interval, const Rates& rates, double
   return from.slack_m + to.slack_m + 2.0 * tolerance_m >= rate_m * share;
 }
 
-bool EdgeChecker::is_free(const Gaussian& a, const Gaussian& b, double tolerance_m) {
-  // An obstacle whose box is farther from the box of the way than the widest spread cannot come
-  // into play; σ_max² ≤ tr Σ.
-  const double spread_m = std::sqrt(std::max(a.covariance_m2().trace(), b.covariance_m2().trace()));
-  const double reach_m = k_ * spread_m - delta_m_;
-  const Box way{a.mean_m().cwiseMin(b.mean_m()), a.mean_m().cwiseMax(b.mean_m())};
-  std::optional<Sweep> sweep;
+bool EdgeChecker::is_free(EdgeEnd& a, EdgeEnd& b, double tolerance_m) {
+  const Vec2& from_m = a.mean_m();
+  const Vec2& to_m = b.mean_m();
+  const Box way{from_m.cwiseMin(to_m), from_m.cwiseMax(to_m)};
   open_.clear();
-  for (const ConvexObstacle& obstacle : world_->convex_obstacles()) {
-    const Vec2 gap =
-        (obstacle.box.min_m - way.max_m).cwiseMax(way.min_m - obstacle.box.max_m).cwiseMax(0.0);
-    if (gap.squaredNorm() >= reach_m * reach_m) continue;
-    if (!sweep) sweep.emplace(a, b);
-    const Interval whole{&obstacle, sample(obstacle, *sweep, 0.0), sample(obstacle, *sweep, 1.0)};
-    if (whole.from.slack_m < 0.0 || whole.to.slack_m < 0.0) return false;
-    if (!faces_one_edge(whole)) open_.push_back(whole);
-  }
+  const bool breaks_at_an_end = world_->convex_boxes().any_within(
+      way, reach_m(std::max(a.sigma_max_m(), b.sigma_max_m())), [&](std::uint32_t i) {
+        const EdgeEnd::Seen& from = look(a, i);
+        const EdgeEnd::Seen& to = look(b, i);
+        if (from.slack_m < 0.0 || to.slack_m < 0.0) return true;
+        if (from.face == to.face && from.face != ConvexObstacle::kNoFace) return false;
+        open_.push_back({&world_->convex_obstacles()[i],
+                         {0.0, from.slack_m, from.distance_m, from.face},
+                         {1.0, to.slack_m, to.distance_m, to.face}});
+        return false;
+      });
+  if (breaks_at_an_end) return false;
   if (open_.empty()) return true;
   // First in, first out: the whole edge is looked at coarsely before any part of it finely, and
   // most edges that are not free fall at once.
   const Rates rates(a, b, k_, delta_m_);
+  std::optional<Sweep> sweep;
   for (std::size_t i = 0; i < open_.size(); ++i) {
     const Interval interval = open_[i];
     if (is_proven(interval, rates, tolerance_m)) continue;
+    if (!sweep) sweep.emplace(a.gaussian(), b.gaussian());
     const Sample middle =
         sample(*interval.obstacle, *sweep, 0.5 * (interval.from.t + interval.to.t));
     if (middle.slack_m < 0.0) return false;

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "swarm_core/gmm/wasserstein.hpp"
@@ -10,6 +12,38 @@
 #include "swarm_core/world/world.hpp"
 
 namespace swarm::planner {
+
+/// An end of edges, with what every one of them asks of it again. What is learned about the
+/// obstacles around it holds for one world and one risk limit.
+class EdgeEnd {
+ public:
+  explicit EdgeEnd(const Gaussian& g)
+      : gaussian_(g), sigma_min_m_(g.min_sigma_m()), sigma_max_m_(g.max_sigma_m()) {
+    seen_obstacle_.fill(kNothing);
+  }
+
+  const Gaussian& gaussian() const { return gaussian_; }
+  const Vec2& mean_m() const { return gaussian_.mean_m(); }
+  double sigma_min_m() const { return sigma_min_m_; }
+  double sigma_max_m() const { return sigma_max_m_; }
+
+ private:
+  friend class EdgeChecker;
+  static constexpr std::uint32_t kNothing = ~0U;
+  static constexpr std::size_t kSeen = 8;
+  struct Seen {
+    double slack_m;
+    double distance_m;
+    int face;
+  };
+
+  Gaussian gaussian_;
+  double sigma_min_m_;
+  double sigma_max_m_;
+  // By the last bits of an obstacle's index; what nothing was seen of is not set.
+  std::array<std::uint32_t, kSeen> seen_obstacle_;
+  std::array<Seen, kSeen> seen_;
+};
 
 /// COLLISIONFREE of SwarmPRM, Alg. 1: whether every Gaussian on the W₂ geodesic keeps CVaR ≤ δ.
 ///
@@ -32,7 +66,19 @@ class EdgeChecker {
 
   /// True proves CVaR ≤ δ + tolerance on the whole edge; false means a point with CVaR > δ. Cost
   /// grows with 1/tolerance where the edge runs along the limit.
-  bool is_free(const Gaussian& a, const Gaussian& b, double tolerance_m);
+  bool is_free(EdgeEnd& a, EdgeEnd& b, double tolerance_m);
+  bool is_free(const Gaussian& a, const Gaussian& b, double tolerance_m) {
+    EdgeEnd from(a);
+    EdgeEnd to(b);
+    return is_free(from, to, tolerance_m);
+  }
+
+  /// How far an obstacle may be from the box of the means' way, or from one mean, and still come
+  /// into play, when σ_max is the widest of the ends [m].
+  double reach_m(double sigma_max_m) const { return k_ * sigma_max_m - delta_m_; }
+
+  /// Takes another world from now on; keeps a reference to it.
+  void set_world(const World& world) { world_ = &world; }
 
  private:
   struct Sample {
@@ -56,7 +102,7 @@ class EdgeChecker {
 
   /// How fast the slack may change over the whole edge.
   struct Rates {
-    Rates(const Gaussian& a, const Gaussian& b, double k, double delta_m);
+    Rates(const EdgeEnd& a, const EdgeEnd& b, double k, double delta_m);
     double straight_m;
     double turn_m2;  // to be divided by the distance of the corner
     double mean_way_m;
@@ -64,6 +110,7 @@ class EdgeChecker {
   };
 
   Sample sample(const ConvexObstacle& obstacle, const Sweep& sweep, double t) const;
+  const EdgeEnd::Seen& look(EdgeEnd& end, std::uint32_t obstacle) const;
   static bool faces_one_edge(const Interval& interval) {
     return interval.from.face == interval.to.face && interval.from.face != ConvexObstacle::kNoFace;
   }

@@ -5,8 +5,6 @@
 #include <limits>
 #include <utility>
 
-#include "planner_service/roadmap/neighbours.hpp"
-
 namespace swarm::planner {
 
 void Roadmap::close_edge(std::uint32_t a, std::uint32_t b) {
@@ -17,13 +15,8 @@ void Roadmap::close_edge(std::uint32_t a, std::uint32_t b) {
   }
 }
 
-Roadmap connect(std::vector<Gaussian> nodes, double radius_m, EdgeChecker& checker,
-                std::size_t terminals) {
+Roadmap assemble(std::vector<Gaussian> nodes, std::span<const NeighbourPair> edges) {
   Roadmap roadmap;
-  std::vector<NeighbourPair> edges = find_neighbours(nodes, radius_m, terminals);
-  std::erase_if(edges, [&](const NeighbourPair& edge) {
-    return !checker.is_free(nodes[edge.a], nodes[edge.b], kBuildTolerance_m);
-  });
   roadmap.arc_offset.assign(nodes.size() + 1, 0);
   for (const NeighbourPair& edge : edges) {
     ++roadmap.arc_offset[edge.a + 1];
@@ -40,6 +33,16 @@ Roadmap connect(std::vector<Gaussian> nodes, double radius_m, EdgeChecker& check
   }
   roadmap.nodes = std::move(nodes);
   return roadmap;
+}
+
+Roadmap connect(std::vector<Gaussian> nodes, double radius_m, EdgeChecker& checker,
+                std::size_t terminals) {
+  std::vector<NeighbourPair> edges = find_neighbours(nodes, radius_m, terminals);
+  std::vector<EdgeEnd> ends(nodes.begin(), nodes.end());
+  std::erase_if(edges, [&](const NeighbourPair& edge) {
+    return !checker.is_free(ends[edge.a], ends[edge.b], kBuildTolerance_m);
+  });
+  return assemble(std::move(nodes), edges);
 }
 
 }  // namespace swarm::planner

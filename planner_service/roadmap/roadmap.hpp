@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "planner_service/roadmap/edge_check.hpp"
+#include "planner_service/roadmap/neighbours.hpp"
 #include "swarm_core/gmm/gaussian.hpp"
 
 namespace swarm::planner {
@@ -40,6 +41,9 @@ struct Roadmap {
   /// Closes the edge between two nodes for every later search: its length becomes +∞.
   void close_edge(std::uint32_t a, std::uint32_t b);
 };
+
+/// The roadmap of these edges, each given once; a node's arcs are in the order of the edges.
+Roadmap assemble(std::vector<Gaussian> nodes, std::span<const NeighbourPair> edges);
 
 /// ROADMAPCONSTRUCTION without the sampling: joins all nodes within W₂ ≤ radius whose geodesic is
 /// free; `terminals` as in find_neighbours().
