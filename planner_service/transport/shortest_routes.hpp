@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -13,7 +14,9 @@ namespace swarm::planner {
 /// Shortest ways on the roadmap from one node.
 class ShortestRoutes {
  public:
-  /// Dijkstra from `source`; stops as soon as all `targets` are settled.
+  /// Label-correcting search with buckets of length: like Dijkstra's, but nodes whose lengths are
+  /// nearly equal come in any order, so that no heap is needed. Stops as soon as the lengths of all
+  /// `targets` are final.
   ShortestRoutes(const Roadmap& roadmap, std::uint32_t source,
                  std::span<const std::uint32_t> targets);
 
@@ -26,6 +29,26 @@ class ShortestRoutes {
  private:
   std::vector<double> length_m_;
   std::vector<std::uint32_t> previous_;
+};
+
+/// Shortest ways from every start to every goal. The roadmap has no direction, so the searches
+/// begin on the side with fewer nodes.
+class RouteTable {
+ public:
+  RouteTable(const Roadmap& roadmap, std::span<const std::uint32_t> starts,
+             std::span<const std::uint32_t> goals);
+
+  /// Length of the way from start i to goal j [m]; +∞ when there is none.
+  double length_m(std::size_t start, std::size_t goal) const;
+
+  /// Nodes on the way from start i to goal j, both included; empty when there is none.
+  std::vector<std::uint32_t> nodes(std::size_t start, std::size_t goal) const;
+
+ private:
+  std::vector<std::uint32_t> starts_;
+  std::vector<std::uint32_t> goals_;
+  bool from_goals_;
+  std::vector<ShortestRoutes> searches_;
 };
 
 }  // namespace swarm::planner
