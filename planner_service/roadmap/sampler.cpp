@@ -22,12 +22,26 @@ Gaussian with_random_shape(const Vec2& mean_m, const SamplerOptions& options, Rn
                                    uniform(rng, -options.rho_max, options.rho_max));
 }
 
+std::optional<Gaussian> shaped_at(const Vec2& mean_m, const World& world, double k, double delta_m,
+                                  const SamplerOptions& options, Rng& rng) {
+  const Gaussian wished = with_random_shape(mean_m, options, rng);
+  if (options.kind == SamplerKind::kFit) {
+    return squeeze_into_free(wished, world, k, delta_m, kSqueezeBelowMin * options.sigma_min_m);
+  }
+  if (!in_free(wished, world, k, delta_m)) return std::nullopt;
+  return wished;
+}
+
 }  // namespace
+
+std::optional<Gaussian> sample_at(const Vec2& mean_m, const World& world, const RiskLimit& risk,
+                                  const SamplerOptions& options, Rng& rng) {
+  return shaped_at(mean_m, world, cvar_coefficient(risk.alpha), risk.delta_m, options, rng);
+}
 
 std::vector<Gaussian> sample_free(const World& world, const RiskLimit& risk,
                                   const SamplerOptions& options, std::size_t count, Rng& rng) {
   const double k = cvar_coefficient(risk.alpha);
-  const bool fit = options.kind == SamplerKind::kFit;
   // The narrowest Gaussian that may be sampled needs this much room, so a mean nearer is no use.
   const double clearance_m = k * options.sigma_min_m - risk.delta_m;
   HaltonMeans halton(world.bounds_m(), rng);
@@ -43,16 +57,10 @@ std::vector<Gaussian> sample_free(const World& world, const RiskLimit& risk,
       mean = near_obstacle_mean(world, options.bridge_sigma_m, clearance_m, rng);
       if (!mean) continue;
     } else {
-      mean = fit ? halton.next() : uniform_mean(world.bounds_m(), rng);
+      mean = options.kind == SamplerKind::kUniform ? uniform_mean(world.bounds_m(), rng)
+                                                   : halton.next();
     }
-    const Gaussian wished = with_random_shape(*mean, options, rng);
-    std::optional<Gaussian> sample;
-    if (fit) {
-      sample =
-          squeeze_into_free(wished, world, k, risk.delta_m, kSqueezeBelowMin * options.sigma_min_m);
-    } else if (in_free(wished, world, k, risk.delta_m)) {
-      sample = wished;
-    }
+    const auto sample = shaped_at(*mean, world, k, risk.delta_m, options, rng);
     if (!sample) continue;
     samples.push_back(*sample);
     tries = 0;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "swarm_core/base/random.hpp"
@@ -16,6 +17,7 @@ namespace swarm::planner {
 enum class SamplerKind {
   kUniform,  ///< uniform means; a Gaussian that violates the risk limit is rejected (Alg. 1 as
              ///< printed)
+  kHalton,   ///< Halton means, evenly spread; rejected likewise
   kFit,      ///< Halton means; it is squeezed along the obstacle's normal instead
 };
 
@@ -31,8 +33,13 @@ struct SamplerOptions {
 /// A squeezed Gaussian may be this much narrower than σ_min before it counts as too narrow.
 inline constexpr double kSqueezeBelowMin = 0.8;
 
+/// One try of SAMPLEFREE at a given place: a Gaussian of random shape that keeps the risk limit
+/// (12), squeezed if need be when the kind is kFit.
+std::optional<Gaussian> sample_at(const Vec2& mean_m, const World& world, const RiskLimit& risk,
+                                  const SamplerOptions& options, Rng& rng);
+
 /// SAMPLEFREE of SwarmPRM, Alg. 1: Gaussians [x, y, σ₁, σ₂, ρ] (eq. 8) that keep the risk limit
-/// (12). Returns fewer than `count` when free space is so scarce that 200 tries a sample do not
+/// (12). Returns fewer than `count` when free space is so scarce that 2000 tries a sample do not
 /// find it.
 std::vector<Gaussian> sample_free(const World& world, const RiskLimit& risk,
                                   const SamplerOptions& options, std::size_t count, Rng& rng);
