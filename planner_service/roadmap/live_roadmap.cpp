@@ -1,0 +1,278 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "planner_service/roadmap/live_roadmap.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "planner_service/roadmap/means.hpp"
+#include "swarm_core/gmm/wasserstein.hpp"
+
+namespace swarm::planner {
+namespace {
+
+constexpr std::uint32_t kLost = std::numeric_limits<std::uint32_t>::max();
+// Points that are at least this many mean spacings apart, drawn until no more fit, are as dense as
+// the spacing says: random sequential packing of discs covers 0.547 of the plane.
+constexpr double kSpacing = 0.83;
+// Tries for each point that fits: enough to fill nine tenths of the gaps.
+constexpr double kTriesPerSample = 6.0;
+constexpr int kAreaGrid = 32;
+
+Box inflated(const Box& box, double by_m) {
+  const Vec2 by = Vec2::Constant(by_m);
+  return {box.min_m - by, box.max_m + by};
+}
+
+Box intersection(const Box& a, const Box& b) {
+  return {a.min_m.cwiseMax(b.min_m), a.max_m.cwiseMin(b.max_m)};
+}
+
+double area_m2(const Box& box) {
+  const Vec2 size_m = (box.max_m - box.min_m).cwiseMax(0.0);
+  return size_m.x() * size_m.y();
+}
+
+Box way_box(const Gaussian& a, const Gaussian& b) {
+  return {a.mean_m().cwiseMin(b.mean_m()), a.mean_m().cwiseMax(b.mean_m())};
+}
+
+double free_area_m2(const World& world, double clearance_m) {
+  const Vec2 step = (world.bounds_m().max_m - world.bounds_m().min_m) / kAreaGrid;
+  int free = 0;
+  for (int row = 0; row < kAreaGrid; ++row) {
+    for (int column = 0; column < kAreaGrid; ++column) {
+      const Vec2 at = world.bounds_m().min_m + step.cwiseProduct(Vec2(column + 0.5, row + 0.5));
+      free += world.is_clear(at, std::max(0.0, clearance_m)) ? 1 : 0;
+    }
+  }
+  return step.x() * step.y() * std::max(1, free);
+}
+
+bool same(const Gaussian& a, const Gaussian& b) {
+  return a.mean_m() == b.mean_m() && a.covariance_m2() == b.covariance_m2();
+}
+
+}  // namespace
+
+LiveRoadmap::LiveRoadmap(World world, std::vector<Gaussian> terminals,
+                         const LiveRoadmapOptions& options, Rng& rng)
+    : options_(options),
+      k_(cvar_coefficient(options.risk.alpha)),
+      world_(std::make_unique<const World>(std::move(world))),
+      checker_(*world_, options.risk) {
+  samples_ = sample_free(*world_, options.risk, options.sampler, options.samples, rng);
+  work_.samples_drawn = samples_.size();
+  const double clearance_m = k_ * options.sampler.sigma_min_m - options.risk.delta_m;
+  density_per_m2_ = static_cast<double>(samples_.size()) / free_area_m2(*world_, clearance_m);
+  for (const Gaussian& sample : samples_) sigma_max_m_.push_back(sample.max_sigma_m());
+  std::vector<EdgeEnd> ends(samples_.begin(), samples_.end());
+  for (const NeighbourPair& pair : find_neighbours(samples_, options.connection_radius_m)) {
+    ++work_.edges_checked;
+    sample_pairs_.push_back(
+        {pair, checker_.is_free(ends[pair.a], ends[pair.b], kBuildTolerance_m)});
+  }
+  connect_terminals(std::move(terminals));
+}
+
+void LiveRoadmap::update(World world, std::vector<Gaussian> terminals, Rng& rng) {
+  work_ = {};
+  WorldChange change = world_change(*world_, world);
+  auto next = std::make_unique<const World>(std::move(world));
+  checker_.set_world(*next);
+  world_ = std::move(next);
+  added_ = BoxIndex(std::move(change.added));
+  removed_ = BoxIndex(std::move(change.removed));
+  if (!added_.boxes().empty() || !removed_.boxes().empty()) {
+    const std::size_t before = samples_.size();
+    lose_samples();
+    recheck_pairs();
+    draw_samples(before, rng);
+  }
+  connect_terminals(std::move(terminals));
+}
+
+bool LiveRoadmap::check(const Gaussian& a, const Gaussian& b) {
+  ++work_.edges_checked;
+  return checker_.is_free(a, b, kBuildTolerance_m);
+}
+
+// A free edge can only be lost to what is new, a blocked one only be freed by what is gone.
+bool LiveRoadmap::needs_check(const Gaussian& a, const Gaussian& b, double sigma_max_m,
+                              bool free) const {
+  const BoxIndex& changed = free ? added_ : removed_;
+  return changed.any_within(way_box(a, b), checker_.reach_m(sigma_max_m),
+                            [](std::uint32_t) { return true; });
+}
+
+void LiveRoadmap::lose_samples() {
+  std::vector<std::uint32_t> renamed(samples_.size());
+  std::uint32_t kept = 0;
+  for (std::uint32_t i = 0; i < samples_.size(); ++i) {
+    const Vec2& mean_m = samples_[i].mean_m();
+    const bool near = added_.any_within({mean_m, mean_m}, checker_.reach_m(sigma_max_m_[i]),
+                                        [](std::uint32_t) { return true; });
+    if (near && !in_free(samples_[i], *world_, k_, options_.risk.delta_m)) {
+      renamed[i] = kLost;
+      continue;
+    }
+    renamed[i] = kept;
+    samples_[kept] = samples_[i];
+    sigma_max_m_[kept] = sigma_max_m_[i];
+    ++kept;
+  }
+  work_.samples_lost = samples_.size() - kept;
+  if (work_.samples_lost == 0) return;
+  samples_.erase(samples_.begin() + kept, samples_.end());
+  sigma_max_m_.resize(kept);
+  std::erase_if(sample_pairs_, [&](Candidate& candidate) {
+    candidate.pair.a = renamed[candidate.pair.a];
+    candidate.pair.b = renamed[candidate.pair.b];
+    return candidate.pair.a == kLost || candidate.pair.b == kLost;
+  });
+  const auto terminals = static_cast<std::uint32_t>(terminals_.size());
+  for (std::vector<Candidate>& pairs : terminal_pairs_) {
+    std::erase_if(pairs, [&](Candidate& candidate) {
+      if (candidate.pair.b < terminals) return false;
+      const std::uint32_t sample = renamed[candidate.pair.b - terminals];
+      if (sample == kLost) return true;
+      candidate.pair.b = terminals + sample;
+      return false;
+    });
+  }
+}
+
+void LiveRoadmap::recheck_pairs() {
+  for (Candidate& candidate : sample_pairs_) {
+    const auto [a, b, distance_m] = candidate.pair;
+    const double sigma_max_m = std::max(sigma_max_m_[a], sigma_max_m_[b]);
+    if (!needs_check(samples_[a], samples_[b], sigma_max_m, candidate.free)) continue;
+    candidate.free = check(samples_[a], samples_[b]);
+  }
+}
+
+// Fills what is gone to the density of the beginning; what was lost to something new comes back
+// around it, where the ways are narrow now, as long as the roadmap is not larger than it was.
+void LiveRoadmap::draw_samples(std::size_t before, Rng& rng) {
+  const std::size_t first = samples_.size();
+  const double spacing_m = kSpacing / std::sqrt(density_per_m2_);
+  const double reach_m = checker_.reach_m(options_.sampler.sigma_max_m);
+  for (const Box& box : removed_.boxes()) {
+    const Box place = intersection(inflated(box, reach_m), world_->bounds_m());
+    const double fit = density_per_m2_ * area_m2(place);
+    const auto tries = static_cast<std::size_t>(
+        std::min(kTriesPerSample * fit, 10.0 * static_cast<double>(options_.samples)));
+    draw_in(place, spacing_m, tries, tries, rng);
+  }
+  std::size_t lost = work_.samples_lost;
+  for (std::size_t i = 0; i < added_.boxes().size() && lost > 0; ++i) {
+    const std::size_t room = std::min(before, options_.samples);
+    if (samples_.size() >= room) break;
+    const std::size_t drawn = samples_.size();
+    const std::size_t share = (lost + added_.boxes().size() - i - 1) / (added_.boxes().size() - i);
+    draw_in(intersection(inflated(added_.boxes()[i], 2.0 * reach_m), world_->bounds_m()), 0.0,
+            std::min(share, room - drawn), 20 * share, rng);
+    lost -= std::min(lost, samples_.size() - drawn);
+  }
+  work_.samples_drawn = samples_.size() - first;
+  join_samples_from(first);
+}
+
+void LiveRoadmap::draw_in(const Box& box, double spacing_m, std::size_t most, std::size_t tries,
+                          Rng& rng) {
+  if (area_m2(box) <= 0.0) return;
+  std::vector<Vec2> near_m;
+  for (const Gaussian& sample : samples_) {
+    if (box.distance_m(sample.mean_m()) < spacing_m) near_m.push_back(sample.mean_m());
+  }
+  for (std::size_t drawn = 0; drawn < most && tries > 0; --tries) {
+    const Vec2 mean_m = uniform_mean(box, rng);
+    const bool taken = std::any_of(near_m.begin(), near_m.end(), [&](const Vec2& other) {
+      return (other - mean_m).squaredNorm() < spacing_m * spacing_m;
+    });
+    if (taken) continue;
+    const auto sample = sample_at(mean_m, *world_, options_.risk, options_.sampler, rng);
+    if (!sample) continue;
+    near_m.push_back(mean_m);
+    samples_.push_back(*sample);
+    sigma_max_m_.push_back(sample->max_sigma_m());
+    ++drawn;
+  }
+}
+
+void LiveRoadmap::join_samples_from(std::size_t first) {
+  const double radius_m = options_.connection_radius_m;
+  for (auto b = static_cast<std::uint32_t>(first); b < samples_.size(); ++b) {
+    for (std::uint32_t a = 0; a < b; ++a) {
+      const double mean_squared = (samples_[a].mean_m() - samples_[b].mean_m()).squaredNorm();
+      if (mean_squared > radius_m * radius_m * (1.0 + 1e-12)) continue;
+      const double distance_m = wasserstein2(samples_[a], samples_[b]);
+      if (distance_m > radius_m) continue;
+      sample_pairs_.push_back({{a, b, distance_m}, check(samples_[a], samples_[b])});
+    }
+  }
+}
+
+void LiveRoadmap::connect_terminals(std::vector<Gaussian> terminals) {
+  std::vector<Gaussian> nodes = terminals;
+  nodes.insert(nodes.end(), samples_.begin(), samples_.end());
+  const auto count = static_cast<std::uint32_t>(terminals.size());
+  const auto old_count = static_cast<std::uint32_t>(terminals_.size());
+  // Which old terminal a new one is, so that its verdicts are kept.
+  std::vector<std::uint32_t> old_of(count, kLost);
+  for (std::uint32_t t = 0; t < count; ++t) {
+    const auto found = std::find_if(terminals_.begin(), terminals_.end(),
+                                    [&](const Gaussian& old) { return same(old, terminals[t]); });
+    if (found != terminals_.end())
+      old_of[t] = static_cast<std::uint32_t>(found - terminals_.begin());
+  }
+  constexpr std::uint8_t kUnknown = 2;
+  std::vector<std::uint8_t> known;
+  std::vector<std::vector<Candidate>> next(count);
+  for (std::uint32_t t = 0; t < count; ++t) {
+    known.assign(old_count + samples_.size(), kUnknown);
+    if (old_of[t] != kLost) {
+      for (const Candidate& candidate : terminal_pairs_[old_of[t]]) {
+        known[candidate.pair.b] = candidate.free ? 1 : 0;
+      }
+    }
+    for (const NeighbourPair& pair :
+         terminal_neighbours(nodes, t, count, options_.connection_radius_m)) {
+      // An old terminal that comes before this one now had the pair the other way round.
+      const std::uint32_t old_b =
+          pair.b >= count ? pair.b - count + old_count
+          : old_of[t] != kLost && old_of[pair.b] != kLost && old_of[pair.b] > old_of[t]
+              ? old_of[pair.b]
+              : kLost;
+      const std::uint8_t verdict = old_b == kLost ? kUnknown : known[old_b];
+      const Gaussian& a = nodes[t];
+      const Gaussian& b = nodes[pair.b];
+      const double sigma_max_m = std::max(a.max_sigma_m(), b.max_sigma_m());
+      const bool fresh = verdict == kUnknown || needs_check(a, b, sigma_max_m, verdict == 1);
+      next[t].push_back({pair, fresh ? check(a, b) : verdict == 1});
+    }
+  }
+  terminals_ = std::move(terminals);
+  terminal_pairs_ = std::move(next);
+}
+
+Roadmap LiveRoadmap::roadmap() const {
+  std::vector<Gaussian> nodes = terminals_;
+  nodes.insert(nodes.end(), samples_.begin(), samples_.end());
+  const auto terminals = static_cast<std::uint32_t>(terminals_.size());
+  std::vector<NeighbourPair> edges;
+  edges.reserve(sample_pairs_.size());
+  for (const std::vector<Candidate>& pairs : terminal_pairs_) {
+    for (const Candidate& candidate : pairs) {
+      if (candidate.free) edges.push_back(candidate.pair);
+    }
+  }
+  for (const auto& [pair, free] : sample_pairs_) {
+    if (free) edges.push_back({pair.a + terminals, pair.b + terminals, pair.distance_m});
+  }
+  return assemble(std::move(nodes), edges);
+}
+
+}  // namespace swarm::planner

@@ -1,0 +1,95 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "planner_service/roadmap/edge_check.hpp"
+#include "planner_service/roadmap/neighbours.hpp"
+#include "planner_service/roadmap/roadmap.hpp"
+#include "planner_service/roadmap/sampler.hpp"
+#include "planner_service/roadmap/world_change.hpp"
+#include "swarm_core/base/random.hpp"
+#include "swarm_core/gmm/gaussian.hpp"
+#include "swarm_core/world/box_index.hpp"
+#include "swarm_core/world/world.hpp"
+
+namespace swarm::planner {
+
+struct LiveRoadmapOptions {
+  std::size_t samples = 500;          ///< n of Alg. 1
+  double connection_radius_m = 20.0;  ///< r of Alg. 1, in W₂
+  RiskLimit risk;
+  SamplerOptions sampler;
+};
+
+/// A roadmap that is kept while the world changes, and repaired where it does.
+///
+/// Its edges are always those that connect() would find for its nodes in its world: an edge's
+/// verdict is the sum of the verdicts of the obstacles within reach, so that only free edges near a
+/// new obstacle and blocked ones near a gone one are looked at again, and edges of nodes that are
+/// new. Everything else costs a comparison of boxes.
+///
+/// Samples that a new obstacle catches are drawn again around it, and the place a gone one leaves
+/// is filled to the density the roadmap began with. The same calls and generator state give the
+/// same roadmap.
+class LiveRoadmap {
+ public:
+  /// `terminals` are the start components, then the goal components: the first nodes of the
+  /// roadmap, as they are given. Whether they keep the risk limit is the caller's question.
+  LiveRoadmap(World world, std::vector<Gaussian> terminals, const LiveRoadmapOptions& options,
+              Rng& rng);
+
+  /// Takes the world and the terminals as they are now. Finds by itself what has changed.
+  void update(World world, std::vector<Gaussian> terminals, Rng& rng);
+
+  const World& world() const { return *world_; }
+
+  /// What a search needs: its own copy, where it may close edges. Linear in the edges.
+  Roadmap roadmap() const;
+
+  /// What the last call cost, the constructor included.
+  struct Work {
+    std::size_t edges_checked = 0;
+    std::size_t samples_lost = 0;
+    std::size_t samples_drawn = 0;
+  };
+  const Work& work() const { return work_; }
+
+ private:
+  // A pair within the radius and whether its geodesic is free. Samples are numbered from 0 here, so
+  // that the number of terminals does not matter.
+  struct Candidate {
+    NeighbourPair pair;
+    bool free = false;
+  };
+
+  bool check(const Gaussian& a, const Gaussian& b);
+  bool needs_check(const Gaussian& a, const Gaussian& b, double sigma_max_m, bool free) const;
+  void lose_samples();
+  void recheck_pairs();
+  void draw_samples(std::size_t before, Rng& rng);
+  void draw_in(const Box& box, double spacing_m, std::size_t most, std::size_t tries, Rng& rng);
+  void join_samples_from(std::size_t first);
+  void connect_terminals(std::vector<Gaussian> terminals);
+
+  LiveRoadmapOptions options_;
+  double k_ = 0.0;
+  std::unique_ptr<const World> world_;  // the checker's, wherever this object moves
+  EdgeChecker checker_;
+  double density_per_m2_ = 0.0;
+  std::vector<Gaussian> terminals_;
+  std::vector<Gaussian> samples_;
+  std::vector<double> sigma_max_m_;  // of the samples
+  std::vector<Candidate> sample_pairs_;
+  // Of each terminal: b counts terminals first, then samples.
+  std::vector<std::vector<Candidate>> terminal_pairs_;
+  BoxIndex added_;
+  BoxIndex removed_;
+  Work work_;
+};
+
+}  // namespace swarm::planner
