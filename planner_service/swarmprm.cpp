@@ -80,14 +80,15 @@ Result<std::vector<Route>> choose_routes(Roadmap& roadmap, const PlanRequest& re
   const std::vector<double> supplies = weights_of(request.start);
   const std::vector<double> demands = weights_of(request.goal);
   const std::size_t starts = supplies.size();
+  std::vector<std::uint32_t> start_nodes(starts);
   std::vector<std::uint32_t> goal_nodes(demands.size());
+  std::iota(start_nodes.begin(), start_nodes.end(), 0U);
   std::iota(goal_nodes.begin(), goal_nodes.end(), static_cast<std::uint32_t>(starts));
   for (;;) {
-    std::vector<ShortestRoutes> searches;
+    const RouteTable table(roadmap, start_nodes, goal_nodes);
     std::vector<double> costs_m;
-    for (std::uint32_t i = 0; i < starts; ++i) {
-      searches.emplace_back(roadmap, i, goal_nodes);
-      for (const std::uint32_t goal : goal_nodes) costs_m.push_back(searches[i].length_m(goal));
+    for (std::size_t i = 0; i < starts; ++i) {
+      for (std::size_t j = 0; j < demands.size(); ++j) costs_m.push_back(table.length_m(i, j));
     }
     stats.search_ms += stage.lap_ms();
     const auto shipments = solve_transport(supplies, demands, costs_m);
@@ -98,8 +99,7 @@ Result<std::vector<Route>> choose_routes(Roadmap& roadmap, const PlanRequest& re
     std::vector<Route> routes;
     bool proven = true;
     for (const Shipment& shipment : *shipments) {
-      const std::vector<std::uint32_t> nodes =
-          searches[shipment.from].nodes_to(goal_nodes[shipment.to]);
+      const std::vector<std::uint32_t> nodes = table.nodes(shipment.from, shipment.to);
       Route route{shipment.from, shipment.to, shipment.mass, {}};
       for (std::size_t i = 0; i < nodes.size(); ++i) {
         route.waypoints.push_back(roadmap.nodes[nodes[i]]);

@@ -93,6 +93,7 @@ bool EdgeChecker::is_free(EdgeEnd& a, EdgeEnd& b, double tolerance_m) {
   for (std::size_t i = 0; i < open_.size(); ++i) {
     const Interval interval = open_[i];
     if (is_proven(interval, rates, tolerance_m)) continue;
+    if (i >= kMostIntervals) return false;
     if (!sweep) sweep.emplace(a.gaussian(), b.gaussian());
     const Sample middle =
         sample(*interval.obstacle, *sweep, 0.5 * (interval.from.t + interval.to.t));

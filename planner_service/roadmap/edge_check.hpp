@@ -61,11 +61,15 @@ class EdgeEnd {
 /// Keeps scratch memory: one checker per thread.
 class EdgeChecker {
  public:
+  /// A hundred times what any edge of a plan in metres needs.
+  static constexpr std::size_t kMostIntervals = 1U << 14U;
+
   /// Keeps a reference to the world.
   EdgeChecker(const World& world, const RiskLimit& risk);
 
-  /// True proves CVaR ≤ δ + tolerance on the whole edge; false means a point with CVaR > δ. Cost
-  /// grows with 1/tolerance where the edge runs along the limit.
+  /// True proves CVaR ≤ δ + tolerance on the whole edge; false means a point with CVaR > δ, or that
+  /// kMostIntervals did not prove it: cost grows with 1/tolerance where the edge runs along the
+  /// limit, and without bound with the numbers of a Gaussian kilometres long and millimetres wide.
   bool is_free(EdgeEnd& a, EdgeEnd& b, double tolerance_m);
   bool is_free(const Gaussian& a, const Gaussian& b, double tolerance_m) {
     EdgeEnd from(a);

@@ -18,9 +18,13 @@ namespace swarm::planner {
 namespace {
 
 constexpr double kWorthwhile_m = 1e-6;
+// A route longer than this many spacings is looked at more coarsely: time is bounded for any
+// mission.
+constexpr double kMostParts = 2000.0;
 constexpr std::array kSteps{1.0, 0.5};
 
 Waypoints resampled(const Waypoints& waypoints, double spacing_m) {
+  spacing_m = std::max(spacing_m, w2_length_m(waypoints) / kMostParts);
   Waypoints fine{waypoints.front()};
   for (std::size_t i = 1; i < waypoints.size(); ++i) {
     const double length_m = wasserstein2(waypoints[i - 1], waypoints[i]);

@@ -62,5 +62,52 @@ TEST(ShortestRoutes, AreAsShortAsFloydAndWarshallFindThem) {
   }
 }
 
+TEST(RouteTable, IsTheSameFromWhicheverSideItSearches) {
+  const auto scene = testing::standin_scene();
+  EdgeChecker checker(scene.world, {});
+  Rng rng(3);
+  const Roadmap roadmap = connect(sample_free(scene.world, {}, {}, 200, rng), 18.0, checker);
+  const std::vector<std::uint32_t> few{3, 50};
+  const std::vector<std::uint32_t> many{7, 3, 120, 199};
+
+  const RouteTable forward(roadmap, few, many);
+  const RouteTable backward(roadmap, many, few);
+
+  for (std::size_t i = 0; i < few.size(); ++i) {
+    const ShortestRoutes search(roadmap, few[i], many);
+    for (std::size_t j = 0; j < many.size(); ++j) {
+      EXPECT_NEAR(forward.length_m(i, j), search.length_m(many[j]), 1e-9);
+      EXPECT_NEAR(backward.length_m(j, i), search.length_m(many[j]), 1e-9);
+      const auto there = forward.nodes(i, j);
+      const auto back = backward.nodes(j, i);
+      ASSERT_FALSE(there.empty());
+      EXPECT_EQ(there.front(), few[i]);
+      EXPECT_EQ(there.back(), many[j]);
+      EXPECT_TRUE(std::equal(there.rbegin(), there.rend(), back.begin(), back.end()));
+    }
+  }
+}
+
+TEST(ShortestRoutes, StandArcsOfAnyLength) {
+  // A row of nodes a millimetre apart, one a kilometre away, and the same place twice.
+  const auto at = [](double x) { return Gaussian::from_parameters({x, 0}, 1, 1, 0); };
+  std::vector<Gaussian> nodes;
+  for (int i = 0; i < 200; ++i) nodes.push_back(at(1e-3 * i));
+  nodes.push_back(at(0.0));
+  nodes.push_back(at(1000.0));
+  std::vector<NeighbourPair> edges;
+  for (std::uint32_t i = 0; i + 1 < 200; ++i) edges.push_back({i, i + 1, 1e-3});
+  edges.push_back({0, 200, 0.0});
+  edges.push_back({199, 201, 999.801});
+  edges.push_back({200, 201, 1001.0});
+  const Roadmap roadmap = assemble(nodes, edges);
+  const std::vector<std::uint32_t> far{201};
+
+  const ShortestRoutes routes(roadmap, 200, far);
+
+  EXPECT_NEAR(routes.length_m(201), 1000.0, 1e-9);
+  EXPECT_EQ(routes.nodes_to(201).size(), 202U);
+}
+
 }  // namespace
 }  // namespace swarm::planner
