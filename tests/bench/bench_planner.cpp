@@ -2,11 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // The planner's parts beside what they are to be compared with, in one program on one map:
 //   build/bench/bin/bench_planner
+#include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <new>
 #include <vector>
 
 #include <benchmark/benchmark.h>
 #include <malloc.h>
+#include <nanoflann.hpp>
 
 #ifdef SWARM_WITH_OMPL
 #include <ompl/base/spaces/RealVectorStateSpace.h>
@@ -18,8 +22,41 @@
 
 #include "planner_service/planner.hpp"
 #include "planner_service/roadmap/edge_check.hpp"
+#include "planner_service/roadmap/live_roadmap.hpp"
+#include "planner_service/roadmap/neighbours.hpp"
 #include "swarm_core/gmm/wasserstein.hpp"
 #include "swarm_core/mission/mission_file.hpp"
+
+namespace {
+
+// What operator new has handed out and not got back, and the most there was of it.
+bool counting = false;
+std::size_t heap_now = 0;
+std::size_t heap_peak = 0;
+
+void* counted_new(std::size_t size) {
+  void* memory = std::malloc(size);
+  if (memory == nullptr) std::abort();
+  if (counting) {
+    heap_now += ::malloc_usable_size(memory);
+    heap_peak = std::max(heap_peak, heap_now);
+  }
+  return memory;
+}
+
+void counted_delete(void* memory) {
+  if (counting && memory != nullptr) heap_now -= std::min(heap_now, ::malloc_usable_size(memory));
+  std::free(memory);
+}
+
+}  // namespace
+
+void* operator new(std::size_t size) { return counted_new(size); }
+void* operator new[](std::size_t size) { return counted_new(size); }
+void operator delete(void* memory) noexcept { counted_delete(memory); }
+void operator delete[](void* memory) noexcept { counted_delete(memory); }
+void operator delete(void* memory, std::size_t) noexcept { counted_delete(memory); }
+void operator delete[](void* memory, std::size_t) noexcept { counted_delete(memory); }
 
 namespace swarm::planner {
 namespace {
@@ -56,22 +93,210 @@ void BM_PlanSmoothed(benchmark::State& state) {
 BENCHMARK(BM_PlanSmoothed)->Unit(benchmark::kMillisecond);
 
 // The radius of PRM*, proportional to √(log n / n), that is 20 m at n = 500.
+double prm_star_radius_m(double n) {
+  return 20.0 * std::sqrt(std::log(n) / n) / std::sqrt(std::log(500.0) / 500.0);
+}
+
 void BM_PlanRawGrowth(benchmark::State& state) {
   const auto n = static_cast<double>(state.range(0));
   PlannerOptions options = planner_options(demo().planner);
   options.shortcuts = 0;
   options.samples = static_cast<std::size_t>(state.range(0));
-  options.connection_radius_m =
-      20.0 * std::sqrt(std::log(n) / n) / std::sqrt(std::log(500.0) / 500.0);
+  options.connection_radius_m = prm_star_radius_m(n);
   std::uint64_t seed = 1;
   for (auto _ : state) plan_once(options, seed++, state);
   state.SetComplexityN(state.range(0));
+  // Once more with a look at the heap: everything a plan holds at its fullest moment.
+  heap_now = heap_peak = 0;
+  counting = true;
+  plan_once(options, 1, state);
+  counting = false;
+  state.counters["peak_bytes_per_sample"] = static_cast<double>(heap_peak) / n;
 }
 BENCHMARK(BM_PlanRawGrowth)
     ->RangeMultiplier(2)
     ->Range(500, 8000)
     ->Unit(benchmark::kMillisecond)
     ->Complexity();
+
+std::vector<Gaussian> some_nodes(std::size_t count) {
+  const PlannerOptions options = planner_options(demo().planner);
+  Rng rng(1);
+  return sample_free(demo().world, options.risk, options.sampler, count, rng);
+}
+
+void BM_Neighbours(benchmark::State& state) {
+  const auto nodes = some_nodes(static_cast<std::size_t>(state.range(0)));
+  const double radius_m = prm_star_radius_m(static_cast<double>(nodes.size()));
+  for (auto _ : state) benchmark::DoNotOptimize(find_neighbours(nodes, radius_m));
+}
+BENCHMARK(BM_Neighbours)->Arg(500)->Arg(8000)->Unit(benchmark::kMicrosecond);
+
+// What nanoflann asks of a point cloud; the names are its own.
+struct MeanCloud {
+  std::span<const Gaussian> nodes;
+  std::size_t kdtree_get_point_count() const { return nodes.size(); }
+  double kdtree_get_pt(std::size_t index, std::size_t axis) const {
+    return nodes[index].mean_m()(static_cast<Eigen::Index>(axis));
+  }
+  template <class BBox>
+  bool kdtree_get_bbox(BBox&) const {
+    return false;
+  }
+};
+
+// The same pairs by a k-d tree of the means.
+void BM_NeighboursKdTree(benchmark::State& state) {
+  using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, MeanCloud>,
+                                                   MeanCloud, 2, std::uint32_t>;
+  const auto nodes = some_nodes(static_cast<std::size_t>(state.range(0)));
+  const double radius_m = prm_star_radius_m(static_cast<double>(nodes.size()));
+  for (auto _ : state) {
+    const MeanCloud cloud{nodes};
+    const Tree tree(2, cloud);
+    std::vector<std::pair<std::uint32_t, double>> found;
+    std::vector<NeighbourPair> pairs;
+    for (std::uint32_t a = 0; a < nodes.size(); ++a) {
+      found.clear();
+      tree.radiusSearch(nodes[a].mean_m().data(), radius_m * radius_m, found, {32, 0.0F, false});
+      for (const auto& [b, squared] : found) {
+        if (b <= a) continue;
+        const double distance_m = wasserstein2(nodes[a], nodes[b]);
+        if (distance_m <= radius_m) pairs.push_back({a, b, distance_m});
+      }
+    }
+    benchmark::DoNotOptimize(pairs);
+  }
+}
+BENCHMARK(BM_NeighboursKdTree)->Arg(500)->Arg(8000)->Unit(benchmark::kMicrosecond);
+
+// Pebbles all over the map, as many as asked for.
+std::vector<Box> pebbles(std::size_t count) {
+  Rng rng(1);
+  std::vector<Box> boxes;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Vec2 at(uniform(rng, 0, 200), uniform(rng, 0, 160));
+    boxes.push_back({at, at + Vec2(1, 1)});
+  }
+  return boxes;
+}
+
+template <class Query>
+void query_boxes(benchmark::State& state, Query&& query) {
+  Rng rng(2);
+  std::vector<Box> places;
+  for (int i = 0; i < 1000; ++i) {
+    const Vec2 at(uniform(rng, 0, 200), uniform(rng, 0, 160));
+    places.push_back({at, at + Vec2(10, 10)});
+  }
+  std::size_t i = 0;
+  for (auto _ : state) benchmark::DoNotOptimize(query(places[i++ % places.size()]));
+}
+
+constexpr double kPlaceReach_m = 6.0;
+
+void BM_BoxQuery(benchmark::State& state) {
+  const BoxIndex index(pebbles(static_cast<std::size_t>(state.range(0))));
+  query_boxes(state, [&](const Box& place) {
+    std::uint32_t found = 0;
+    index.any_within(place, kPlaceReach_m, [&](std::uint32_t) { return ++found, false; });
+    return found;
+  });
+}
+BENCHMARK(BM_BoxQuery)->Arg(6)->Arg(11)->Arg(24)->Arg(25)->Arg(50)->Arg(100)->Arg(10'000);
+
+// The naive one: every box, every time.
+void BM_BoxScan(benchmark::State& state) {
+  const auto boxes = pebbles(static_cast<std::size_t>(state.range(0)));
+  query_boxes(state, [&](const Box& place) {
+    std::uint32_t found = 0;
+    for (const Box& box : boxes) {
+      found += place.gap_squared_m2(box) <= kPlaceReach_m * kPlaceReach_m ? 1U : 0U;
+    }
+    return found;
+  });
+}
+BENCHMARK(BM_BoxScan)->Arg(6)->Arg(11)->Arg(24)->Arg(25)->Arg(50)->Arg(100)->Arg(10'000);
+
+// The demo's blocks made of pebbles.
+World pebble_world(std::size_t count) {
+  const World& blocks = demo().world;
+  const double spacing_m = std::sqrt(10'525.0 / static_cast<double>(count));
+  std::vector<Obstacle> obstacles;
+  for (double x = 0.5 * spacing_m; x < 200.0; x += spacing_m) {
+    for (double y = 0.5 * spacing_m; y < 160.0; y += spacing_m) {
+      if (blocks.distance_m({x, y}) < 0.0) obstacles.emplace_back(Circle{{x, y}, 0.5 * spacing_m});
+    }
+  }
+  return World::make(blocks.bounds_m(), std::move(obstacles)).value();
+}
+
+void BM_PlanAmongPebbles(benchmark::State& state) {
+  const World world = pebble_world(static_cast<std::size_t>(state.range(0)));
+  PlannerOptions options = planner_options(demo().planner);
+  options.shortcuts = 0;
+  std::uint64_t seed = 1;
+  for (auto _ : state) {
+    Rng rng(seed++);
+    const auto planned = plan({world, demo().start, demo().goal}, options, rng, &no_time);
+    if (!planned) state.SkipWithError(planned.error().message.c_str());
+  }
+}
+BENCHMARK(BM_PlanAmongPebbles)->Arg(100)->Arg(1000)->Arg(10'000)->Unit(benchmark::kMillisecond);
+
+LiveRoadmapOptions live_options(std::size_t samples) {
+  const PlannerOptions options = planner_options(demo().planner);
+  return {.samples = samples,
+          .connection_radius_m = prm_star_radius_m(static_cast<double>(samples)),
+          .risk = options.risk,
+          .sampler = options.sampler};
+}
+
+std::vector<Gaussian> terminals() {
+  std::vector<Gaussian> terminals;
+  for (const Mixture* mixture : {&demo().start, &demo().goal}) {
+    for (const auto& component : mixture->components()) terminals.push_back(component.gaussian);
+  }
+  return terminals;
+}
+
+World with_circle(double y) {
+  std::vector<Obstacle> obstacles = demo().world.obstacles();
+  obstacles.emplace_back(Circle{{100, y}, 3.0});
+  return World::make(demo().world.bounds_m(), std::move(obstacles)).value();
+}
+
+// An obstacle wanders along the main passage, half a metre a step; a roadmap for the search after
+// every step.
+void BM_RoadmapRepaired(benchmark::State& state) {
+  Rng rng(1);
+  LiveRoadmap live(demo().world, terminals(),
+                   live_options(static_cast<std::size_t>(state.range(0))), rng);
+  std::size_t step = 0;
+  double checks = 0.0;
+  for (auto _ : state) {
+    live.update(with_circle(103.0 + 0.5 * static_cast<double>(step++ % 28)), terminals(), rng);
+    checks += static_cast<double>(live.work().edges_checked);
+    benchmark::DoNotOptimize(live.roadmap());
+  }
+  state.counters["edges_checked"] = benchmark::Counter(checks, benchmark::Counter::kAvgIterations);
+}
+BENCHMARK(BM_RoadmapRepaired)->Arg(500)->Arg(8000)->Unit(benchmark::kMicrosecond);
+
+// The naive one: built anew.
+void BM_RoadmapRebuilt(benchmark::State& state) {
+  Rng rng(1);
+  std::size_t step = 0;
+  double checks = 0.0;
+  for (auto _ : state) {
+    LiveRoadmap live(with_circle(103.0 + 0.5 * static_cast<double>(step++ % 28)), terminals(),
+                     live_options(static_cast<std::size_t>(state.range(0))), rng);
+    checks += static_cast<double>(live.work().edges_checked);
+    benchmark::DoNotOptimize(live.roadmap());
+  }
+  state.counters["edges_checked"] = benchmark::Counter(checks, benchmark::Counter::kAvgIterations);
+}
+BENCHMARK(BM_RoadmapRebuilt)->Arg(500)->Arg(8000)->Unit(benchmark::kMicrosecond);
 
 std::vector<std::pair<Gaussian, Gaussian>> some_edges() {
   const Mission& mission = demo();
