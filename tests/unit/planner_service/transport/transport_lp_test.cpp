@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "swarm_core/base/random.hpp"
+#include "tests/unit/planner_service/transport/lp_oracle.hpp"
 
 namespace swarm::planner {
 namespace {
@@ -81,12 +82,44 @@ TEST(TransportLp, IsAsCheapAsTheBestOfAllTransports) {
       out[s.from] += s.mass;
       in[s.to] += s.mass;
     }
-    EXPECT_NEAR(cost, best, 1e-5);  // costs are rounded to 3e-6 of the dearest, masses to 1e-9
-    for (std::size_t i = 0; i < out.size(); ++i) EXPECT_NEAR(out[i], supply[i] / 8.0, 1e-9);
-    for (std::size_t j = 0; j < in.size(); ++j) EXPECT_NEAR(in[j], demand[j] / 8.0, 1e-9);
+    EXPECT_NEAR(cost, best, 1e-12 * best);  // rounding of the sums: eighths are whole units
+    for (std::size_t i = 0; i < out.size(); ++i) EXPECT_DOUBLE_EQ(out[i], supply[i] / 8.0);
+    for (std::size_t j = 0; j < in.size(); ++j) EXPECT_DOUBLE_EQ(in[j], demand[j] / 8.0);
     EXPECT_LE(shipments->size(), supply.size() + demand.size() - 1);  // basic
   }
   EXPECT_GT(infeasible, 10);
+}
+
+TEST(TransportLp, EqualsALinearProgramOnWeightsOfAnyKind) {
+  Rng rng(2);
+  for (int round = 0; round < 200; ++round) {
+    std::vector<double> supply(2 + rng() % 7);
+    std::vector<double> demand(2 + rng() % 7);
+    for (std::vector<double>* masses : {&supply, &demand}) {
+      double sum = 0.0;
+      for (double& mass : *masses) sum += mass = uniform(rng, 1e-3, 1.0);
+      for (double& mass : *masses) mass /= sum;
+    }
+    std::vector<double> costs(supply.size() * demand.size());
+    for (double& cost : costs) cost = uniform01(rng) < 0.1 ? kInfinity : uniform(rng, 1.0, 300.0);
+    testing::LinearProgram lp;
+    for (const double mass : supply) lp.add_row(mass, mass);
+    for (const double mass : demand) lp.add_row(mass, mass);
+    for (std::size_t cell = 0; cell < costs.size(); ++cell) {
+      if (std::isinf(costs[cell])) continue;
+      lp.add_column(costs[cell], {{static_cast<int>(cell / demand.size()), 1.0},
+                                  {static_cast<int>(supply.size() + cell % demand.size()), 1.0}});
+    }
+    const auto best = lp.minimum();
+
+    const auto shipments = solve_transport(supply, demand, costs);
+
+    ASSERT_EQ(shipments.has_value(), best.has_value());
+    if (!shipments) continue;
+    double cost = 0.0;
+    for (const Shipment& s : *shipments) cost += s.mass * costs[s.from * demand.size() + s.to];
+    EXPECT_NEAR(cost, *best, 1e-9 * *best);
+  }
 }
 
 TEST(TransportLp, ClosesTheSumsOfThirds) {
@@ -99,7 +132,7 @@ TEST(TransportLp, ClosesTheSumsOfThirds) {
   ASSERT_TRUE(shipments.has_value());
   double sum = 0.0;
   for (const Shipment& s : *shipments) sum += s.mass;
-  EXPECT_NEAR(sum, 1.0, 1e-15);
+  EXPECT_NEAR(sum, 1.0, 1e-14);  // each weight is rounded to 2⁻⁵⁰ = 9e-16
 }
 
 TEST(TransportLp, AcceptsWaysThatCostNothing) {
