@@ -1,0 +1,173 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "planner_service/transport/plan_density.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "planner_service/transport/density_cap.hpp"
+#include "swarm_core/base/assert.hpp"
+#include "swarm_core/gmm/wasserstein.hpp"
+
+namespace swarm::planner {
+namespace {
+
+constexpr int kClimbSteps = 40;
+constexpr double kClimbed_m = 1e-3;
+// A Gaussian adds less than 1e-9 of its peak beyond this squared Mahalanobis distance, ...
+constexpr double kFar = 42.0;
+// ... and less than that around a mean that is twice as far: a climb leaves it out.
+constexpr double kOutOfSight = 4.0 * kFar;
+// Means this far below the highest one are not climbed from.
+constexpr double kWorthClimbing = 0.5;
+
+// A Gaussian at one time, ready to be evaluated.
+struct Part {
+  Vec2 mean_m;
+  double xx, xy, yy;  // Σ⁻¹
+  double peak_per_m2;
+  std::uint32_t from, to;
+
+  double mahalanobis_squared(const Vec2& x) const {
+    const Vec2 d = x - mean_m;
+    return xx * d.x() * d.x() + 2.0 * xy * d.x() * d.y() + yy * d.y() * d.y();
+  }
+  double density_at(const Vec2& x) const {
+    const double squared = mahalanobis_squared(x);
+    return squared > kFar ? 0.0 : peak_per_m2 * std::exp(-0.5 * squared);
+  }
+};
+
+// Follows the mean shift, which never descends, to a local maximum.
+Vec2 climb(const std::vector<Part>& parts, Vec2 x) {
+  for (int step = 0; step < kClimbSteps; ++step) {
+    double xx = 0.0;
+    double xy = 0.0;
+    double yy = 0.0;
+    Vec2 pull = Vec2::Zero();
+    for (const Part& part : parts) {
+      const double w = part.density_at(x);
+      if (w == 0.0) continue;
+      xx += w * part.xx;
+      xy += w * part.xy;
+      yy += w * part.yy;
+      pull.x() += w * (part.xx * part.mean_m.x() + part.xy * part.mean_m.y());
+      pull.y() += w * (part.xy * part.mean_m.x() + part.yy * part.mean_m.y());
+    }
+    const double det = xx * yy - xy * xy;
+    if (!(det > 0.0)) break;
+    const Vec2 next((yy * pull.x() - xy * pull.y()) / det, (xx * pull.y() - xy * pull.x()) / det);
+    const bool arrived = (next - x).squaredNorm() < kClimbed_m * kClimbed_m;
+    x = next;
+    if (arrived) break;
+  }
+  return x;
+}
+
+class Slice {
+ public:
+  Slice(const FlowPlan& plan, double robots, MissionTime t) : time_(t) {
+    const auto& nodes = plan.nodes();
+    for (const std::uint32_t i : plan.sources()) {
+      if (t < nodes[i].time) add(nodes[i].gaussian, nodes[i].mass * robots, i, i);
+    }
+    for (const PlanLeg& leg : plan.legs()) {
+      const PlanNode& from = nodes[leg.from];
+      const PlanNode& to = nodes[leg.to];
+      if (t < from.time || t >= to.time) continue;
+      const double share = (t - from.time) / (to.time - from.time);
+      add(Geodesic(from.gaussian, to.gaussian).at(share), leg.mass * robots, leg.from, leg.to);
+    }
+    for (const std::uint32_t i : plan.sinks()) {
+      if (t >= nodes[i].time) add(nodes[i].gaussian, nodes[i].mass * robots, i, i);
+    }
+  }
+
+  const std::vector<Part>& parts() const { return parts_; }
+
+  // One peak for each mean worth climbing from, given what is of interest.
+  std::vector<DensityPeak> peaks(double interest_per_m2) const {
+    std::vector<DensityPeak> peaks;
+    std::vector<Part> in_sight;
+    for (const Part& start : parts_) {
+      in_sight.clear();
+      double density = 0.0;
+      for (const Part& part : parts_) {
+        const double squared = part.mahalanobis_squared(start.mean_m);
+        if (squared > kOutOfSight) continue;
+        in_sight.push_back(part);
+        if (squared <= kFar) density += part.peak_per_m2 * std::exp(-0.5 * squared);
+      }
+      if (density < kWorthClimbing * interest_per_m2) continue;
+      const Vec2 top_m = climb(in_sight, start.mean_m);
+      peaks.push_back({density_at(top_m), time_, top_m});
+    }
+    return peaks;
+  }
+
+  double density_at(const Vec2& x) const {
+    double density = 0.0;
+    for (const Part& part : parts_) density += part.density_at(x);
+    return density;
+  }
+
+ private:
+  void add(const Gaussian& g, double robots, std::uint32_t from, std::uint32_t to) {
+    const Mat2& s = g.covariance_m2();
+    const double det = g.determinant();
+    parts_.push_back({g.mean_m(), s(1, 1) / det, -s(0, 1) / det, s(0, 0) / det,
+                      peak_density_per_m2(g, robots, 1.0), from, to});
+  }
+
+  MissionTime time_;
+  std::vector<Part> parts_;
+};
+
+std::vector<MissionTime> sample_times(const FlowPlan& plan, double step_s) {
+  SWARM_ASSERT(step_s > 0.0);
+  std::vector<MissionTime> times;
+  double first_s = 0.0;
+  for (const PlanNode& node : plan.nodes()) {
+    times.push_back(node.time);
+    first_s = std::min(first_s, node.time.count());
+  }
+  const auto steps = static_cast<std::size_t>((plan.duration().count() - first_s) / step_s);
+  for (std::size_t i = 0; i <= steps; ++i) {
+    times.emplace_back(first_s + static_cast<double>(i) * step_s);
+  }
+  std::sort(times.begin(), times.end());
+  times.erase(std::unique(times.begin(), times.end()), times.end());
+  return times;
+}
+
+}  // namespace
+
+DensityPeak max_density(const FlowPlan& plan, double robots, double step_s) {
+  DensityPeak highest;
+  for (const MissionTime t : sample_times(plan, step_s)) {
+    for (const DensityPeak& peak : Slice(plan, robots, t).peaks(highest.per_m2)) {
+      if (peak.per_m2 > highest.per_m2) highest = peak;
+    }
+  }
+  return highest;
+}
+
+std::vector<SharedPeak> peaks_above(const FlowPlan& plan, double robots, double step_s,
+                                    double limit_per_m2) {
+  std::vector<SharedPeak> above;
+  for (const MissionTime t : sample_times(plan, step_s)) {
+    const Slice slice(plan, robots, t);
+    for (const DensityPeak& peak : slice.peaks(limit_per_m2)) {
+      if (peak.per_m2 <= limit_per_m2) continue;
+      SharedPeak shared{peak, {}};
+      for (const Part& part : slice.parts()) {
+        const double density = part.density_at(peak.at_m);
+        if (density > 0.0) shared.shares.push_back({part.from, part.to, density});
+      }
+      above.push_back(std::move(shared));
+    }
+  }
+  return above;
+}
+
+}  // namespace swarm::planner

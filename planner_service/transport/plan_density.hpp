@@ -1,0 +1,43 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "swarm_core/plan/flow_plan.hpp"
+
+namespace swarm::planner {
+
+/// A local maximum of the density N χ(t)(x) of a plan's mixture.
+struct DensityPeak {
+  double per_m2 = 0.0;
+  MissionTime time{0};
+  Vec2 at_m = Vec2::Zero();
+};
+
+/// What makes up a peak: the density that one leg, or one source or sink standing still (`from` =
+/// `to`), contributes.
+struct DensityShare {
+  std::uint32_t from = 0;
+  std::uint32_t to = 0;
+  double per_m2 = 0.0;
+};
+
+struct SharedPeak {
+  DensityPeak peak;
+  std::vector<DensityShare> shares;
+};
+
+/// The highest density of a plan over sampled times. It knows the flow alone, no solver.
+///
+/// Times are `step_s` apart, and those of all nodes. At each, the climb starts at the mean of every
+/// Gaussian and follows the mean shift x ← (Σ wₖΣₖ⁻¹)⁻¹ Σ wₖΣₖ⁻¹μₖ, wₖ the density of part k at x,
+/// which never descends. Cost: times · parts · (parts + those in sight · a dozen steps).
+DensityPeak max_density(const FlowPlan& plan, double robots, double step_s);
+
+/// All peaks above `limit_per_m2`, in order of time.
+std::vector<SharedPeak> peaks_above(const FlowPlan& plan, double robots, double step_s,
+                                    double limit_per_m2);
+
+}  // namespace swarm::planner
