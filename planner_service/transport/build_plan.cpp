@@ -3,27 +3,13 @@
 #include "planner_service/transport/build_plan.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <utility>
 
 #include "swarm_core/base/assert.hpp"
-#include "swarm_core/gmm/wasserstein.hpp"
 
 namespace swarm::planner {
 namespace {
-
-// Legs must run forward in time even where nothing moves.
-constexpr double kShortestLeg_s = 1e-3;
-
-// A mean that stands still while its Gaussian changes shape still takes its robots along: the leg
-// then lasts as long as their mean way asks for.
-double leg_duration_s(const Gaussian& from, const Gaussian& to, double speed_mps) {
-  const double mean_way_m = (to.mean_m() - from.mean_m()).norm();
-  const double squared = wasserstein2_squared(from, to);
-  const double shape_way_m = std::sqrt(std::max(0.0, squared - mean_way_m * mean_way_m));
-  return std::max(std::max(mean_way_m, shape_way_m) / speed_mps, kShortestLeg_s);
-}
 
 std::vector<double> arrival_times_s(const Waypoints& waypoints, double speed_mps) {
   std::vector<double> times_s{0.0};

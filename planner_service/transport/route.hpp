@@ -17,6 +17,11 @@ double w2_length_m(const Waypoints& waypoints);
 /// Σ |Δμ| over the legs [m]: the way of the mean.
 double mean_length_m(const Waypoints& waypoints);
 
+/// How long a leg takes when means move at `speed_mps` [s]. A mean that stands still while its
+/// Gaussian changes shape still takes its robots along: the leg then lasts as long as their mean
+/// way asks for. Never 0, legs must run forward in time even where nothing moves.
+double leg_duration_s(const Gaussian& from, const Gaussian& to, double speed_mps);
+
 struct Route {
   std::size_t from = 0;  ///< start component
   std::size_t to = 0;    ///< goal component
