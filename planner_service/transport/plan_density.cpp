@@ -14,27 +14,35 @@ namespace {
 
 constexpr int kClimbSteps = 40;
 constexpr double kClimbed_m = 1e-3;
-// A Gaussian adds less than 1e-9 of its peak beyond this squared Mahalanobis distance, ...
-constexpr double kFar = 42.0;
-// ... and less than that around a mean that is twice as far: a climb leaves it out.
-constexpr double kOutOfSight = 4.0 * kFar;
-// Means this far below the highest one are not climbed from.
-constexpr double kWorthClimbing = 0.5;
+// A Gaussian adds less than 1e-6 of its peak beyond this many standard deviations, ...
+constexpr double kFar = 5.3;
+constexpr double kFarSquared = kFar * kFar;
+// ... and is left out of a climb that starts two more away: one of the parts in between would have
+// to pull it that far.
+constexpr double kOutOfSight = kFar + 2.0;
+// Means where the density is this far below what is of interest are not climbed from. The middle of
+// a square of equal Gaussians has 1.3 times the density of its corners at most.
+constexpr double kWorthClimbing = 0.7;
 
 // A Gaussian at one time, ready to be evaluated.
 struct Part {
   Vec2 mean_m;
+  Vec2 sight_m;       // half the box beyond which it is out of sight
   double xx, xy, yy;  // Σ⁻¹
   double peak_per_m2;
   std::uint32_t from, to;
 
+  bool is_in_sight(const Vec2& x) const {
+    return std::abs(x.x() - mean_m.x()) <= sight_m.x() &&
+           std::abs(x.y() - mean_m.y()) <= sight_m.y();
+  }
   double mahalanobis_squared(const Vec2& x) const {
     const Vec2 d = x - mean_m;
     return xx * d.x() * d.x() + 2.0 * xy * d.x() * d.y() + yy * d.y() * d.y();
   }
   double density_at(const Vec2& x) const {
     const double squared = mahalanobis_squared(x);
-    return squared > kFar ? 0.0 : peak_per_m2 * std::exp(-0.5 * squared);
+    return squared > kFarSquared ? 0.0 : peak_per_m2 * std::exp(-0.5 * squared);
   }
 };
 
@@ -93,10 +101,9 @@ class Slice {
       in_sight.clear();
       double density = 0.0;
       for (const Part& part : parts_) {
-        const double squared = part.mahalanobis_squared(start.mean_m);
-        if (squared > kOutOfSight) continue;
+        if (!part.is_in_sight(start.mean_m)) continue;
         in_sight.push_back(part);
-        if (squared <= kFar) density += part.peak_per_m2 * std::exp(-0.5 * squared);
+        density += part.density_at(start.mean_m);
       }
       if (density < kWorthClimbing * interest_per_m2) continue;
       const Vec2 top_m = climb(in_sight, start.mean_m);
@@ -105,9 +112,12 @@ class Slice {
     return peaks;
   }
 
+  // Nothing is too far for the result.
   double density_at(const Vec2& x) const {
     double density = 0.0;
-    for (const Part& part : parts_) density += part.density_at(x);
+    for (const Part& part : parts_) {
+      density += part.peak_per_m2 * std::exp(-0.5 * part.mahalanobis_squared(x));
+    }
     return density;
   }
 
@@ -115,7 +125,8 @@ class Slice {
   void add(const Gaussian& g, double robots, std::uint32_t from, std::uint32_t to) {
     const Mat2& s = g.covariance_m2();
     const double det = g.determinant();
-    parts_.push_back({g.mean_m(), s(1, 1) / det, -s(0, 1) / det, s(0, 0) / det,
+    const Vec2 sight_m(kOutOfSight * std::sqrt(s(0, 0)), kOutOfSight * std::sqrt(s(1, 1)));
+    parts_.push_back({g.mean_m(), sight_m, s(1, 1) / det, -s(0, 1) / det, s(0, 0) / det,
                       peak_density_per_m2(g, robots, 1.0), from, to});
   }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -27,7 +28,7 @@ constexpr double kBelowCap = 0.995;
 // What is lowered beside a peak: nodes with this share in it, and by no more than this at once,
 // because some of what is on a node may find a place elsewhere.
 constexpr double kShareThatCounts = 0.02;
-constexpr double kLowestStep = 0.7;
+constexpr double kLowestStep = 0.5;
 constexpr int kNeighbouringWaves = 10;
 
 struct Terminals {
@@ -180,7 +181,10 @@ Result<TimedFlow> timed_flow(const Roadmap& roadmap, std::span<const double> sup
     const auto moves = horizon.solve({supplies, demands, capacities});
     if (!moves) return tl::unexpected(too_dense(cap, moves.error().message));
     auto timed = timed_plan(roadmap.nodes, supplies, demands, *moves, network.step_s());
-    if (!timed) return tl::unexpected(too_dense(cap, timed.error().message));
+    if (!timed) {
+      return tl::unexpected(too_dense(
+          cap, fmt::format("{}, in steps of {:.1f} s", timed.error().message, result.step_s)));
+    }
     const std::vector<SharedPeak> peaks =
         peaks_above(timed->plan, cap.robots, options.sample_s, cap.max_per_m2);
     if (peaks.empty()) {

@@ -89,7 +89,7 @@ TEST(PlanDensity, SharesOfAPeakAddUpToIt) {
     double sum = 0.0;
     for (const DensityShare& share : shared.shares) sum += share.per_m2;
     EXPECT_GT(shared.peak.per_m2, 2.0);
-    EXPECT_NEAR(sum, shared.peak.per_m2, 1e-9);
+    EXPECT_NEAR(sum, shared.peak.per_m2, 1e-5);  // what adds less than 1e-6 of its peak is left out
     highest = std::max(highest, shared.peak.per_m2);
   }
   // Climbs from different means end within 1 mm of the same top.
