@@ -231,17 +231,23 @@ std::string Constraints::describe(const Use& use, const StepWeights& weights) co
       cvar_m + 0.01, risk_.alpha, 1.01 * risk_.alpha * use.share);
 }
 
-// The columns of the plan made a step ago, and those of waiting, which completes it.
+// The columns of the plan made a step ago, completed by waiting.
 std::vector<std::size_t> likely_columns(const HorizonNetwork& network, HorizonMemory& memory) {
   std::vector<std::size_t> likely;
+  const std::size_t last = network.horizon() - 1;
   for (std::size_t c = 0; c < network.columns().size(); ++c) {
     const HorizonNetwork::Column& column = network.columns()[c];
-    if (column.stage == network.horizon()) break;
+    if (column.stage > last) break;
     const auto& arcs = memory.arcs()[column.stage];
-    if (column.from == column.to ||
-        std::find(arcs.begin(), arcs.end(), std::pair(column.from, column.to)) != arcs.end()) {
-      likely.push_back(c);
+    bool is_likely =
+        std::find(arcs.begin(), arcs.end(), std::pair(column.from, column.to)) != arcs.end();
+    if (column.stage == last && last > 0 && column.from == column.to) {
+      const auto& before = memory.arcs()[last - 1];
+      is_likely = is_likely || std::any_of(before.begin(), before.end(), [&](const auto& arc) {
+                    return arc.second == column.from;
+                  });
     }
+    if (is_likely) likely.push_back(c);
   }
   return likely;
 }

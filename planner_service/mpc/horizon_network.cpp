@@ -20,6 +20,7 @@ HorizonNetwork::HorizonNetwork(const RiskGraph& graph, std::span<const VertexMas
     : horizon_(costs.horizon),
       vertices_(graph.vertices().size()),
       arcs_(graph.arcs().size()),
+      sources_(sources.size()),
       goals_(graph.goals()) {
   SWARM_ASSERT(horizon_ >= 1 && goal_weights.size() == goals_);
   const double unit_m = graph.options().collocation.spacing_m;
@@ -57,40 +58,57 @@ HorizonNetwork::HorizonNetwork(const RiskGraph& graph, std::span<const VertexMas
   }
 }
 
-std::vector<double> HorizonNetwork::costs_to_go(std::size_t goal,
-                                                std::vector<std::size_t>* chosen) const {
-  std::vector<double> to_go(goal_row_, kInfinity);
-  if (chosen != nullptr) chosen->assign(goal_row_, columns_.size());
+HorizonNetwork::Ways HorizonNetwork::ways_to(std::size_t goal) const {
+  Ways ways{std::vector<double>(goal_row_, kInfinity),
+            std::vector<std::size_t>(goal_row_, columns_.size())};
   // Columns are ordered by stage: from the last to the first every layer is ready when it is read.
   for (std::size_t c = columns_.size(); c-- > 0;) {
     const Column& column = columns_[c];
-    if (column.stage == horizon_ && goal < goals_ && column.to != goal) continue;
-    const double beyond = column.stage == horizon_ ? 0.0 : to_go[row(column.stage + 1, column.to)];
-    double& best = to_go[row(column.stage, column.from)];
-    if (column.cost + beyond >= best) continue;
-    best = column.cost + beyond;
-    if (chosen != nullptr) (*chosen)[row(column.stage, column.from)] = c;
+    if (column.stage == horizon_ && column.to != goal) continue;
+    const double beyond =
+        column.stage == horizon_ ? 0.0 : ways.cost[row(column.stage + 1, column.to)];
+    const std::size_t from = row(column.stage, column.from);
+    if (column.cost + beyond >= ways.cost[from]) continue;
+    ways.cost[from] = column.cost + beyond;
+    ways.column[from] = c;
   }
-  return to_go;
+  return ways;
 }
 
-std::vector<std::size_t> HorizonNetwork::cheapest_tree() const {
-  std::vector<std::size_t> chosen;
-  costs_to_go(goals_, &chosen);
-  return chosen;
+std::vector<std::size_t> HorizonNetwork::cheapest_routes() const {
+  std::vector<std::size_t> routes;
+  for (std::size_t n = 0; n < goals_; ++n) {
+    const Ways ways = ways_to(n);
+    for (std::size_t source = 0; source < sources_; ++source) {
+      for (std::size_t c = ways.column[source]; c < columns_.size();) {
+        routes.push_back(c);
+        if (columns_[c].stage == horizon_) break;
+        c = ways.column[row(columns_[c].stage + 1, columns_[c].to)];
+      }
+    }
+  }
+  return routes;
 }
 
 std::vector<double> HorizonNetwork::detours() const {
   std::vector<double> least(columns_.size(), kInfinity);
   for (std::size_t n = 0; n < goals_; ++n) {
-    const std::vector<double> to_go = costs_to_go(n, nullptr);
+    const std::vector<double> to_go = ways_to(n).cost;
+    // Least cost from a source, less all that this source's cheapest way costs.
+    std::vector<double> so_far(goal_row_, kInfinity);
     for (std::size_t c = 0; c < columns_.size(); ++c) {
       const Column& column = columns_[c];
       if (column.stage == horizon_ && column.to != n) continue;
-      const double here = to_go[row(column.stage, column.from)];
-      const double beyond =
-          column.stage == horizon_ ? 0.0 : to_go[row(column.stage + 1, column.to)];
-      if (std::isfinite(beyond)) least[c] = std::min(least[c], column.cost + beyond - here);
+      const std::size_t from = row(column.stage, column.from);
+      if (column.stage == 0 && std::isfinite(to_go[from])) so_far[from] = -to_go[from];
+      const double through = so_far[from] + column.cost;
+      if (column.stage == horizon_) {
+        least[c] = std::min(least[c], through);
+        continue;
+      }
+      const std::size_t to = row(column.stage + 1, column.to);
+      so_far[to] = std::min(so_far[to], through);
+      if (std::isfinite(to_go[to])) least[c] = std::min(least[c], through + to_go[to]);
     }
   }
   return least;

@@ -61,12 +61,12 @@ class HorizonNetwork {
     return row_of_[layer][vertex] >= 0;
   }
 
-  /// The column of every component's cheapest way to any goal, by row below goal_row(0);
-  /// columns().size() for a dead end. Its basis is dual feasible.
-  std::vector<std::size_t> cheapest_tree() const;
+  /// The columns of the cheapest way from every source to every goal. Without them a program of few
+  /// columns might have no solution.
+  std::vector<std::size_t> cheapest_routes() const;
 
-  /// How much dearer, at least, the cheapest way to a goal is when it takes this column: by column,
-  /// the least over the goals. Never negative.
+  /// How much dearer than the cheapest way from some source to some goal the cheapest one is that
+  /// takes this column: by column, never negative, +∞ where no way leads on.
   std::vector<double> detours() const;
 
   /// Weights ω at a step, by vertex, 0 where there is no mass. `x` by column.
@@ -75,12 +75,16 @@ class HorizonNetwork {
   std::vector<double> arc_weights(std::size_t step, std::span<const double> x) const;
 
  private:
-  // Cost from every row to a goal, to the cheapest one for `goal` = all; `chosen` the column taken.
-  std::vector<double> costs_to_go(std::size_t goal, std::vector<std::size_t>* chosen) const;
+  struct Ways {
+    std::vector<double> cost;         // by row below goal_row(0), +∞ where there is none
+    std::vector<std::size_t> column;  // taken first
+  };
+  Ways ways_to(std::size_t goal) const;
 
   std::size_t horizon_ = 0;
   std::size_t vertices_ = 0;
   std::size_t arcs_ = 0;
+  std::size_t sources_ = 0;
   std::size_t goals_ = 0;
   std::size_t goal_row_ = 0;
   std::vector<std::vector<int>> row_of_;  // [layer][vertex], −1 where not in the layer

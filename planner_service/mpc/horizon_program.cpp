@@ -3,6 +3,7 @@
 #include "planner_service/mpc/horizon_program.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numeric>
 
@@ -12,7 +13,7 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // The share of columns to begin with: fewer make more rounds, more make each slower.
-constexpr double kFirstShare = 0.15;
+constexpr double kFirstShare = 0.05;
 
 // Reduced costs above this count as 0.
 constexpr double kPriceTolerance = 1e-8;
@@ -27,28 +28,74 @@ HorizonProgram::HorizonProgram(const HorizonNetwork& network, std::span<const st
       by_vertex_(network.horizon()),
       by_arc_(network.horizon()),
       is_active_(network.columns().size(), 0),
-      row_basic_(network.right_side().size(), 0) {
+      row_basic_(network.right_side().size(), 1),
+      is_met_(network.right_side().size(), 0) {
   const std::vector<double> detours = network.detours();
   std::vector<double> sorted = detours;
   const auto last = static_cast<std::ptrdiff_t>(kFirstShare * static_cast<double>(sorted.size()));
   std::nth_element(sorted.begin(), sorted.begin() + last, sorted.end());
   const double limit = sorted[static_cast<std::size_t>(last)];
-  const std::vector<std::size_t> tree = network.cheapest_tree();
-  std::vector<std::uint8_t> in_tree(detours.size(), 0);
-  for (std::size_t row = 0; row < row_basic_.size(); ++row) {
-    if (row < tree.size() && tree[row] < detours.size()) {
-      in_tree[tree[row]] = 1;
-    } else {
-      row_basic_[row] = 1;  // a goal, or a dead end where no mass may come
+  for (std::size_t n = network.goal_row(0); n < is_met_.size(); ++n) is_met_[n] = 1;
+  const Offers ways = offers(std::vector<double>(network.right_side().size(), 0.0));
+  for (const std::size_t c : network.cheapest_routes()) enter(c, ways);
+  for (const std::size_t c : likely) enter(c, ways);
+  for (std::size_t c = 0; c < detours.size(); ++c) {
+    if (detours[c] <= limit && std::isfinite(detours[c])) enter(c, ways);
+  }
+}
+
+HorizonProgram::Offers HorizonProgram::offers(std::span<const double> row_price) const {
+  std::vector<double> price(row_price.begin(), row_price.end());
+  for (std::size_t row = 0; row < is_met_.size(); ++row) {
+    if (is_met_[row] == 0) price[row] = kInfinity;
+  }
+  Offers offers{std::vector<std::size_t>(is_met_.size(), is_active_.size()), {}};
+  // From the last stage to the first: what a column leads to has its price when it is read.
+  for (std::size_t c = is_active_.size(); c-- > 0;) {
+    if (is_active_[c] != 0) continue;
+    const HorizonNetwork::Column& column = network_->columns()[c];
+    const std::size_t from = network_->row(column.stage, column.from);
+    double reduced = column.cost;
+    visit_column(c, [&](std::size_t row, double value) {
+      if (row != from) reduced -= price[row] * value;
+    });
+    if (is_met_[from] != 0) {
+      if (reduced - price[from] < -kPriceTolerance) offers.columns.push_back(c);
+    } else if (reduced < price[from]) {
+      price[from] = reduced;
+      offers.way_on[from] = c;
     }
   }
-  for (const std::size_t c : likely) is_active_[c] = 1;
-  for (std::size_t c = 0; c < detours.size(); ++c) {
-    if (in_tree[c] != 0 || detours[c] <= limit) is_active_[c] = 1;
-    if (is_active_[c] == 0) continue;
-    active_.push_back(c);
-    column_basic_.push_back(in_tree[c]);
+  return offers;
+}
+
+void HorizonProgram::enter(std::size_t index, const Offers& offers) {
+  const HorizonNetwork::Column& column = network_->columns()[index];
+  meet(network_->row(column.stage, column.from), offers);
+  activate(index, false);
+  if (column.stage == network_->horizon()) return;
+  meet(network_->row(column.stage + 1, column.to), offers);
+}
+
+// Takes a row into the program with the way on from there. Its first column takes the row's place
+// in the basis, which stays triangular and as feasible as it was.
+void HorizonProgram::meet(std::size_t row, const Offers& offers) {
+  while (is_met_[row] == 0 && offers.way_on[row] < is_active_.size()) {
+    const std::size_t c = offers.way_on[row];
+    const HorizonNetwork::Column& column = network_->columns()[c];
+    is_met_[row] = 1;
+    row_basic_[row] = 0;
+    activate(c, true);
+    if (column.stage == network_->horizon()) return;
+    row = network_->row(column.stage + 1, column.to);
   }
+}
+
+void HorizonProgram::activate(std::size_t column, bool is_basic) {
+  if (is_active_[column] != 0) return;
+  is_active_[column] = 1;
+  active_.push_back(column);
+  column_basic_.push_back(is_basic ? 1 : 0);
 }
 
 void HorizonProgram::ask(std::span<const WeightRow> rows) {
@@ -118,21 +165,6 @@ LinearProgram HorizonProgram::whole(std::span<const WeightRow> rows) {
   return program(all);
 }
 
-// Lets in what would lower the cost; whether there was any.
-bool HorizonProgram::price(std::span<const double> row_price) {
-  const std::size_t before = active_.size();
-  for (std::size_t c = 0; c < is_active_.size(); ++c) {
-    if (is_active_[c] != 0) continue;
-    double reduced = network_->columns()[c].cost;
-    visit_column(c, [&](std::size_t row, double value) { reduced -= row_price[row] * value; });
-    if (reduced >= -kPriceTolerance) continue;
-    is_active_[c] = 1;
-    active_.push_back(c);
-    column_basic_.push_back(0);
-  }
-  return active_.size() > before;
-}
-
 LpSolution HorizonProgram::solve(std::span<const WeightRow> rows) {
   ask(rows);
   int pivots = 0;
@@ -149,7 +181,9 @@ LpSolution HorizonProgram::solve(std::span<const WeightRow> rows) {
     excess_basic_.assign(excess, basis.column_basic.end());
     row_basic_ = std::move(basis.row_basic);
     const std::size_t solved = active_.size();
-    if (!price(solution.row_price)) {
+    const Offers better = offers(solution.row_price);
+    for (const std::size_t c : better.columns) enter(c, better);
+    if (better.columns.empty()) {
       std::vector<double> x(is_active_.size(), 0.0);
       for (std::size_t i = 0; i < solved; ++i) x[active_[i]] = solution.x[i];
       solution.x = std::move(x);

@@ -26,9 +26,10 @@ struct WeightRow {
 /// The linear programs of one FTMPC: the network's (11a–e) with weight rows, which are only ever
 /// renewed or appended, so that each program starts from the basis of the one before.
 ///
-/// A step has thousands of columns, of which a few dozen carry mass. Those that lie near cheapest
-/// ways are in the program at first; the rest is priced after each solve and joins when its reduced
-/// cost is negative. The optimum is that of all columns.
+/// A step has thousands of columns, of which a few dozen carry mass. Those that lie on nearly
+/// cheapest ways are in the program at first; the rest is priced after each solve and joins when
+/// its reduced cost is negative, together with the cheapest way on from where it leads, which gives
+/// components that no column has met yet their price. The optimum is that of all columns.
 class HorizonProgram {
  public:
   /// Cost of a unit of excess: more than any detour is worth.
@@ -56,7 +57,15 @@ class HorizonProgram {
   template <class Visit>
   void visit_column(std::size_t column, Visit visit) const;
   LinearProgram program(std::span<const std::size_t> columns) const;
-  bool price(std::span<const double> row_price);
+  // Where to go on from rows that are not met yet, and columns worth to enter, at these prices.
+  struct Offers {
+    std::vector<std::size_t> way_on;  // column by row, columns() where it is met or a dead end
+    std::vector<std::size_t> columns;
+  };
+  Offers offers(std::span<const double> row_price) const;
+  void enter(std::size_t column, const Offers& offers);
+  void meet(std::size_t row, const Offers& offers);
+  void activate(std::size_t column, bool is_basic);
 
   const HorizonNetwork* network_;
   std::size_t rows_ = 0;                    // weight rows
@@ -66,6 +75,7 @@ class HorizonProgram {
   std::vector<std::uint8_t> column_basic_;  // by place in active_
   std::vector<std::uint8_t> excess_basic_;  // by weight row
   std::vector<std::uint8_t> row_basic_;     // equality rows, then weight rows
+  std::vector<std::uint8_t> is_met_;        // by equality row: some column in the program has it
 };
 
 }  // namespace swarm::planner
