@@ -4,7 +4,8 @@
 
 #include <utility>
 
-#include "planner_service/transport/build_plan.hpp"
+#include "planner_service/transport/merge_routes.hpp"
+#include "swarm_core/gmm/wasserstein.hpp"
 
 namespace swarm::planner {
 
@@ -19,10 +20,26 @@ Result<PlanResult> plan_of_routes(std::span<const Route> raw, std::span<const Ro
     stats.planned_mean_path_m += route.mass * mean_length_m(route.waypoints);
     stats.cost_m += route.mass * w2_length_m(route.waypoints);
   }
-  Result<FlowPlan> flow = build_plan(routes, request.start.components().size(),
-                                     request.goal.components().size(), speed_mps);
+  Result<FlowPlan> flow = build_merged_plan(routes, request.start.components().size(),
+                                            request.goal.components().size(), speed_mps);
   if (!flow) return tl::unexpected(flow.error());
   result.plan = *std::move(flow);
+  stats.nodes = result.roadmap.nodes.size();
+  stats.edges = result.roadmap.edge_count();
+  stats.total_ms = whole.lap_ms();
+  return result;
+}
+
+PlanResult plan_of_flow(FlowPlan flow, PlanResult result, StageTimer& whole) {
+  PlanStats& stats = result.stats;
+  for (const PlanLeg& leg : flow.legs()) {
+    const Gaussian& from = flow.nodes()[leg.from].gaussian;
+    const Gaussian& to = flow.nodes()[leg.to].gaussian;
+    stats.planned_mean_path_m += leg.mass * (to.mean_m() - from.mean_m()).norm();
+    stats.cost_m += leg.mass * wasserstein2(from, to);
+  }
+  stats.raw_mean_path_m = stats.planned_mean_path_m;
+  result.plan = std::move(flow);
   stats.nodes = result.roadmap.nodes.size();
   stats.edges = result.roadmap.edge_count();
   stats.total_ms = whole.lap_ms();

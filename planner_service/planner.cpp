@@ -10,30 +10,137 @@
 #include <string_view>
 #include <utility>
 
+#include "planner_service/mpc/measured_state.hpp"
 #include "planner_service/plan_routes.hpp"
+#include "planner_service/roadmap/live_roadmap.hpp"
 #include "planner_service/stage_timer.hpp"
 #include "planner_service/swarmprm.hpp"
 #include "swarm_core/base/assert.hpp"
 #include "swarm_core/gmm/wasserstein.hpp"
+#include "swarm_core/risk/mixture_cvar.hpp"
 
 namespace swarm::planner {
 namespace {
 
 constexpr int kFineGrid = 200;
 
-constexpr std::array<std::pair<std::string_view, Method>, 2> kMethods{
-    {{"swarmprm", Method::kSwarmPrm}, {"crops", Method::kCrops}}};
+constexpr std::array<std::pair<std::string_view, Method>, 4> kMethods{
+    {{"swarmprm", Method::kSwarmPrm},
+     {"rover", Method::kRover},
+     {"crops", Method::kCrops},
+     {"adoc", Method::kAdoc}}};
+
+SamplerKind sampler_named(std::string_view word) {
+  if (word == "uniform") return SamplerKind::kUniform;
+  return word == "halton" ? SamplerKind::kHalton : SamplerKind::kFit;
+}
+
+bool same(const Mixture& a, const Mixture& b) {
+  return std::equal(a.components().begin(), a.components().end(), b.components().begin(),
+                    b.components().end(), [](const auto& l, const auto& r) {
+                      return l.weight == r.weight && l.gaussian.mean_m() == r.gaussian.mean_m() &&
+                             l.gaussian.covariance_m2() == r.gaussian.covariance_m2();
+                    });
+}
+
+Result<PlanResult> plan_adoc(const PlanRequest& request, const PlannerOptions& options,
+                             const StageClock& clock) {
+  StageTimer whole(clock);
+  StageTimer stage(clock);
+  const auto routes = adoc_routes(request.world, request.start, request.goal, options.adoc);
+  if (!routes) return tl::unexpected(routes.error());
+  PlanResult result;
+  result.stats.search_ms = stage.lap_ms();
+  return plan_of_routes(*routes, *routes, request, options.speed_mps, std::move(result), whole);
+}
+
+/// Each robot goes to the component it most likely belongs to.
+std::vector<RobotGroup> groups_of(const Mixture& mixture, std::span<const HeardRobot> robots) {
+  std::vector<RobotGroup> groups;
+  for (const WeightedGaussian& c : mixture.components()) groups.push_back({c.gaussian, {}});
+  for (const HeardRobot& robot : robots) {
+    std::size_t likeliest = 0;
+    double best = -1.0;
+    for (std::size_t j = 0; j < groups.size(); ++j) {
+      const double density =
+          mixture.components()[j].weight * groups[j].gaussian.density(robot.position_m);
+      if (density <= best) continue;
+      best = density;
+      likeliest = j;
+    }
+    groups[likeliest].members.push_back(robot.robot);
+  }
+  std::erase_if(groups, [](const RobotGroup& group) { return group.members.empty(); });
+  return groups;
+}
 
 }  // namespace
 
-/// What the methods keep; they refer to the world of the last request, which is kept with them.
+/// What the methods keep; guide and rover refer to `world`.
 struct Planner::Memory {
+  std::optional<LiveRoadmap> live;
   World world;
+  Mixture goal;  // of the rover
   std::optional<CropsGuide> guide;
+  std::optional<Rover> rover;
 
+  Result<PlanResult> plan_swarmprm(const PlanRequest& request, const PlannerOptions& options,
+                                   Rng& rng, const StageClock& clock);
+  Result<Rover*> rover_for(const World& now, const Mixture& to, const PlannerOptions& options);
+  Result<PlanResult> plan_rover(const PlanRequest& request, const PlannerOptions& options,
+                                const StageClock& clock);
   Result<PlanResult> plan_crops(const PlanRequest& request, const PlannerOptions& options, Rng& rng,
                                 const StageClock& clock);
 };
+
+Result<PlanResult> Planner::Memory::plan_swarmprm(const PlanRequest& request,
+                                                  const PlannerOptions& options, Rng& rng,
+                                                  const StageClock& clock) {
+  StageTimer whole(clock);
+  StageTimer stage(clock);
+  if (auto checked = check_endpoints(request, options.risk); !checked) {
+    return tl::unexpected(checked.error());
+  }
+  if (live) {
+    live->update(request.world, terminals_of(request), rng);
+  } else {
+    const LiveRoadmapOptions wanted{.samples = options.samples,
+                                    .connection_radius_m = options.connection_radius_m,
+                                    .risk = options.risk,
+                                    .sampler = options.sampler};
+    live.emplace(request.world, terminals_of(request), wanted, rng);
+  }
+  Roadmap roadmap = live->roadmap();
+  return plan_on_roadmap(std::move(roadmap), stage.lap_ms(), request, options, rng, whole, clock);
+}
+
+Result<Rover*> Planner::Memory::rover_for(const World& now, const Mixture& to,
+                                          const PlannerOptions& options) {
+  if (!rover || !(world == now) || !same(goal, to)) {
+    rover.reset();
+    world = now;
+    goal = to;
+    auto made = Rover::make(world, goal, options.rover);
+    if (!made) return tl::unexpected(made.error());
+    rover.emplace(*std::move(made));
+  }
+  return &*rover;
+}
+
+Result<PlanResult> Planner::Memory::plan_rover(const PlanRequest& request,
+                                               const PlannerOptions& options,
+                                               const StageClock& clock) {
+  StageTimer whole(clock);
+  StageTimer stage(clock);
+  auto ready = rover_for(request.world, request.goal, options);
+  if (!ready) return tl::unexpected(ready.error());
+  PlanResult result;
+  result.stats.roadmap_ms = stage.lap_ms();
+  auto mission = (*ready)->plan(request.start);
+  if (!mission) return tl::unexpected(mission.error());
+  result.stats.transport_ms = stage.lap_ms();
+  return plan_of_flow(std::move(mission->plan), std::move(result), whole);
+}
 
 /// The graph is kept while the map is the same: so are the edges that were made dear.
 Result<PlanResult> Planner::Memory::plan_crops(const PlanRequest& request,
@@ -67,7 +174,11 @@ Planner& Planner::operator=(Planner&&) noexcept = default;
 Result<PlanResult> Planner::plan(const PlanRequest& request, Rng& rng, const StageClock& clock) {
   switch (options_.method) {
     case Method::kSwarmPrm:
-      return plan_swarmprm(request, options_, rng, clock);
+      return memory_->plan_swarmprm(request, options_, rng, clock);
+    case Method::kRover:
+      return memory_->plan_rover(request, options_, clock);
+    case Method::kAdoc:
+      return plan_adoc(request, options_, clock);
     case Method::kCrops:
       return memory_->plan_crops(request, options_, rng, clock);
   }
@@ -77,7 +188,20 @@ Result<PlanResult> Planner::plan(const PlanRequest& request, Rng& rng, const Sta
 void Planner::set_risk(const RiskLimit& risk) {
   if (risk.alpha == options_.risk.alpha && risk.delta_m == options_.risk.delta_m) return;
   options_.risk = risk;
-  memory_->guide.reset();
+  options_.rover.graph.risk = risk;
+  *memory_ = Memory{};
+}
+
+Result<std::vector<RobotGroup>> Planner::measure(const World& world, const Mixture& goal,
+                                                 std::span<const HeardRobot> robots) {
+  if (options_.method != Method::kRover) {
+    return group_robots(robots, world, goal, options_.risk, {});
+  }
+  const auto ready = memory_->rover_for(world, goal, options_);
+  if (!ready) return tl::unexpected(ready.error());
+  std::vector<Vec2> positions_m;
+  for (const HeardRobot& robot : robots) positions_m.push_back(robot.position_m);
+  return groups_of(measured_mixture((*ready)->graph(), positions_m), robots);
 }
 
 bool Planner::avoid(const Vec2& stuck_at_m) {
@@ -96,15 +220,17 @@ bool Planner::avoid(const Vec2& stuck_at_m) {
   return nearest && memory_->guide->reweight(*nearest, stuck_at_m);
 }
 
-PlannerOptions planner_options(const PlannerSpec& spec) {
+PlannerOptions planner_options(const PlannerSpec& spec, std::uint32_t robots) {
   const auto named = std::find_if(kMethods.begin(), kMethods.end(),
                                   [&](const auto& m) { return m.first == spec.method; });
   SWARM_ASSERT(named != kMethods.end());
+  const CollocationOptions collocation{.spacing_m = spec.collocation_spacing_m,
+                                       .sigma_m = spec.collocation_sigma_m};
   return {.method = named->second,
           .samples = spec.samples,
           .connection_radius_m = spec.connection_radius_m,
           .risk = {.alpha = spec.risk_alpha, .delta_m = spec.risk_delta_m},
-          .sampler = {.kind = spec.sampler == "uniform" ? SamplerKind::kUniform : SamplerKind::kFit,
+          .sampler = {.kind = sampler_named(spec.sampler),
                       .sigma_min_m = spec.sigma_min_m,
                       .sigma_max_m = spec.sigma_max_m,
                       .rho_max = spec.rho_max,
@@ -112,6 +238,18 @@ PlannerOptions planner_options(const PlannerSpec& spec) {
                       .bridge_sigma_m = spec.bridge_sigma_m},
           .shortcuts = spec.shortcuts,
           .speed_mps = spec.speed_mps,
+          .density = {.max_per_m2 = spec.density_cap_per_m2, .robots = static_cast<double>(robots)},
+          .density_is_timed = spec.density_cap == "timed",
+          .rover = {.graph = {.collocation = collocation,
+                              .transport_radius_m = spec.transport_radius_m,
+                              .risk = {.alpha = spec.risk_alpha, .delta_m = spec.risk_delta_m}},
+                    .mpc = {.costs = {.horizon = spec.horizon},
+                            .density_cap_per_m2 = spec.density_cap_per_m2,
+                            .robots = static_cast<double>(robots)},
+                    .speed_mps = spec.speed_mps},
+          .adoc = {.collocation = collocation,
+                   .transport_radius_m = spec.transport_radius_m,
+                   .penalty = spec.adoc_penalty},
           .crops = {.samples = spec.samples,
                     .connection_radius_m = spec.connection_radius_m,
                     .clearance_min_m = spec.crops_clearance_m,
@@ -121,7 +259,15 @@ PlannerOptions planner_options(const PlannerSpec& spec) {
 
 Result<PlanResult> plan(const PlanRequest& request, const PlannerOptions& options, Rng& rng,
                         const StageClock& clock) {
-  return Planner(options).plan(request, rng, clock);
+  if (options.method != Method::kSwarmPrm) return Planner(options).plan(request, rng, clock);
+  // A roadmap that need not be kept costs less.
+  StageTimer whole(clock);
+  StageTimer stage(clock);
+  if (auto checked = check_endpoints(request, options.risk); !checked) {
+    return tl::unexpected(checked.error());
+  }
+  Roadmap roadmap = make_roadmap(request, options, rng);
+  return plan_on_roadmap(std::move(roadmap), stage.lap_ms(), request, options, rng, whole, clock);
 }
 
 double planned_max_cvar_m(const FlowPlan& plan, const World& world, double alpha) {
@@ -135,6 +281,23 @@ double planned_max_cvar_m(const FlowPlan& plan, const World& world, double alpha
     for (int i = 1; i < kFineGrid; ++i) {
       const Gaussian g = geodesic.at(static_cast<double>(i) / kFineGrid);
       worst_m = std::max(worst_m, max_cvar_m(g, world, k));
+    }
+  }
+  return worst_m;
+}
+
+double planned_max_mixture_cvar_m(const FlowPlan& plan, const World& world, double alpha) {
+  constexpr int kBetween = 10;
+  std::vector<MissionTime> times;
+  for (const PlanNode& node : plan.nodes()) times.push_back(node.time);
+  std::sort(times.begin(), times.end());
+  times.erase(std::unique(times.begin(), times.end()), times.end());
+  double worst_m = -std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    const MissionTime next = times[std::min(i + 1, times.size() - 1)];
+    for (int k = 0; k < kBetween; ++k) {
+      const MissionTime t = times[i] + (next - times[i]) * (static_cast<double>(k) / kBetween);
+      worst_m = std::max(worst_m, max_mixture_cvar_m(plan.mixture_at(t), world, alpha));
     }
   }
   return worst_m;

@@ -6,10 +6,16 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <span>
+#include <vector>
 
+#include "planner_service/mpc/adoc.hpp"
+#include "planner_service/mpc/rover.hpp"
 #include "planner_service/roadmap/crops_guide.hpp"
 #include "planner_service/roadmap/roadmap.hpp"
 #include "planner_service/roadmap/sampler.hpp"
+#include "planner_service/robot_groups.hpp"
+#include "planner_service/transport/density_cap.hpp"
 #include "swarm_core/base/random.hpp"
 #include "swarm_core/base/time.hpp"
 #include "swarm_core/gmm/mixture.hpp"
@@ -22,7 +28,9 @@ namespace swarm::planner {
 
 enum class Method {
   kSwarmPrm,  ///< Gaussian roadmap, LP, smoothing: swarmprm.hpp
+  kRover,     ///< MPC on a collocation set under the mixture's CVaR: mpc/rover.hpp
   kCrops,     ///< a guide of points that prefers open space: roadmap/crops_guide.hpp
+  kAdoc,      ///< the papers' baseline, without a promise about risk: mpc/adoc.hpp
 };
 
 struct PlannerOptions {
@@ -32,13 +40,17 @@ struct PlannerOptions {
   RiskLimit risk;
   SamplerOptions sampler;
   std::uint32_t shortcuts =
-      200;                  ///< smoothing tries per route; 0 leaves the roadmap's routes alone
-  double speed_mps = 1.25;  ///< of the means along a route
+      200;                       ///< smoothing tries per route; 0 leaves the roadmap's routes alone
+  double speed_mps = 1.25;       ///< of the means along a route
+  DensityCap density;            ///< 0 = none
+  bool density_is_timed = true;  ///< counts mass at each time; else all that ever passes
+  RoverOptions rover;
+  AdocOptions adoc;
   CropsOptions crops;
 };
 
 /// The options a mission asks for.
-PlannerOptions planner_options(const PlannerSpec& spec);
+PlannerOptions planner_options(const PlannerSpec& spec, std::uint32_t robots);
 
 /// What to plan; refers to the caller's objects for the duration of the call.
 struct PlanRequest {
@@ -84,6 +96,11 @@ class Planner {
   /// no route joins, and what to loosen.
   Result<PlanResult> plan(const PlanRequest& request, Rng& rng, const StageClock& clock);
 
+  /// The measured state of a swarm as groups that a plan may start from: group_robots(), or for
+  /// ROVER members of its collocation set with the most likely weights.
+  Result<std::vector<RobotGroup>> measure(const World& world, const Mixture& goal,
+                                          std::span<const HeardRobot> robots);
+
   const RiskLimit& risk() const { return options_.risk; }
   /// For plans from now on.
   void set_risk(const RiskLimit& risk);
@@ -104,6 +121,10 @@ Result<PlanResult> plan(const PlanRequest& request, const PlannerOptions& option
 /// Largest CVaR of a plan over 201 points of every leg [m], for reports: checks the plan anew, with
 /// nothing of the planner's own edge check in it.
 double planned_max_cvar_m(const FlowPlan& plan, const World& world, double alpha);
+
+/// The same of the mixture as a whole, ROVER's (11g), at the times of all nodes and nine times
+/// between each two of them [m].
+double planned_max_mixture_cvar_m(const FlowPlan& plan, const World& world, double alpha);
 
 /// What the promise means in robots, for reports: the largest share of the flow's mixture inside
 /// obstacles, over its whole time, from `samples` points drawn from it. A robot rides a point of

@@ -113,7 +113,7 @@ struct PlannerProcess::Impl {
 
 Result<void> PlannerProcess::Impl::plan_first() {
   Rng rng(seed);
-  planner.emplace(planner_options(mission.planner));
+  planner.emplace(planner_options(mission.planner, mission.robots.count));
   auto planned = planner->plan({mission.world, mission.start, mission.goal}, rng,
                                &std::chrono::steady_clock::now);
   if (!planned) return tl::unexpected(planned.error());

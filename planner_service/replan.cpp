@@ -28,7 +28,7 @@ std::vector<PlanEntry> entries_of(std::span<const RobotGroup> groups, std::uint3
 Result<Replan> replan(Planner& planner, const World& world, const Mixture& goal,
                       std::span<const HeardRobot> robots, std::uint32_t robot_count, Rng& rng,
                       const StageClock& clock) {
-  const auto groups = group_robots(robots, world, goal, planner.risk(), {});
+  const auto groups = planner.measure(world, goal, robots);
   if (!groups) return tl::unexpected(groups.error());
   auto planned = planner.plan({world, mixture_of(*groups), goal}, rng, clock);
   if (!planned) return tl::unexpected(planned.error());

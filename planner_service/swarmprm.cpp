@@ -14,10 +14,12 @@
 #include "planner_service/plan_routes.hpp"
 #include "planner_service/roadmap/edge_check.hpp"
 #include "planner_service/roadmap/endpoints.hpp"
+#include "planner_service/transport/capped_flow.hpp"
 #include "planner_service/transport/route.hpp"
 #include "planner_service/transport/shortcuts.hpp"
 #include "planner_service/transport/shortest_routes.hpp"
 #include "planner_service/transport/tighten.hpp"
+#include "planner_service/transport/timed_flow.hpp"
 #include "planner_service/transport/transport_lp.hpp"
 
 namespace swarm::planner {
@@ -28,29 +30,6 @@ std::vector<double> weights_of(const Mixture& mixture) {
   for (const WeightedGaussian& component : mixture.components())
     weights.push_back(component.weight);
   return weights;
-}
-
-Result<void> check_endpoints(const PlanRequest& request, const RiskLimit& risk) {
-  std::string violations = describe_violations(request.start, "start", request.world, risk);
-  const std::string at_goal = describe_violations(request.goal, "goal", request.world, risk);
-  if (!violations.empty() && !at_goal.empty()) violations += '\n';
-  violations += at_goal;
-  if (violations.empty()) return {};
-  return fail(ErrorCode::kInfeasible, std::move(violations));
-}
-
-std::vector<Gaussian> roadmap_nodes(const PlanRequest& request, const PlannerOptions& options,
-                                    Rng& rng) {
-  std::vector<Gaussian> nodes;
-  for (const Mixture* mixture : {&request.start, &request.goal}) {
-    for (const WeightedGaussian& component : mixture->components()) {
-      nodes.push_back(component.gaussian);
-    }
-  }
-  const std::vector<Gaussian> samples =
-      sample_free(request.world, options.risk, options.sampler, options.samples, rng);
-  nodes.insert(nodes.end(), samples.begin(), samples.end());
-  return nodes;
 }
 
 Error no_route(std::span<const double> costs_m, std::size_t starts, std::size_t goals,
@@ -125,26 +104,70 @@ void smooth(Waypoints& waypoints, const World& world, const PlannerOptions& opti
   drop_superfluous(waypoints, checker);
 }
 
+// The flow under a density cap, node by node or time by time.
+Result<PlanResult> plan_capped(PlanResult result, const PlanRequest& request,
+                               const PlannerOptions& options, EdgeChecker& checker,
+                               StageTimer& stage, StageTimer& whole) {
+  const std::vector<double> supplies = weights_of(request.start);
+  const std::vector<double> demands = weights_of(request.goal);
+  if (!options.density_is_timed) {
+    const auto flow = capped_flow(result.roadmap, supplies, demands, options.density, checker);
+    if (!flow) return tl::unexpected(flow.error());
+    result.stats.transport_ms = stage.lap_ms();
+    return plan_of_routes(flow->routes, flow->routes, request, options.speed_mps, std::move(result),
+                          whole);
+  }
+  auto flow = timed_flow(result.roadmap, supplies, demands, options.density,
+                         {.speed_mps = options.speed_mps}, checker);
+  if (!flow) return tl::unexpected(flow.error());
+  result.stats.transport_ms = stage.lap_ms();
+  return plan_of_flow(std::move(flow->plan), std::move(result), whole);
+}
+
 }  // namespace
 
-Result<PlanResult> plan_swarmprm(const PlanRequest& request, const PlannerOptions& options,
-                                 Rng& rng, const StageClock& clock) {
-  StageTimer whole(clock);
-  StageTimer stage(clock);
-  if (auto checked = check_endpoints(request, options.risk); !checked) {
-    return tl::unexpected(checked.error());
+std::vector<Gaussian> terminals_of(const PlanRequest& request) {
+  std::vector<Gaussian> terminals;
+  for (const Mixture* mixture : {&request.start, &request.goal}) {
+    for (const WeightedGaussian& component : mixture->components()) {
+      terminals.push_back(component.gaussian);
+    }
   }
-  const std::size_t starts = request.start.components().size();
-  const std::size_t goals = request.goal.components().size();
-  PlanResult result;
-  EdgeChecker checker(request.world, options.risk);
-  result.roadmap = connect(roadmap_nodes(request, options, rng), options.connection_radius_m,
-                           checker, starts + goals);
-  result.stats.roadmap_ms = stage.lap_ms();
+  return terminals;
+}
 
+Result<void> check_endpoints(const PlanRequest& request, const RiskLimit& risk) {
+  std::string violations = describe_violations(request.start, "start", request.world, risk);
+  const std::string at_goal = describe_violations(request.goal, "goal", request.world, risk);
+  if (!violations.empty() && !at_goal.empty()) violations += '\n';
+  violations += at_goal;
+  if (violations.empty()) return {};
+  return fail(ErrorCode::kInfeasible, std::move(violations));
+}
+
+Roadmap make_roadmap(const PlanRequest& request, const PlannerOptions& options, Rng& rng) {
+  std::vector<Gaussian> nodes = terminals_of(request);
+  const std::size_t terminals = nodes.size();
+  const std::vector<Gaussian> samples =
+      sample_free(request.world, options.risk, options.sampler, options.samples, rng);
+  nodes.insert(nodes.end(), samples.begin(), samples.end());
+  EdgeChecker checker(request.world, options.risk);
+  return connect(std::move(nodes), options.connection_radius_m, checker, terminals);
+}
+
+Result<PlanResult> plan_on_roadmap(Roadmap roadmap, double roadmap_ms, const PlanRequest& request,
+                                   const PlannerOptions& options, Rng& rng, StageTimer& whole,
+                                   const StageClock& clock) {
+  StageTimer stage(clock);
+  PlanResult result;
+  result.roadmap = std::move(roadmap);
+  result.stats.roadmap_ms = roadmap_ms;
+  EdgeChecker checker(request.world, options.risk);
+  if (options.density.max_per_m2 > 0.0) {
+    return plan_capped(std::move(result), request, options, checker, stage, whole);
+  }
   auto routes = choose_routes(result.roadmap, request, options, checker, stage, result.stats);
   if (!routes) return tl::unexpected(routes.error());
-
   const std::vector<Route> raw = *routes;
   if (options.shortcuts > 0) {
     for (Route& route : *routes) smooth(route.waypoints, request.world, options, checker, rng);

@@ -152,7 +152,7 @@ Result<void> write_plan(const std::filesystem::path& out, const Mission& mission
 Result<ExitCode> plan_mission(const PlanCommandOptions& options) {
   const auto mission = load_mission(options.mission_file);
   if (!mission) return tl::unexpected(mission.error());
-  const auto planner_options = planner::planner_options(mission->planner);
+  const auto planner_options = planner::planner_options(mission->planner, mission->robots.count);
   const double bound_m = mean_bound_m(*mission);
   Sample sample;
   std::optional<Error> failure;

@@ -26,21 +26,29 @@ struct RobotsSpec {
 };
 
 struct PlannerSpec {
-  std::string method = "swarmprm";  ///< or crops
+  std::string method = "swarmprm";  ///< or rover, crops, adoc
   /// Means by a low-discrepancy sequence, shapes squeezed to keep the risk limit (fit), or uniform
   /// with rejection, as printed in the paper (uniform: finds a plan less often).
-  std::string sampler = "fit";
+  std::string sampler = "fit";  ///< or halton: low-discrepancy means with rejection
+  /// What the density cap counts: mass through a node at each time, or (static, as printed) ever.
+  std::string density_cap = "timed";
   std::uint32_t samples = 500;        ///< n of Alg. 1
   double connection_radius_m = 20.0;  ///< r of Alg. 1, in W₂
   double risk_alpha = 0.05;           ///< α
   double risk_delta_m = -0.2;         ///< δ
   double sigma_min_m = 1.0;           ///< sampler range of σ₁, σ₂
   double sigma_max_m = 3.0;
-  double rho_max = 0.6;            ///< sampler range of |ρ|
-  double bridge_share = 0.3;       ///< share of samples drawn by the Gaussian sampler of ref. [20]
-  double bridge_sigma_m = 10.0;    ///< spread of its pairs
-  std::uint32_t shortcuts = 200;   ///< smoothing tries per route, 0 = publish the roadmap's routes
-  double speed_mps = 1.25;         ///< speed of the Gaussians along a route
+  double rho_max = 0.6;             ///< sampler range of |ρ|
+  double bridge_share = 0.3;        ///< share of samples drawn by the Gaussian sampler of ref. [20]
+  double bridge_sigma_m = 10.0;     ///< spread of its pairs
+  std::uint32_t shortcuts = 200;    ///< smoothing tries per route, 0 = publish the roadmap's routes
+  double speed_mps = 1.25;          ///< speed of the Gaussians along a route
+  double density_cap_per_m2 = 0.0;  ///< swarmprm and rover: robots/m² at most; 0 = no cap
+  double collocation_spacing_m = 10.0;              ///< rover and adoc: grid of the set C
+  double collocation_sigma_m = 7.0710678118654755;  ///< … Σ_c = σ² I
+  double transport_radius_m = 22.5;                 ///< … of Assumption 2, in W₂
+  std::uint32_t horizon = 3;                        ///< rover: h
+  double adoc_penalty = 20.0;      ///< adoc: of the share of a Gaussian that is in obstacles
   double crops_clearance_m = 0.5;  ///< crops: nodes nearer to an obstacle are discarded
   double crops_power = 3.0;  ///< crops: p of w(q) = (Σ dist)ᵖ; 3 in the paper, 1 in its code
   double crops_goal_radius_m = 1.0;  ///< crops: of the intermediate goals

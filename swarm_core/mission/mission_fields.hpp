@@ -33,8 +33,10 @@ inline constexpr std::size_t kMaxObstacles = 10'000;
 inline constexpr std::size_t kMaxVertices = 100'000;  ///< of all polygons together
 inline constexpr std::size_t kMaxScriptEvents = 1'000;
 inline constexpr std::size_t kMaxNameLength = 64;
-inline constexpr std::array<std::string_view, 2> kPlannerMethods{"swarmprm", "crops"};
-inline constexpr std::array<std::string_view, 2> kPlannerSamplers{"fit", "uniform"};
+inline constexpr std::array<std::string_view, 4> kPlannerMethods{"swarmprm", "rover", "crops",
+                                                                 "adoc"};
+inline constexpr std::array<std::string_view, 3> kPlannerSamplers{"fit", "halton", "uniform"};
+inline constexpr std::array<std::string_view, 2> kDensityCaps{"timed", "static"};
 inline constexpr std::array<std::string_view, 8> kScriptActions{
     "pause", "resume", "stop", "add_obstacle", "move_obstacle", "remove_obstacle", "goto", "risk"};
 inline constexpr yaml::Range kRiskAlpha = between(1e-6, 1 - 1e-6);
@@ -47,7 +49,7 @@ inline constexpr std::array<Field<RobotsSpec>, 4> kRobots{{
     {"placement_gap_m", &RobotsSpec::placement_gap_m, between(0, 100)},
 }};
 
-inline constexpr std::array<Field<PlannerSpec>, 14> kPlanner{{
+inline constexpr std::array<Field<PlannerSpec>, 20> kPlanner{{
     {"samples", &PlannerSpec::samples, between(1, 100'000)},
     {"connection_radius_m", &PlannerSpec::connection_radius_m, positive(kMaxExtent_m)},
     {"risk_alpha", &PlannerSpec::risk_alpha, kRiskAlpha},
@@ -59,6 +61,12 @@ inline constexpr std::array<Field<PlannerSpec>, 14> kPlanner{{
     {"bridge_sigma_m", &PlannerSpec::bridge_sigma_m, positive(kMaxExtent_m)},
     {"shortcuts", &PlannerSpec::shortcuts, between(0, 1'000'000)},
     {"speed_mps", &PlannerSpec::speed_mps, positive(100)},
+    {"density_cap_per_m2", &PlannerSpec::density_cap_per_m2, between(0, 1e6)},
+    {"collocation_spacing_m", &PlannerSpec::collocation_spacing_m, positive(kMaxExtent_m)},
+    {"collocation_sigma_m", &PlannerSpec::collocation_sigma_m, between(0.01, 1000)},
+    {"transport_radius_m", &PlannerSpec::transport_radius_m, positive(kMaxExtent_m)},
+    {"horizon", &PlannerSpec::horizon, between(1, 10)},
+    {"adoc_penalty", &PlannerSpec::adoc_penalty, between(0, 1e6)},
     {"crops_clearance_m", &PlannerSpec::crops_clearance_m, between(0, 1000)},
     {"crops_power", &PlannerSpec::crops_power, between(0, 10)},
     {"crops_goal_radius_m", &PlannerSpec::crops_goal_radius_m, between(0.1, 1000)},

@@ -89,6 +89,7 @@ class MissionReader {
     if constexpr (std::is_same_v<Section, PlannerSpec>) {
       read_choice(keys, "method", mission_fields::kPlannerMethods, section.method);
       read_choice(keys, "sampler", mission_fields::kPlannerSamplers, section.sampler);
+      read_choice(keys, "density_cap", mission_fields::kDensityCaps, section.density_cap);
     }
     for (const Field<Section>& field : fields) {
       if (const Node* value = keys.take(field.key)) read_field(*value, keys, field, section);

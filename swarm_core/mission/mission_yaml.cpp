@@ -81,8 +81,8 @@ std::string to_yaml(const Mission& mission) {
   write_fields(out, mission.robots, mission_fields::kRobots);
   write_mixture(out, "start", mission.start);
   write_mixture(out, "goal", mission.goal);
-  fmt::format_to(out, "planner:\n  method: {}\n  sampler: {}\n", mission.planner.method,
-                 mission.planner.sampler);
+  fmt::format_to(out, "planner:\n  method: {}\n  sampler: {}\n  density_cap: {}\n",
+                 mission.planner.method, mission.planner.sampler, mission.planner.density_cap);
   write_fields(out, mission.planner, mission_fields::kPlanner);
   fmt::format_to(out, "control:\n");
   write_fields(out, mission.control, mission_fields::kControl);

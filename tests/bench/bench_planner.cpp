@@ -78,7 +78,7 @@ void plan_once(const PlannerOptions& options, std::uint64_t seed, benchmark::Sta
 
 // n = 500, r = 20 m, as in the paper.
 void BM_PlanRaw(benchmark::State& state) {
-  PlannerOptions options = planner_options(demo().planner);
+  PlannerOptions options = planner_options(demo().planner, demo().robots.count);
   options.shortcuts = 0;
   std::uint64_t seed = 1;
   for (auto _ : state) plan_once(options, seed++, state);
@@ -86,7 +86,7 @@ void BM_PlanRaw(benchmark::State& state) {
 BENCHMARK(BM_PlanRaw)->Unit(benchmark::kMillisecond);
 
 void BM_PlanSmoothed(benchmark::State& state) {
-  const PlannerOptions options = planner_options(demo().planner);
+  const PlannerOptions options = planner_options(demo().planner, demo().robots.count);
   std::uint64_t seed = 1;
   for (auto _ : state) plan_once(options, seed++, state);
 }
@@ -99,7 +99,7 @@ double prm_star_radius_m(double n) {
 
 void BM_PlanRawGrowth(benchmark::State& state) {
   const auto n = static_cast<double>(state.range(0));
-  PlannerOptions options = planner_options(demo().planner);
+  PlannerOptions options = planner_options(demo().planner, demo().robots.count);
   options.shortcuts = 0;
   options.samples = static_cast<std::size_t>(state.range(0));
   options.connection_radius_m = prm_star_radius_m(n);
@@ -120,7 +120,7 @@ BENCHMARK(BM_PlanRawGrowth)
     ->Complexity();
 
 std::vector<Gaussian> some_nodes(std::size_t count) {
-  const PlannerOptions options = planner_options(demo().planner);
+  const PlannerOptions options = planner_options(demo().planner, demo().robots.count);
   Rng rng(1);
   return sample_free(demo().world, options.risk, options.sampler, count, rng);
 }
@@ -233,7 +233,7 @@ World pebble_world(std::size_t count) {
 
 void BM_PlanAmongPebbles(benchmark::State& state) {
   const World world = pebble_world(static_cast<std::size_t>(state.range(0)));
-  PlannerOptions options = planner_options(demo().planner);
+  PlannerOptions options = planner_options(demo().planner, demo().robots.count);
   options.shortcuts = 0;
   std::uint64_t seed = 1;
   for (auto _ : state) {
@@ -245,7 +245,7 @@ void BM_PlanAmongPebbles(benchmark::State& state) {
 BENCHMARK(BM_PlanAmongPebbles)->Arg(100)->Arg(1000)->Arg(10'000)->Unit(benchmark::kMillisecond);
 
 LiveRoadmapOptions live_options(std::size_t samples) {
-  const PlannerOptions options = planner_options(demo().planner);
+  const PlannerOptions options = planner_options(demo().planner, demo().robots.count);
   return {.samples = samples,
           .connection_radius_m = prm_star_radius_m(static_cast<double>(samples)),
           .risk = options.risk,
@@ -302,7 +302,7 @@ std::vector<std::pair<Gaussian, Gaussian>> some_edges() {
   const Mission& mission = demo();
   Rng rng(1);
   const auto planned = plan({mission.world, mission.start, mission.goal},
-                            planner_options(mission.planner), rng, &no_time);
+                            planner_options(mission.planner, mission.robots.count), rng, &no_time);
   std::vector<std::pair<Gaussian, Gaussian>> edges;
   const Roadmap& roadmap = planned->roadmap;
   for (std::uint32_t a = 0; a < roadmap.nodes.size(); ++a) {
@@ -316,7 +316,7 @@ std::vector<std::pair<Gaussian, Gaussian>> some_edges() {
 // Proven between the samples.
 void BM_EdgeCheck(benchmark::State& state) {
   const auto edges = some_edges();
-  EdgeChecker checker(demo().world, planner_options(demo().planner).risk);
+  EdgeChecker checker(demo().world, planner_options(demo().planner, demo().robots.count).risk);
   std::size_t i = 0;
   for (auto _ : state) {
     const auto& [a, b] = edges[i++ % edges.size()];
@@ -328,7 +328,7 @@ BENCHMARK(BM_EdgeCheck);
 // The naive one: a fixed number of points, nothing known in between.
 void BM_EdgeCheckFixedSteps(benchmark::State& state) {
   const auto edges = some_edges();
-  const RiskLimit risk = planner_options(demo().planner).risk;
+  const RiskLimit risk = planner_options(demo().planner, demo().robots.count).risk;
   const double k = cvar_coefficient(risk.alpha);
   std::size_t i = 0;
   for (auto _ : state) {

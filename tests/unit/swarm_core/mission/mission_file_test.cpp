@@ -38,6 +38,7 @@ goal: [{mean_m: [17, 5], covariance_m2: [[1, 0], [0, 1]], weight: 1}]
 planner:
   method: swarmprm
   sampler: uniform
+  density_cap: static
   samples: 77
   risk_alpha: 0.1
   sigma_min_m: 0.3
@@ -108,7 +109,7 @@ template <class Section, std::size_t N>
 void expect_same(const Section& a, const Section& b,
                  const std::array<mission_fields::Field<Section>, N>& fields) {
   // The tables are all that reader and writer know: a member without a row would be lost.
-  constexpr std::size_t kTexts = std::is_same_v<Section, PlannerSpec> ? 2 : 0;
+  constexpr std::size_t kTexts = std::is_same_v<Section, PlannerSpec> ? 3 : 0;
   static_assert(members_of<Section>() == N + kTexts);
   for (const auto& field : fields) {
     std::visit([&](auto member) { EXPECT_EQ(a.*member, b.*member) << field.key; }, field.member);
@@ -122,6 +123,7 @@ void expect_same(const Mission& a, const Mission& b) {
   expect_same(a.goal, b.goal);
   EXPECT_EQ(a.planner.method, b.planner.method);
   EXPECT_EQ(a.planner.sampler, b.planner.sampler);
+  EXPECT_EQ(a.planner.density_cap, b.planner.density_cap);
   expect_same(a.robots, b.robots, mission_fields::kRobots);
   expect_same(a.planner, b.planner, mission_fields::kPlanner);
   expect_same(a.control, b.control, mission_fields::kControl);
