@@ -16,6 +16,7 @@ namespace {
 
 constexpr std::uint32_t kMaxComponents = 255;
 constexpr std::uint32_t kBicPatience = 3;
+constexpr std::uint32_t kFirstSteps = 10;
 // A component with less than this of the weight has no covariance worth a name.
 constexpr double kNothing = 1e-12;
 // A share below e⁻⁴⁰ is lost in the rounding of the others' sum.
@@ -99,17 +100,17 @@ class Fitter {
   Fitter(std::vector<Patch> patches, const FitOptions& options)
       : patches_(std::move(patches)), options_(options) {}
 
-  // The likeliest of several starts.
+  // A few steps from each start tell which is worth climbing on.
   Climb best_of_starts(std::uint32_t components, Rng& rng) {
     Climb best;
     for (std::uint32_t start = 0; start < options_.starts; ++start) {
       share_by_nearest(spread_centres(components, rng));
-      Climb climbed = climb();
+      Climb climbed = climb(std::min(kFirstSteps, options_.iterations_max));
       if (best.history.empty() || climbed.history.back() > best.history.back()) {
         best = std::move(climbed);
       }
     }
-    return best;
+    return climb_from(std::move(best.components));
   }
 
   // Leaves out what is too light to matter and climbs again without it.
@@ -124,9 +125,7 @@ class Fitter {
       double sum = 0.0;
       for (const Component& component : components) sum += component.weight;
       for (Component& component : components) component.weight /= sum;
-      components_ = std::move(components);
-      expect();
-      climb_so_far = climb();
+      climb_so_far = climb_from(std::move(components));
     }
   }
 
@@ -187,11 +186,17 @@ class Fitter {
     }
   }
 
+  Climb climb_from(std::vector<Component> components) {
+    components_ = std::move(components);
+    expect();
+    return climb(options_.iterations_max);
+  }
+
   // From the shares at hand. The first maximisation only starts it: F is known after the first
   // expectation that follows.
-  Climb climb() {
+  Climb climb(std::uint32_t iterations) {
     Climb climbed;
-    for (std::uint32_t i = 0; i < options_.iterations_max; ++i) {
+    for (std::uint32_t i = 0; i < iterations; ++i) {
       maximise();
       const double mean_log_likelihood = expect();
       const bool converged =

@@ -25,9 +25,9 @@ struct FitOptions {
   std::uint32_t components_max = 16;  ///< bound of that search
   double sigma_min_m = 0.5;           ///< no standard deviation of the mixture is smaller
   double weight_min = 1e-3;           ///< components lighter than this are left out
-  std::uint32_t starts = 3;           ///< k-means++ starts; the likeliest result is taken
+  std::uint32_t starts = 3;           ///< k-means++ starts; the likeliest after 10 steps climbs on
   std::uint32_t iterations_max = 200;
-  double tolerance = 1e-6;  ///< converged when an iteration gains less [nats per unit weight]
+  double tolerance = 1e-5;  ///< converged when an iteration gains less [nats per unit weight]
 };
 
 struct MixtureFit {
@@ -47,7 +47,7 @@ struct MixtureFit {
 ///
 /// The number of components asked for is an upper bound: there are no more than distinct patches.
 /// BIC = −2nF + (6K − 1) ln n with n = (Σv)²/Σv²; its search ends after three K without gain.
-/// Deterministic for a given generator state. O(starts · iterations · patches · components).
+/// Deterministic for a given generator state. O(iterations · patches · components).
 ///
 /// kBadInput: no patch with weight, a number that is not finite, negative weight, or options out of
 /// range.

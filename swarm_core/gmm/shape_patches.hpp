@@ -12,7 +12,7 @@
 namespace swarm {
 
 /// Enough to fit a mixture by, few enough to fit it in a fraction of a second.
-inline constexpr std::size_t kShapePatches = 2048;
+inline constexpr std::size_t kShapePatches = 1024;
 
 /// Cuts a polygon along a square grid of about `cells_max` cells over its box. A patch is the
 /// polygon's part of one cell: weight = area [m²], centre = centroid, spread = its own covariance,

@@ -16,6 +16,8 @@
 namespace swarm {
 namespace {
 
+using std::string_literals::operator""s;
+
 // 3 x 2 greys: 0 85 170 / 255 128 1.
 constexpr std::array<unsigned char, 73> kGreyPng{
     0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a, 0x00, 0x00, 0x00, 0x0d, 0x49, 0x48, 0x44,
@@ -133,15 +135,16 @@ TEST_F(BitmapFile, RefusesPicturesCutShortAnywhere) {
 }
 
 TEST_F(BitmapFile, SurvivesAnyChangedByte) {
-  const std::string whole = text_of(kGreyPng);
-  for (std::size_t i = 0; i < whole.size(); ++i) {
-    for (const int flip : {0x01, 0x80, 0xff}) {
-      std::string changed = whole;
-      changed[i] = static_cast<char>(changed[i] ^ flip);
+  for (const std::string& whole : {text_of(kGreyPng), text_of(kAlphaPng), "P2 3 2 5 0 1 2 3 4 5"s,
+                                   "P4 3 2 \xa0\x40"s, "P5 3 2 255 abcdef"s}) {
+    for (std::size_t i = 0; i < whole.size(); ++i) {
+      for (const int flip : {0x01, 0x80, 0xff}) {
+        std::string changed = whole;
+        changed[i] = static_cast<char>(changed[i] ^ flip);
 
-      const auto image = load(changed);
+        const auto image = load(changed);
 
-      if (image) {
+        if (!image) continue;
         EXPECT_EQ(image->levels.size(), image->width * image->height);
       }
     }
