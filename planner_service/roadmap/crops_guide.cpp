@@ -14,7 +14,6 @@
 
 #include "planner_service/roadmap/edge_check.hpp"
 #include "planner_service/roadmap/endpoints.hpp"
-#include "planner_service/roadmap/neighbours.hpp"
 #include "planner_service/transport/shortest_routes.hpp"
 #include "planner_service/transport/transport_lp.hpp"
 #include "swarm_core/base/assert.hpp"
@@ -29,6 +28,7 @@ constexpr double kShy = 1.0 - 1e-9;
 
 std::vector<double> weights_of(const std::vector<WeightedGaussian>& components) {
   std::vector<double> weights;
+  weights.reserve(components.size());
   for (const WeightedGaussian& component : components) weights.push_back(component.weight);
   return weights;
 }
@@ -204,7 +204,7 @@ void CropsGuide::connect() {
   std::erase_if(pairs, [&](const NeighbourPair& pair) {
     if (std::min(asked[pair.a], asked[pair.b]) >= options_.neighbours_max) return true;
     const double needed_m = std::min({edge_clearance_m_, clearance_m(pair.a), clearance_m(pair.b)});
-    if (!world_->segment_is_free(points_m_[pair.a], points_m_[pair.b], needed_m)) return true;
+    if (!is_visible(pair, needed_m)) return true;
     ++asked[pair.a];
     ++asked[pair.b];
     return false;
@@ -225,6 +225,18 @@ void CropsGuide::connect() {
   }
   first_cost_.clear();
   for (const Roadmap::Arc& arc : graph_.arcs) first_cost_.push_back(arc.length_m);
+}
+
+// Rounds and new ends ask again for the same pairs of samples; those are remembered.
+bool CropsGuide::is_visible(const NeighbourPair& pair, double clearance_m) {
+  const auto free = [&] {
+    return world_->segment_is_free(points_m_[pair.a], points_m_[pair.b], clearance_m);
+  };
+  if (pair.a < terminals()) return free();
+  const std::uint64_t first = pair.a - terminals();
+  const auto [known, is_new] = visible_.try_emplace(first << 32U | (pair.b - terminals()), false);
+  if (is_new) known->second = free();
+  return known->second;
 }
 
 // Paths, transport, routes; false when no transport is possible.

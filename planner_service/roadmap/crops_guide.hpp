@@ -3,9 +3,11 @@
 #pragma once
 
 #include <cstdint>
+#include <unordered_map>
 #include <vector>
 
 #include "planner_service/roadmap/means.hpp"
+#include "planner_service/roadmap/neighbours.hpp"
 #include "planner_service/roadmap/roadmap.hpp"
 #include "planner_service/transport/route.hpp"
 #include "swarm_core/base/random.hpp"
@@ -24,7 +26,10 @@ struct CropsOptions {
   std::uint32_t neighbours_max = 20;  ///< k: at most so many edges are asked for by a node
   double clearance_min_m = 0.5;       ///< 10 px; nodes nearer to an obstacle are discarded
   double sigma_min_m = 0.05;          ///< edges have room for it: clearance ≥ k σ_min − δ
-  double clearance_power = 3.0;       ///< p: 3 in the paper, 1 in its code
+  /// p: 3 in the paper, 1 in its code. On the scenes of the code, paths at p = 1 are up to 18 %
+  /// longer than the shortest on the graph, at p = 3 up to 23 %; around scattered obstacles p = 3
+  /// may double the way.
+  double clearance_power = 3.0;
   double goal_radius_m = 1.0;     ///< 20 px; circle around a path vertex, two σ of its Gaussian
   std::uint32_t rounds_max = 20;  ///< how often N/2 + 1 samples are added until all is joined
   double stuck_factor = 3.0;      ///< of the edges where robots are stuck …
@@ -88,6 +93,7 @@ class CropsGuide {
   Result<void> set_ends(const Mixture& start, const Mixture& goal);
   std::size_t add_samples(std::size_t count, HaltonMeans& means);
   void connect();
+  bool is_visible(const NeighbourPair& pair, double clearance_m);
   bool search();
   Error no_path() const;
   double sigma_beside_m(const Vec2& from_m, const Vec2& to_m) const;
@@ -105,6 +111,7 @@ class CropsGuide {
   std::vector<double> weights_;     // w of each
   std::vector<double> first_cost_;  // of each arc, before any re-weighting
   Roadmap graph_;
+  std::unordered_map<std::uint64_t, bool> visible_;  // pairs of samples, by their numbers
   std::vector<double> costs_;  // of the cheapest paths, row-major [starts × goals]
   std::vector<Route> routes_;
   std::vector<std::vector<std::uint32_t>> paths_;  // of each route, in nodes

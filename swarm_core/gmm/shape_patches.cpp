@@ -60,7 +60,7 @@ void clip(const std::vector<Vec2>& vertices_m, Eigen::Index axis, double low, do
       const double beyond_q = sign * (q(axis) - limit);
       if (beyond_p <= 0.0) out.push_back(p);
       if ((beyond_p < 0.0 && beyond_q > 0.0) || (beyond_p > 0.0 && beyond_q < 0.0)) {
-        out.push_back(p + beyond_p / (beyond_p - beyond_q) * (q - p));
+        out.emplace_back(p + beyond_p / (beyond_p - beyond_q) * (q - p));
       }
     }
   };
@@ -120,7 +120,9 @@ std::vector<Patch> polygon_patches(const Polygon& polygon, std::size_t cells_max
   SWARM_ASSERT(cells_max > 0);
   const Grid grid = grid_over(polygon.vertices_m(), cells_max);
   std::vector<Moments> cells(grid.columns * grid.rows);
-  std::vector<Vec2> scratch_m, row_part_m, cell_part_m;
+  std::vector<Vec2> scratch_m;
+  std::vector<Vec2> row_part_m;
+  std::vector<Vec2> cell_part_m;
   for (const std::vector<Vec2>& part_m : decompose_convex(polygon)) {
     const auto [first_row, end_row] = grid.span_of(part_m, 1, grid.rows);
     for (std::size_t row = first_row; row < end_row; ++row) {

@@ -170,7 +170,7 @@ tl::expected<std::string, std::string> read_bytes(const std::filesystem::path& f
                                                                &std::fclose);
   if (!stream) return refuse("cannot be opened; may it be read?");
   std::string bytes;
-  std::array<char, 16'384> piece;
+  std::array<char, 16'384> piece{};
   while (const std::size_t read = std::fread(piece.data(), 1, piece.size(), stream.get())) {
     bytes.append(piece.data(), read);
     if (bytes.size() > kMaxBitmapBytes) {
