@@ -27,9 +27,9 @@ constexpr std::size_t kMaxShapeVertices = 1'000;
 constexpr double kMaxChosenComponents = 64;
 constexpr yaml::Range kCoordinate_m = between(-kMaxExtent_m, kMaxExtent_m);
 
-class ShapeReader {
+class GoalShapeReader {
  public:
-  ShapeReader(std::filesystem::path directory, yaml::Violations& violations)
+  GoalShapeReader(std::filesystem::path directory, yaml::Violations& violations)
       : directory_(std::move(directory)), violations_(violations) {}
 
   std::optional<Mixture> read(const Node& node, const std::string& path) {
@@ -152,7 +152,7 @@ class ShapeReader {
 std::optional<Mixture> read_goal_shape(const Node& node, const std::string& path,
                                        const std::filesystem::path& directory,
                                        yaml::Violations& violations) {
-  return ShapeReader(directory, violations).read(node, path);
+  return GoalShapeReader(directory, violations).read(node, path);
 }
 
 }  // namespace swarm

@@ -11,7 +11,8 @@
 
 namespace swarm {
 
-/// Reads a goal that is a shape instead of a list of components, and fits a mixture to it:
+/// Reads a goal (or start) that is a shape instead of a list of components, and fits a mixture to
+/// it:
 ///
 ///   {polygon_m: [[x, y], …], components: 12, sigma_min_m: 0.5}
 ///   {bitmap: {file: q.png, origin_m: [x0, y0], pixel_m: 0.5, dark: true}, components: 20}

@@ -87,6 +87,19 @@ TEST(GoalShape, BecomesAnOrdinaryMixtureOfTheResolvedMission) {
   }
 }
 
+TEST(GoalShape, MayBeAStart) {
+  const auto mission = parse_mission(
+      "version: 1\n"
+      "world: {bounds_m: [0, 0, 50, 50]}\n"
+      "start: {polygon_m: [[4, 4], [10, 4], [10, 16], [4, 16]], components: 1}\n"
+      "goal: [{mean_m: [40, 40], covariance_m2: [[1, 0], [0, 1]], weight: 1}]\n",
+      "shape");
+
+  ASSERT_TRUE(mission.has_value()) << mission.error().message;
+  ASSERT_EQ(mission->start.components().size(), 1U);
+  EXPECT_LT((mission->start.components()[0].gaussian.mean_m() - Vec2(7, 10)).norm(), 1e-9);
+}
+
 TEST(GoalShape, IsTheSameEveryTime) {
   const std::string goal = "{polygon_m: [[20, 30], [80, 30], [50, 90]], components: 12}";
 
