@@ -270,7 +270,7 @@ TEST(Planner, OptionsComeFromTheMission) {
   spec.shortcuts = 16;
   spec.speed_mps = 1.7;
 
-  const PlannerOptions options = planner_options(spec);
+  const PlannerOptions options = planner_options(spec, 100);
 
   EXPECT_EQ(options.samples, 7U);
   EXPECT_EQ(options.connection_radius_m, 8.0);
