@@ -253,9 +253,9 @@ bool Rover::arrived(std::span<const VertexMass> masses) const {
 }
 
 Result<RoverMission> Rover::plan(const Mixture& start) {
-  if (const std::string broken = broken_limit(start, graph_.world(), options_.graph.risk);
-      !broken.empty()) {
-    return fail(ErrorCode::kInfeasible, "start: " + broken);
+  if (!options_.mpc.soften) {
+    const std::string broken = broken_limit(start, graph_.world(), options_.graph.risk);
+    if (!broken.empty()) return fail(ErrorCode::kInfeasible, "start: " + broken);
   }
   forget();
   auto located = locate(start);

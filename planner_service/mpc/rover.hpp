@@ -55,7 +55,8 @@ class Rover {
 
   /// The whole mission from `start`, step by step, as one flow: FlowPlan::sources()[i] is start
   /// component i, sinks()[j] goal component j. (11g) holds at every step, start included, else
-  /// kInfeasible says what to loosen.
+  /// kInfeasible says what to loosen. With FtmpcOptions::soften the start, and the steps it takes
+  /// to mend it, may break it: for a swarm that flies already.
   Result<RoverMission> plan(const Mixture& start);
 
   void forget();

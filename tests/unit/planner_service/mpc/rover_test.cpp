@@ -213,6 +213,50 @@ TEST(Rover, SaysWhatToLoosen) {
   EXPECT_NE(goal.find("raise epsilon to"), std::string::npos) << goal;
 }
 
+TEST(Rover, AStepThatCannotKeepTheLimitSaysByHowMuch) {
+  // All of the swarm 3 m from a wall: it cannot get away within a step.
+  const World world =
+      World::make({{0, 0}, {200, 160}},
+                  {Polygon::make({{95, 60}, {105, 60}, {105, 100}, {95, 100}}).value()})
+          .value();
+  const auto at = [](double x, double y) {
+    return Mixture::make({{1.0, Gaussian::from_parameters({x, y}, 7.0, 7.0, 0.0)}}).value();
+  };
+  RoverOptions options;
+  options.graph.transport_radius_m = 11.0;
+  Rover strict = Rover::make(world, at(150, 20), options).value();
+  options.mpc.soften = true;
+  Rover soft = Rover::make(world, at(150, 20), options).value();
+
+  const auto refused = strict.step(at(92, 80));
+  ASSERT_FALSE(refused.has_value());
+  EXPECT_EQ(refused.error().code, ErrorCode::kInfeasible);
+  for (const char* word : {"CVaR", "obstacle 0", "step 1", "raise epsilon to", "alpha from 0.05"}) {
+    EXPECT_NE(refused.error().message.find(word), std::string::npos) << refused.error().message;
+  }
+  const auto softened = soft.step(at(92, 80));
+  ASSERT_TRUE(softened.has_value());
+  EXPECT_GT(softened->horizon.excess, 0.0);
+  EXPECT_LT(softened->cvar_m[1], max_mixture_cvar_m(at(92, 80), world, 0.05)) << "away from it";
+  const auto mission = soft.plan(at(92, 80));
+  ASSERT_TRUE(mission.has_value()) << mission.error().message;
+  EXPECT_EQ(mission->steps.back().horizon.excess, 0.0);
+}
+
+TEST(Rover, WithoutObstaclesThereIsNoRisk) {
+  const World world = World::make({{0, 0}, {200, 160}}, {}).value();
+  const Mission scene = testing::rover_scene(1);
+  Rover rover = Rover::make(world, scene.goal, {}).value();
+
+  const auto mission = rover.plan(scene.start);
+
+  ASSERT_TRUE(mission.has_value()) << mission.error().message;
+  for (const RoverStep& step : mission->steps) EXPECT_EQ(step.horizon.iterations, 1);
+  // 152.4 m straight from start to goal means; ways of the grid are at most 2.7 % longer but for
+  // the first and last leg, which join a component beside the grid's.
+  EXPECT_LT(mean_path_m(mission->plan), 1.05 * 152.4);
+}
+
 TEST(Rover, RefusesBadOptions) {
   const Mission mission = testing::rover_scene(1);
   RoverOptions options;
