@@ -24,6 +24,13 @@ constexpr double kRowMargin = 1e-4;
 // A constraint at more than this share of its limit becomes a row before it is violated.
 constexpr double kWatchShare = 0.9;
 
+// A row stays as it is when its z would move by less. It touches the limit there, so the optimum
+// would change by the square of this.
+constexpr double kSameTail_m = 1e-4;
+
+// A row below this share of its limit does not bind.
+constexpr double kBindingShare = 0.99;
+
 // A row below this share is not handed to the next step.
 constexpr double kForgetShare = 0.5;
 
@@ -38,7 +45,7 @@ constexpr double kDensityReach2 = 46.0;
 constexpr double kNegligibleSigmas = 5.0;
 
 // The relative decrease of J below which the sequence has settled.
-constexpr double kSettled = 1e-7;
+constexpr double kSettled = 1e-6;
 
 // What a row stands for.
 struct Constraint {
@@ -83,24 +90,32 @@ class Constraints {
     }
   }
 
-  // Renews the rows there are for these weights and adds those that are needed.
-  void renew(std::size_t step, const StepWeights& weights, HorizonMemory& memory) {
+  // Renews the rows there are for these weights and adds those that are needed. False when all stay
+  // as they are, and so would the optimum.
+  bool renew(std::size_t step, const StepWeights& weights, HorizonMemory& memory) {
+    bool changed = false;
     for (std::size_t part = 0; part < parts(); ++part) {
       for (std::size_t o = 0; o < obstacles(); ++o) {
         const Constraint constraint{step, part, o};
         const TailAtLimit tail = risk_tail(constraint, weights);
         if (tail.probability == 0.0) continue;
-        if (risk_row(constraint) < 0 && tail.probability < kWatchShare * risk_.alpha) continue;
-        set_risk_row(constraint, tail.from_m);
-        memory.from_m(step, part, o) = tail.from_m;
+        const bool is_new = risk_row(constraint) < 0;
+        if (is_new && tail.probability < kWatchShare * risk_.alpha) continue;
+        double& from_m = memory.from_m(step, part, o);
+        if (!is_new && stays(tail, from_m)) continue;
+        from_m = tail.from_m;
+        set_risk_row(constraint, from_m);
+        changed = true;
       }
     }
-    if (options_.density_cap_per_m2 <= 0.0) return;
+    if (options_.density_cap_per_m2 <= 0.0) return changed;
     for (std::uint32_t place = 0; place < graph_.vertices().size(); ++place) {
       const Constraint constraint{step, kDensity, place};
       if (density_row(constraint) >= 0 || density_use(place, weights) < kWatchShare) continue;
       add_density_row(constraint);
+      changed = true;
     }
+    return changed;
   }
 
   // The constraint most used at these weights. Forgets where those were linearised that are far
@@ -167,6 +182,15 @@ class Constraints {
       const double share = density_share(v, static_cast<std::uint32_t>(constraint.place));
       if (share > 0.0) row.entries.push_back({v, share / (1.0 - kRowMargin)});
     }
+  }
+
+  // Whether renewing a row would not change the optimum: its z hardly moves, or it does not bind.
+  // For the constraint risk_tail() was last asked for.
+  bool stays(const TailAtLimit& tail, double from_m) const {
+    if (std::abs(tail.from_m - from_m) <= kSameTail_m) return true;
+    double used = 0.0;
+    for (const LineComponent& c : line_) used += c.weight * risk_share(c, from_m, risk_.delta_m);
+    return used < kBindingShare * risk_.alpha;
   }
 
   TailAtLimit risk_tail(const Constraint& constraint, const StepWeights& weights) const {
@@ -302,10 +326,11 @@ Result<HorizonPlan> solve_ftmpc(const RiskGraph& graph, std::span<const VertexMa
     if (settled) break;
     last_x = solution.x;
     last_cost = solution.objective;
+    bool changed = false;
     for (std::size_t step = 1; step <= options.costs.horizon; ++step) {
-      constraints.renew(step, weights_at(step, solution.x), memory);
+      changed |= constraints.renew(step, weights_at(step, solution.x), memory);
     }
-    if (constraints.rows().empty()) break;  // nothing binds
+    if (!changed) break;
   }
   if (solution.status != LpStatus::kOptimal) {
     return fail(ErrorCode::kInfeasible,
