@@ -8,22 +8,39 @@
 
 #include <fmt/format.h>
 
+#include "planner_service/transport/plan_density.hpp"
 #include "swarm_core/base/assert.hpp"
 
 namespace swarm::planner {
 namespace {
 
+void add_line(std::string& lines, std::string line) {
+  if (!lines.empty()) lines += '\n';
+  lines += std::move(line);
+}
+
+// Components that are too dense by themselves, or else where they overlap.
 void describe(std::span<const Gaussian> components, std::span<const double> masses,
               std::string_view which, const DensityCap& cap, std::string& lines) {
+  bool is_named = false;
   for (std::size_t i = 0; i < masses.size(); ++i) {
     const double peak_per_m2 = peak_density_per_m2(components[i], masses[i], cap.robots);
     if (peak_per_m2 <= cap.max_per_m2) continue;
-    lines += fmt::format(
-        "{}{} component {} holds {:.0f} of {:.0f} robots at up to {:.3f} robots/m2, the limit is "
-        "{:.3f}: widen it {:.2f} times, take weight from it, or raise the limit",
-        lines.empty() ? "" : "\n", which, i, masses[i] * cap.robots, cap.robots, peak_per_m2,
-        cap.max_per_m2, std::sqrt(peak_per_m2 / cap.max_per_m2));
+    add_line(lines,
+             fmt::format("{} component {} holds {:.0f} of {:.0f} robots at up to {:.3f} robots/m2, "
+                         "the limit is {:.3f}: widen it {:.2f} times, take weight from it, or "
+                         "raise the limit",
+                         which, i, masses[i] * cap.robots, cap.robots, peak_per_m2, cap.max_per_m2,
+                         std::sqrt(peak_per_m2 / cap.max_per_m2)));
+    is_named = true;
   }
+  const DensityPeak together = max_density(components.first(masses.size()), masses, cap.robots);
+  if (is_named || together.per_m2 <= cap.max_per_m2) return;
+  add_line(lines, fmt::format("{} components together reach {:.3f} robots/m2 at ({:.1f}, {:.1f}) "
+                              "m, the limit is {:.3f}: move them apart, widen them, or raise the "
+                              "limit",
+                              which, together.per_m2, together.at_m.x(), together.at_m.y(),
+                              cap.max_per_m2));
 }
 
 }  // namespace

@@ -18,8 +18,8 @@ struct DensityCap {
 };
 
 /// Share of the swarm that a Gaussian may carry alone: its peak density is N w / (2π √det Σ) ≤ ρ.
-/// On a W₂ geodesic √det Σ is never below both ends' (√det of a sum is concave in the root's
-/// scale), so a leg keeps what its ends keep.
+/// On a W₂ geodesic Σ(t) = AΣ_aA with A linear in t, so that √det A is concave (Minkowski) and
+/// √det Σ(t) at least the smaller of both ends': a leg keeps what its ends keep.
 inline double mass_capacity(const Gaussian& g, const DensityCap& cap) {
   return 2.0 * std::numbers::pi * cap.max_per_m2 * std::sqrt(g.determinant()) / cap.robots;
 }
@@ -29,7 +29,8 @@ inline double peak_density_per_m2(const Gaussian& g, double mass, double robots)
   return robots * mass / (2.0 * std::numbers::pi * std::sqrt(g.determinant()));
 }
 
-/// kInfeasible names the start and goal components that are denser than the cap by themselves.
+/// kInfeasible names the start and goal components that are denser than the cap by themselves, or
+/// together where they overlap.
 /// `nodes` begins with the start components, the goal components follow. \pre cap > 0, robots > 0
 Result<void> check_components(std::span<const Gaussian> nodes, std::span<const double> supplies,
                               std::span<const double> demands, const DensityCap& cap);

@@ -91,6 +91,10 @@ class Slice {
     }
   }
 
+  Slice(std::span<const Gaussian> components, std::span<const double> masses, double robots) {
+    for (std::uint32_t i = 0; i < masses.size(); ++i) add(components[i], masses[i] * robots, i, i);
+  }
+
   const std::vector<Part>& parts() const { return parts_; }
 
   // One peak for each mean worth climbing from, given what is of interest.
@@ -130,7 +134,7 @@ class Slice {
                       peak_density_per_m2(g, robots, 1.0), from, to});
   }
 
-  MissionTime time_;
+  MissionTime time_{0};
   std::vector<Part> parts_;
 };
 
@@ -159,6 +163,15 @@ DensityPeak max_density(const FlowPlan& plan, double robots, double step_s) {
     for (const DensityPeak& peak : Slice(plan, robots, t).peaks(highest.per_m2)) {
       if (peak.per_m2 > highest.per_m2) highest = peak;
     }
+  }
+  return highest;
+}
+
+DensityPeak max_density(std::span<const Gaussian> components, std::span<const double> masses,
+                        double robots) {
+  DensityPeak highest;
+  for (const DensityPeak& peak : Slice(components, masses, robots).peaks(0.0)) {
+    if (peak.per_m2 > highest.per_m2) highest = peak;
   }
   return highest;
 }

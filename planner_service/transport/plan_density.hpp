@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "swarm_core/plan/flow_plan.hpp"
@@ -35,6 +36,10 @@ struct SharedPeak {
 /// Gaussian and follows the mean shift x ← (Σ wₖΣₖ⁻¹)⁻¹ Σ wₖΣₖ⁻¹μₖ, wₖ the density of part k at x,
 /// which never descends. Cost: times · parts · (parts + those in sight · a dozen steps).
 DensityPeak max_density(const FlowPlan& plan, double robots, double step_s);
+
+/// The highest density of Gaussians that stand still, found the same way.
+DensityPeak max_density(std::span<const Gaussian> components, std::span<const double> masses,
+                        double robots);
 
 /// All peaks above `limit_per_m2`, in order of time.
 std::vector<SharedPeak> peaks_above(const FlowPlan& plan, double robots, double step_s,

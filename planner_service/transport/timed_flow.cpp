@@ -121,6 +121,12 @@ class Horizon {
   std::uint32_t steps() const { return std::min(free_flow_ + extra_, longest_); }
 
   Result<std::vector<TimedMove>> solve(const TimedDemand& demand) {
+    if (network_.arc_count(steps()) > kMostArcs) {
+      return fail(ErrorCode::kInfeasible,
+                  fmt::format("unrolled over {} steps of {:.1f} s the roadmap has {} arcs, more "
+                              "than {}: lower planner.samples or planner.connection_radius_m",
+                              steps(), network_.step_s(), network_.arc_count(steps()), kMostArcs));
+    }
     for (;;) {
       if (auto moves = network_.solve(steps(), demand)) return *std::move(moves);
       const std::uint32_t tried = steps();

@@ -131,6 +131,31 @@ TEST(TimedFlow, RefusesWhatIsTooDenseBeforeItMoves) {
   EXPECT_NE(flow.error().message.find("start component 1"), std::string::npos);
 }
 
+TEST(TimedFlow, RefusesComponentsThatAreTooDenseTogether) {
+  FlowScene scene = flow_scene(1, 30);
+  // Both starts at one place: 0.4 and 0.6 robots/m2 add up.
+  scene.roadmap.nodes[1] = scene.roadmap.nodes[0];
+  EdgeChecker checker(scene.world, scene.risk);
+
+  const auto flow = timed_flow(scene.roadmap, scene.supplies, scene.demands,
+                               {.max_per_m2 = 0.8, .robots = 100.0}, {}, checker);
+
+  ASSERT_FALSE(flow.has_value());
+  EXPECT_NE(flow.error().message.find("0.995 robots/m2 at (5.0, 8.0) m"), std::string::npos)
+      << flow.error().message;
+}
+
+TEST(TimedFlow, RefusesNetworksThatTakeMinutes) {
+  const FlowScene scene = flow_scene(1, 60);
+  EdgeChecker checker(scene.world, scene.risk);
+
+  const auto flow = timed_flow(scene.roadmap, scene.supplies, scene.demands,
+                               {.max_per_m2 = 1.0, .robots = 100.0}, {.step_s = 1e-3}, checker);
+
+  ASSERT_FALSE(flow.has_value());
+  EXPECT_NE(flow.error().message.find("arcs, more than"), std::string::npos);
+}
+
 TEST(TimedFlow, SaysHowManyFitWhenTimeIsShort) {
   const FlowScene scene = flow_scene(1, 30, 16.0, 1.5);
   EdgeChecker checker(scene.world, scene.risk);
