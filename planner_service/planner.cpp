@@ -197,6 +197,11 @@ Result<std::vector<RobotGroup>> Planner::measure(const World& world, const Mixtu
   if (options_.method != Method::kRover) {
     return group_robots(robots, world, goal, options_.risk, {});
   }
+  // A swarm in flight may break (11g) where it is: then the way out of that comes first.
+  if (!options_.rover.mpc.soften) {
+    options_.rover.mpc.soften = true;
+    memory_->rover.reset();
+  }
   const auto ready = memory_->rover_for(world, goal, options_);
   if (!ready) return tl::unexpected(ready.error());
   std::vector<Vec2> positions_m;
