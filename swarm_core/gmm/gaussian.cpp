@@ -75,22 +75,12 @@ Gaussian Gaussian::from_valid(const Vec2& mean_m, const Mat2& covariance_m2) {
   return g;
 }
 
-double Gaussian::determinant() const {
-  return covariance_m2_(0, 0) * covariance_m2_(1, 1) - covariance_m2_(0, 1) * covariance_m2_(1, 0);
-}
-
 double Gaussian::min_sigma_m() const {
   // det/λ_max instead of the difference of two nearly equal numbers.
   return std::sqrt(determinant() / max_variance_m2(covariance_m2_));
 }
 
 double Gaussian::max_sigma_m() const { return std::sqrt(max_variance_m2(covariance_m2_)); }
-
-double Gaussian::variance_along_m2(const Vec2& unit) const {
-  return covariance_m2_(0, 0) * unit.x() * unit.x() +
-         2.0 * covariance_m2_(0, 1) * unit.x() * unit.y() +
-         covariance_m2_(1, 1) * unit.y() * unit.y();
-}
 
 double Gaussian::mahalanobis_squared(const Vec2& point_m) const {
   const Vec2 d = point_m - mean_m_;

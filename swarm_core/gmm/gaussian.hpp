@@ -34,14 +34,21 @@ class Gaussian {
 
   const Vec2& mean_m() const { return mean_m_; }
   const Mat2& covariance_m2() const { return covariance_m2_; }
-  double determinant() const;
+  double determinant() const {
+    return covariance_m2_(0, 0) * covariance_m2_(1, 1) -
+           covariance_m2_(0, 1) * covariance_m2_(1, 0);
+  }
 
   /// Smallest and largest standard deviation over all directions [m].
   double min_sigma_m() const;
   double max_sigma_m() const;
 
   /// nᵀΣn for a unit vector n [m²].
-  double variance_along_m2(const Vec2& unit) const;
+  double variance_along_m2(const Vec2& unit) const {
+    return covariance_m2_(0, 0) * unit.x() * unit.x() +
+           2.0 * covariance_m2_(0, 1) * unit.x() * unit.y() +
+           covariance_m2_(1, 1) * unit.y() * unit.y();
+  }
 
   /// (p−μ)ᵀ Σ⁻¹ (p−μ).
   double mahalanobis_squared(const Vec2& point_m) const;

@@ -3,8 +3,10 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "swarm_core/world/box.hpp"
@@ -16,7 +18,7 @@ namespace swarm {
 class BoxIndex {
  public:
   /// Up to this many boxes, going through them is as fast as the tree (BM_BoxQuery).
-  static constexpr std::size_t kScanned = 24;
+  static constexpr std::size_t kScanned = 8;
 
   BoxIndex() = default;
   explicit BoxIndex(std::vector<Box> boxes);
@@ -58,8 +60,17 @@ class BoxIndex {
       any_within(query, reach_m, [&](std::uint32_t i) { return visit(i), false; });
       return;
     }
-    std::vector<std::uint32_t> found;
-    any_within(query, reach_m, [&](std::uint32_t i) { return found.push_back(i), false; });
+    std::array<std::uint32_t, 64> few;
+    std::vector<std::uint32_t> all;
+    std::size_t count = 0;
+    any_within(query, reach_m, [&](std::uint32_t i) {
+      if (count == few.size()) all.assign(few.begin(), few.end());
+      if (count >= few.size()) all.push_back(i);
+      if (count < few.size()) few[count] = i;
+      ++count;
+      return false;
+    });
+    const std::span found = all.empty() ? std::span(few).first(count) : std::span(all);
     std::sort(found.begin(), found.end());
     for (const std::uint32_t i : found) visit(i);
   }

@@ -203,7 +203,7 @@ void BM_BoxQuery(benchmark::State& state) {
     return found;
   });
 }
-BENCHMARK(BM_BoxQuery)->Arg(6)->Arg(11)->Arg(24)->Arg(25)->Arg(50)->Arg(100)->Arg(10'000);
+BENCHMARK(BM_BoxQuery)->Arg(6)->Arg(11)->Arg(16)->Arg(24)->Arg(50)->Arg(100)->Arg(10'000);
 
 // The naive one: every box, every time.
 void BM_BoxScan(benchmark::State& state) {
@@ -216,7 +216,7 @@ void BM_BoxScan(benchmark::State& state) {
     return found;
   });
 }
-BENCHMARK(BM_BoxScan)->Arg(6)->Arg(11)->Arg(24)->Arg(25)->Arg(50)->Arg(100)->Arg(10'000);
+BENCHMARK(BM_BoxScan)->Arg(6)->Arg(11)->Arg(16)->Arg(24)->Arg(50)->Arg(100)->Arg(10'000);
 
 // The demo's blocks made of pebbles.
 World pebble_world(std::size_t count) {
