@@ -145,8 +145,20 @@ void LiveRoadmap::lose_samples() {
 }
 
 void LiveRoadmap::recheck_pairs() {
+  // A way that a change can touch has both its ends within the radius of there: most are ruled out
+  // by their first.
+  double widest_m = 0.0;
+  for (const double sigma_max_m : sigma_max_m_) widest_m = std::max(widest_m, sigma_max_m);
+  const double reach_m = options_.connection_radius_m + checker_.reach_m(widest_m);
+  std::vector<char> is_near(samples_.size());
+  for (std::size_t i = 0; i < samples_.size(); ++i) {
+    const Box at{samples_[i].mean_m(), samples_[i].mean_m()};
+    const auto yes = [](std::uint32_t) { return true; };
+    is_near[i] = added_.any_within(at, reach_m, yes) || removed_.any_within(at, reach_m, yes);
+  }
   for (Candidate& candidate : sample_pairs_) {
     const auto [a, b, distance_m] = candidate.pair;
+    if (is_near[a] == 0 || is_near[b] == 0) continue;
     const double sigma_max_m = std::max(sigma_max_m_[a], sigma_max_m_[b]);
     if (!needs_check(samples_[a], samples_[b], sigma_max_m, candidate.free)) continue;
     candidate.free = check(samples_[a], samples_[b]);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "swarm_core/gmm/wasserstein.hpp"
 #include "swarm_core/world/box.hpp"
@@ -111,6 +112,22 @@ double terminal_radius_m(std::span<const Gaussian> nodes, const Gaussian& termin
   return std::isfinite(nearest_m2) ? std::max(radius_m, 2.0 * std::sqrt(nearest_m2)) : radius_m;
 }
 
+// What evenly spread nodes have, and half as much again for obstacles, where none are.
+std::size_t expected_pairs(std::span<const Gaussian> nodes, double radius_m) {
+  if (nodes.empty()) return 0;
+  Box box{nodes.front().mean_m(), nodes.front().mean_m()};
+  for (const Gaussian& node : nodes) {
+    box.min_m = box.min_m.cwiseMin(node.mean_m());
+    box.max_m = box.max_m.cwiseMax(node.mean_m());
+  }
+  const Vec2 size_m = box.max_m - box.min_m;
+  const auto n = static_cast<double>(nodes.size());
+  const double share = 1.5 * std::numbers::pi * radius_m * radius_m / (size_m.x() * size_m.y());
+  // Nothing sensible comes out of a radius of ∞ or an area of 0: then as many as a plan has.
+  const double pairs = std::isfinite(share) ? 0.5 * n * n * std::min(share, 1.0) : 16.0 * n;
+  return static_cast<std::size_t>(std::min(pairs, 64.0 * n));
+}
+
 // Stable, by counting: with the other end's order before it, the whole order in linear time.
 void sort_by(std::uint32_t NeighbourPair::*end, std::size_t nodes,
              std::vector<NeighbourPair>& pairs, std::vector<NeighbourPair>& sorted) {
@@ -142,7 +159,7 @@ std::vector<NeighbourPair> find_neighbours(std::span<const Gaussian> nodes, doub
                                            std::size_t terminals) {
   terminals = std::min(terminals, nodes.size());
   std::vector<NeighbourPair> pairs;
-  pairs.reserve(16 * nodes.size());
+  pairs.reserve(expected_pairs(nodes.subspan(terminals), radius_m));
   for (std::uint32_t a = 0; a < terminals; ++a) {
     const auto found = terminal_neighbours(nodes, a, terminals, radius_m);
     pairs.insert(pairs.end(), found.begin(), found.end());

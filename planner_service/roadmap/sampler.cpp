@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "planner_service/roadmap/sampler.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <optional>
 
 #include "planner_service/roadmap/means.hpp"
@@ -30,6 +32,37 @@ std::optional<Gaussian> shaped_at(const Vec2& mean_m, const World& world, double
   }
   if (!in_free(wished, world, k, delta_m)) return std::nullopt;
   return wished;
+}
+
+// Bits of the cell numbers interleaved: cells near each other come near each other.
+std::uint32_t z_order(std::uint32_t column, std::uint32_t row, std::uint32_t bits) {
+  std::uint32_t z = 0;
+  for (std::uint32_t bit = 0; bit < bits; ++bit) {
+    z |= ((column >> bit) & 1U) << (2 * bit) | ((row >> bit) & 1U) << (2 * bit + 1);
+  }
+  return z;
+}
+
+// Neighbours in space become neighbours in memory, for what looks at pairs of them. Stable, by
+// counting.
+std::vector<Gaussian> by_place(const std::vector<Gaussian>& samples, const Box& bounds_m) {
+  std::uint32_t bits = 0;
+  while (bits < 12 && (4ULL << (2 * bits)) <= samples.size()) ++bits;
+  const std::uint32_t cells = 1U << bits;
+  const Vec2 per_m = Vec2::Constant(cells).cwiseQuotient(bounds_m.max_m - bounds_m.min_m);
+  std::vector<std::uint32_t> key;
+  key.reserve(samples.size());
+  std::vector<std::uint32_t> fill(std::size_t{cells} * cells + 1, 0);
+  for (const Gaussian& sample : samples) {
+    const Vec2 cell = (sample.mean_m() - bounds_m.min_m).cwiseProduct(per_m);
+    key.push_back(z_order(std::min(static_cast<std::uint32_t>(cell.x()), cells - 1),
+                          std::min(static_cast<std::uint32_t>(cell.y()), cells - 1), bits));
+    ++fill[key.back() + 1];
+  }
+  for (std::size_t i = 1; i < fill.size(); ++i) fill[i] += fill[i - 1];
+  std::vector<Gaussian> sorted(samples.size());
+  for (std::size_t i = 0; i < samples.size(); ++i) sorted[fill[key[i]]++] = samples[i];
+  return sorted;
 }
 
 }  // namespace
@@ -65,7 +98,7 @@ std::vector<Gaussian> sample_free(const World& world, const RiskLimit& risk,
     samples.push_back(*sample);
     tries = 0;
   }
-  return samples;
+  return by_place(samples, world.bounds_m());
 }
 
 }  // namespace swarm::planner

@@ -40,7 +40,7 @@ std::optional<Gaussian> sample_at(const Vec2& mean_m, const World& world, const 
 
 /// SAMPLEFREE of SwarmPRM, Alg. 1: Gaussians [x, y, σ₁, σ₂, ρ] (eq. 8) that keep the risk limit
 /// (12). Returns fewer than `count` when free space is so scarce that 2000 tries a sample do not
-/// find it.
+/// find it. Ordered by place, not by when they were drawn.
 std::vector<Gaussian> sample_free(const World& world, const RiskLimit& risk,
                                   const SamplerOptions& options, std::size_t count, Rng& rng);
 
