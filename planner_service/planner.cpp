@@ -110,8 +110,7 @@ Result<PlanResult> Planner::Memory::plan_swarmprm(const PlanRequest& request,
                                     .sampler = options.sampler};
     live.emplace(request.world, terminals_of(request), wanted, rng);
   }
-  Roadmap roadmap = live->roadmap();
-  return plan_on_roadmap(std::move(roadmap), stage.lap_ms(), request, options, rng, whole, clock);
+  return plan_on_roadmap(live->roadmap(), request, options, rng, stage, whole);
 }
 
 Result<Rover*> Planner::Memory::rover_for(const World& now, const Mixture& to,
@@ -271,8 +270,7 @@ Result<PlanResult> plan(const PlanRequest& request, const PlannerOptions& option
   if (auto checked = check_endpoints(request, options.risk); !checked) {
     return tl::unexpected(checked.error());
   }
-  Roadmap roadmap = make_roadmap(request, options, rng);
-  return plan_on_roadmap(std::move(roadmap), stage.lap_ms(), request, options, rng, whole, clock);
+  return plan_on_roadmap(make_roadmap(request, options, rng), request, options, rng, stage, whole);
 }
 
 double planned_max_cvar_m(const FlowPlan& plan, const World& world, double alpha) {

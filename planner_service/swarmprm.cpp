@@ -155,13 +155,12 @@ Roadmap make_roadmap(const PlanRequest& request, const PlannerOptions& options, 
   return connect(std::move(nodes), options.connection_radius_m, checker, terminals);
 }
 
-Result<PlanResult> plan_on_roadmap(Roadmap roadmap, double roadmap_ms, const PlanRequest& request,
-                                   const PlannerOptions& options, Rng& rng, StageTimer& whole,
-                                   const StageClock& clock) {
-  StageTimer stage(clock);
+Result<PlanResult> plan_on_roadmap(Roadmap roadmap, const PlanRequest& request,
+                                   const PlannerOptions& options, Rng& rng, StageTimer& stage,
+                                   StageTimer& whole) {
   PlanResult result;
   result.roadmap = std::move(roadmap);
-  result.stats.roadmap_ms = roadmap_ms;
+  result.stats.roadmap_ms = stage.lap_ms();
   EdgeChecker checker(request.world, options.risk);
   if (options.density.max_per_m2 > 0.0) {
     return plan_capped(std::move(result), request, options, checker, stage, whole);

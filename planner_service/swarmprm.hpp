@@ -20,10 +20,10 @@ Result<void> check_endpoints(const PlanRequest& request, const RiskLimit& risk);
 Roadmap make_roadmap(const PlanRequest& request, const PlannerOptions& options, Rng& rng);
 
 /// SwarmPRM, Alg. 2, lines 3–7, on a roadmap of the request: shortest routes, transport problem,
-/// smoothing; with a density cap min-cost flow instead, whose plan is not smoothed. `whole` runs
-/// since the beginning, `roadmap_ms` of it made the roadmap. Errors as of Planner::plan().
-Result<PlanResult> plan_on_roadmap(Roadmap roadmap, double roadmap_ms, const PlanRequest& request,
-                                   const PlannerOptions& options, Rng& rng, StageTimer& whole,
-                                   const StageClock& clock);
+/// smoothing; with a density cap min-cost flow instead, whose plan is not smoothed. `whole` and
+/// `stage` run since the roadmap was begun. Errors as of Planner::plan().
+Result<PlanResult> plan_on_roadmap(Roadmap roadmap, const PlanRequest& request,
+                                   const PlannerOptions& options, Rng& rng, StageTimer& stage,
+                                   StageTimer& whole);
 
 }  // namespace swarm::planner

@@ -84,7 +84,8 @@ ShortestRoutes::ShortestRoutes(const Roadmap& roadmap, std::uint32_t source,
   std::size_t targets_left = targets.size();
   length_m_[source] = 0.0;
   queue.push(0, source);
-  for (std::size_t bucket = 0; bucket < queue.buckets() && targets_left > 0; ++bucket) {
+  for (std::size_t bucket = 0; bucket < queue.buckets() && (targets.empty() || targets_left > 0);
+       ++bucket) {
     for (std::uint32_t node = 0; queue.pop(bucket, node);) {
       const double length_m = length_m_[node];
       if (length_m >= expanded_m[node]) continue;  // an older, longer entry

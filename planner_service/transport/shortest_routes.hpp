@@ -16,7 +16,7 @@ class ShortestRoutes {
  public:
   /// Label-correcting search with buckets of length: like Dijkstra's, but nodes whose lengths are
   /// nearly equal come in any order, so that no heap is needed. Stops as soon as the lengths of all
-  /// `targets` are final.
+  /// `targets` are final; without targets, when those of all nodes are.
   ShortestRoutes(const Roadmap& roadmap, std::uint32_t source,
                  std::span<const std::uint32_t> targets);
 

@@ -3,10 +3,10 @@
 #include "planner_service/transport/timed_network.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <functional>
 #include <queue>
+#include <span>
 #include <utility>
 
 #include "planner_service/transport/min_cost_flow.hpp"
@@ -36,9 +36,8 @@ class Ways {
  public:
   Ways(const Roadmap& roadmap, std::size_t starts, std::size_t goals, double detour)
       : starts_(starts), detour_(detour) {
-    // No such target is ever settled, so the search settles everything.
-    const std::array<std::uint32_t, 1> nowhere{static_cast<std::uint32_t>(roadmap.nodes.size())};
-    for (std::uint32_t c = 0; c < starts + goals; ++c) from_.emplace_back(roadmap, c, nowhere);
+    constexpr std::span<const std::uint32_t> kEverywhere;
+    for (std::uint32_t c = 0; c < starts + goals; ++c) from_.emplace_back(roadmap, c, kEverywhere);
   }
 
   bool are_near_shortest(std::uint32_t u, std::uint32_t v, double length_m) const {

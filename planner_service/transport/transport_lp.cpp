@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "planner_service/transport/transport_lp.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 
@@ -9,13 +10,32 @@
 #include "swarm_core/base/assert.hpp"
 
 namespace swarm::planner {
+namespace {
+
+// A component of next to no mass still needs a route: rounding must not make it one of none.
+constexpr double kLeastMass = 1e-9;
+
+std::vector<double> lifted(std::span<const double> masses) {
+  std::vector<double> lifted(masses.begin(), masses.end());
+  double lent = 0.0;
+  for (double& mass : lifted) {
+    SWARM_ASSERT(mass > 0.0);
+    if (mass >= kLeastMass) continue;
+    lent += kLeastMass - mass;
+    mass = kLeastMass;
+  }
+  *std::max_element(lifted.begin(), lifted.end()) -= lent;
+  return lifted;
+}
+
+}  // namespace
 
 std::optional<std::vector<Shipment>> solve_transport(std::span<const double> supplies,
                                                      std::span<const double> demands,
                                                      std::span<const double> costs_m) {
   SWARM_ASSERT(costs_m.size() == supplies.size() * demands.size());
-  std::vector<double> balance(supplies.begin(), supplies.end());
-  for (const double demand : demands) balance.push_back(-demand);
+  std::vector<double> balance = lifted(supplies);
+  for (const double demand : lifted(demands)) balance.push_back(-demand);
   std::vector<Shipment> candidates;
   std::vector<FlowArc> arcs;
   for (std::size_t i = 0; i < supplies.size(); ++i) {
