@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "planner_service/planner_process.hpp"
 
+#include <algorithm>
 #include <ctime>
 #include <optional>
 #include <span>
@@ -103,6 +104,7 @@ struct PlannerProcess::Impl {
   void hear_scene(UtcTime now);
   void hear_robots(SteadyTime now);
   void keep_planned(SteadyTime now);
+  bool is_step_due(SteadyTime now) const;
   Result<Replan> plan_anew(UtcTime now, std::span<const HeardRobot> heard);
   void try_again(SteadyTime now);
   void avoid_jams(SteadyTime now);
@@ -250,17 +252,29 @@ void PlannerProcess::Impl::try_again(SteadyTime now) {
   publish();
 }
 
-/// There is to be a plan on the bus for the scene as it is; anew while obstacles move.
+/// There is to be a plan on the bus for the scene as it is; anew while obstacles move, and, with
+/// ROVER, for every step it takes.
 void PlannerProcess::Impl::keep_planned(SteadyTime now) {
   if (!scene_heard && now - joined_at < kScenePatience) return;
-  if (scene.version == 0) {
-    if (!published) publish();
+  if (scene.version == 0 && !published) {
+    publish();
+    tried_at = now;
     return;
   }
   const bool news = !published || scene.version != planned_scene;
   const bool tried = failed_scene == scene.version;
   const bool due = now - tried_at >= kReplanPeriod;
-  if ((news && (!tried || due)) || (scene.moves(utc_now()) && due)) try_again(now);
+  if ((news && (!tried || due)) || (scene.moves(utc_now()) && due) || is_step_due(now)) {
+    try_again(now);
+  }
+}
+
+bool PlannerProcess::Impl::is_step_due(SteadyTime now) const {
+  if (mission.planner.method != "rover" || phase != MissionPhase::kRunning) return false;
+  const double step_s = mission.planner.transport_radius_m / mission.planner.speed_mps;
+  if (now - tried_at < from_seconds(step_s)) return false;
+  const std::vector<HeardRobot> heard = robots->fresh(now);
+  return std::any_of(heard.begin(), heard.end(), [](const HeardRobot& r) { return !r.arrived; });
 }
 
 /// CRoPS: where many are stuck the guide becomes dear, and may lead another way.

@@ -85,8 +85,12 @@ struct Sample {
       obstacle_share =
           planner::planned_obstacle_share(result.plan, mission.world, kShareSamples, rng);
     }
-    max_cvar_m = std::max(max_cvar_m, planner::planned_max_cvar_m(result.plan, mission.world,
-                                                                  mission.planner.risk_alpha));
+    // ROVER promises it of the mixture as a whole, the others of every Gaussian.
+    const auto largest_cvar_m = mission.planner.method == "rover"
+                                    ? planner::planned_max_mixture_cvar_m
+                                    : planner::planned_max_cvar_m;
+    max_cvar_m = std::max(max_cvar_m,
+                          largest_cvar_m(result.plan, mission.world, mission.planner.risk_alpha));
   }
 
   std::string to_json(double bound_m) const {

@@ -18,8 +18,7 @@ struct NeighbourPair {
 };
 
 /// NEIGHBOUR of SwarmPRM, Alg. 1, for all nodes at once: every pair with W₂ ≤ radius, ordered by
-/// (a, b). W₂ is at least the distance of the means, so a grid of these finds a superset: with
-/// cells as wide as the radius it takes half of the time of a k-d tree (BM_NeighboursKdTree).
+/// (a, b). W₂ is at least the distance of the means, so a k-d tree of these finds a superset.
 ///
 /// The first `terminals` nodes, the start and goal components, may be wider than any sample and
 /// then farther than a small radius from all of them, however many there are: they reach at least

@@ -10,7 +10,6 @@
 
 #include <benchmark/benchmark.h>
 #include <malloc.h>
-#include <nanoflann.hpp>
 
 #ifdef SWARM_WITH_OMPL
 #include <ompl/base/spaces/RealVectorStateSpace.h>
@@ -132,35 +131,14 @@ void BM_Neighbours(benchmark::State& state) {
 }
 BENCHMARK(BM_Neighbours)->Arg(500)->Arg(8000)->Unit(benchmark::kMicrosecond);
 
-// What nanoflann asks of a point cloud; the names are its own.
-struct MeanCloud {
-  std::span<const Gaussian> nodes;
-  std::size_t kdtree_get_point_count() const { return nodes.size(); }
-  double kdtree_get_pt(std::size_t index, std::size_t axis) const {
-    return nodes[index].mean_m()(static_cast<Eigen::Index>(axis));
-  }
-  template <class BBox>
-  bool kdtree_get_bbox(BBox&) const {
-    return false;
-  }
-};
-
-// The same pairs by a k-d tree of the means.
-void BM_NeighboursKdTree(benchmark::State& state) {
-  using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, MeanCloud>,
-                                                   MeanCloud, 2, std::uint32_t>;
+// The naive one: all pairs.
+void BM_NeighboursAllPairs(benchmark::State& state) {
   const auto nodes = some_nodes(static_cast<std::size_t>(state.range(0)));
   const double radius_m = prm_star_radius_m(static_cast<double>(nodes.size()));
   for (auto _ : state) {
-    const MeanCloud cloud{nodes};
-    const Tree tree(2, cloud);
-    std::vector<std::pair<std::uint32_t, double>> found;
     std::vector<NeighbourPair> pairs;
     for (std::uint32_t a = 0; a < nodes.size(); ++a) {
-      found.clear();
-      tree.radiusSearch(nodes[a].mean_m().data(), radius_m * radius_m, found, {32, 0.0F, false});
-      for (const auto& [b, squared] : found) {
-        if (b <= a) continue;
+      for (std::uint32_t b = a + 1; b < nodes.size(); ++b) {
         const double distance_m = wasserstein2(nodes[a], nodes[b]);
         if (distance_m <= radius_m) pairs.push_back({a, b, distance_m});
       }
@@ -168,7 +146,7 @@ void BM_NeighboursKdTree(benchmark::State& state) {
     benchmark::DoNotOptimize(pairs);
   }
 }
-BENCHMARK(BM_NeighboursKdTree)->Arg(500)->Arg(8000)->Unit(benchmark::kMicrosecond);
+BENCHMARK(BM_NeighboursAllPairs)->Arg(500)->Arg(8000)->Unit(benchmark::kMicrosecond);
 
 // Pebbles all over the map, as many as asked for.
 std::vector<Box> pebbles(std::size_t count) {

@@ -1,7 +1,7 @@
 #!/bin/sh
 # The figures of docs/BENCHMARKS.md that need a hundred processes and real faults: too long for the test suite.
 # One JSON-ish line a case on stdout. About half an hour.   tests/bench/must_hold.sh [CASE …]
-#   cases: plan seeds more lost planner stop interrupt      (default: all)
+#   cases: plan seeds more replan lost planner stop interrupt      (default: all)
 set -eu
 root=$(cd "$(dirname "$0")/../.." && pwd)
 bin=${SWARM_BIN:-$root/build/release/bin}
@@ -44,11 +44,19 @@ finish() {
 
 children() { pgrep -P "$launcher" -x "$1"; }
 
-for case in ${*:-plan seeds more lost planner stop interrupt}; do
+for case in ${*:-plan seeds more replan lost planner stop interrupt}; do
   case $case in
     plan) "$bin/swarm_launcher" plan "$mission" --repeat 31 ;;
     seeds) for seed in 1 2 3 4 5; do fly "seed$seed" --seed "$seed"; done ;;
     more) fly more --robots 120 ;;
+    replan) # two obstacles dropped on the main route in mid-flight
+      start replan 30
+      "$bin/swarm_launcher" command "$out/replan" add_obstacle 'circle_m: {center: [100, 50], radius: 5}'
+      sleep 35
+      "$bin/swarm_launcher" command "$out/replan" add_obstacle 'circle_m: {center: [128, 58], radius: 4}'
+      finish replan
+      grep -o '"version [0-9]*: .*after the change"' "$out/replan/events.jsonl"
+      ;;
     lost)
       start lost 60
       children robot_agent | sed -n '11p;31p;51p;71p;91p' | xargs kill -9
