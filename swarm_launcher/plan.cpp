@@ -11,7 +11,9 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "planner_service/plan_checks.hpp"
 #include "planner_service/planner.hpp"
+#include "planner_service/transport/plan_density.hpp"
 #include "planner_service/transport/transport_lp.hpp"
 #include "swarm_core/metrics/shortest_paths.hpp"
 #include "swarm_core/mission/mission_file.hpp"
@@ -23,6 +25,7 @@ namespace swarm::launcher {
 namespace {
 
 constexpr std::size_t kShareSamples = 1'000'000;
+constexpr double kDensityStep_s = 0.5;
 
 double median(std::vector<double> values) {
   if (values.empty()) return 0.0;
@@ -65,6 +68,7 @@ struct Sample {
   std::vector<double> nodes, edges, roadmap_ms, search_ms, transport_ms, smoothing_ms, total_ms,
       raw_ratio, ratio, cost_m;
   double obstacle_share = 0.0;  // of the first plan
+  double max_density_per_m2 = 0.0;
   double max_cvar_m = -std::numeric_limits<double>::infinity();
   std::uint32_t tried = 0;
 
@@ -84,6 +88,13 @@ struct Sample {
       Rng rng(1);
       obstacle_share =
           planner::planned_obstacle_share(result.plan, mission.world, kShareSamples, rng);
+    }
+    // Looking for the highest density takes longer than planning: of every plan only if it is
+    // capped.
+    if (total_ms.size() == 1 || mission.planner.density_cap_per_m2 > 0.0) {
+      max_density_per_m2 =
+          std::max(max_density_per_m2,
+                   planner::max_density(result.plan, mission.robots.count, kDensityStep_s).per_m2);
     }
     // ROVER promises it of the mixture as a whole, the others of every Gaussian.
     const auto largest_cvar_m = mission.planner.method == "rover"
@@ -106,6 +117,7 @@ struct Sample {
                                          {"planned_ratio", mean(ratio)},
                                          {"max_cvar_m", max_cvar_m},
                                          {"obstacle_share", obstacle_share},
+                                         {"max_density_per_m2", max_density_per_m2},
                                          {"cost_m", mean(cost_m)},
                                          {"seeds", tried},
                                          {"success", success()}};
@@ -118,10 +130,11 @@ struct Sample {
         "median time: roadmap {:.2f} + search {:.2f} + transport {:.2f} + smoothing {:.2f} = "
         "{:.2f} ms\n"
         "mean path / bound {:.3f} raw, {:.3f} smoothed (bound {:.1f} m), W2 cost {:.1f} m\n"
-        "largest CVaR {:.4f} m; at most {:.2f} % of the first plan's mixture inside obstacles\n",
+        "largest CVaR {:.4f} m; at most {:.2f} % of the first plan's mixture inside obstacles\n"
+        "at most {:.3g} robots/m2\n",
         total_ms.size(), tried, median(nodes), median(edges), median(roadmap_ms), median(search_ms),
         median(transport_ms), median(smoothing_ms), median(total_ms), mean(raw_ratio), mean(ratio),
-        bound_m, mean(cost_m), max_cvar_m, 100.0 * obstacle_share);
+        bound_m, mean(cost_m), max_cvar_m, 100.0 * obstacle_share, max_density_per_m2);
   }
 
   double success() const { return static_cast<double>(total_ms.size()) / tried; }

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include <fmt/format.h>
 #include <unistd.h>
 
 namespace swarm::launcher {
@@ -35,6 +36,22 @@ void Progress::show(const std::string& headline, const std::string& details) {
 void Progress::say(const std::string& line) {
   clear();
   std::fprintf(stderr, "%s\n", line.c_str());
+}
+
+std::string headline_of(const Supervisor& supervisor) {
+  switch (supervisor.stage()) {
+    case Supervisor::Stage::kStarting:
+      return fmt::format("starting {} processes", supervisor.processes());
+    case Supervisor::Stage::kGathering:
+      return "waiting for all robots to be heard";
+    case Supervisor::Stage::kRunning:
+      return fmt::format("mission {}", to_string(supervisor.phase()));
+    case Supervisor::Stage::kEnding:
+      return "ending all processes";
+    case Supervisor::Stage::kDone:
+      return "all processes ended";
+  }
+  return "";
 }
 
 }  // namespace swarm::launcher

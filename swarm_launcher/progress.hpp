@@ -4,6 +4,8 @@
 
 #include <string>
 
+#include "swarm_launcher/supervisor.hpp"
+
 namespace swarm::launcher {
 
 /// One live line on a terminal, rewritten in place; without a terminal (or with NO_COLOR set) each
@@ -25,5 +27,8 @@ class Progress {
   bool shown_ = false;
   std::string headline_;
 };
+
+/// What a run is doing, for the first line.
+std::string headline_of(const Supervisor& supervisor);
 
 }  // namespace swarm::launcher

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <csignal>
 #include <cstdio>
-#include <fstream>
 #include <map>
 #include <thread>
 
@@ -16,7 +15,6 @@
 #include "swarm_core/mission/mission_file.hpp"
 #include "swarm_core/mission/placement.hpp"
 #include "swarm_core/mission/scene_change_file.hpp"
-#include "swarm_core/mission/scene_log.hpp"
 #include "swarm_core/shell/run_directory.hpp"
 #include "swarm_core/shell/stop_signal.hpp"
 #include "swarm_launcher/channel_choice.hpp"
@@ -26,6 +24,7 @@
 #include "swarm_launcher/event_log.hpp"
 #include "swarm_launcher/progress.hpp"
 #include "swarm_launcher/run_dir.hpp"
+#include "swarm_launcher/scene_keeper.hpp"
 #include "swarm_launcher/summary.hpp"
 #include "swarm_launcher/supervisor.hpp"
 #include "swarm_launcher/swarm_view.hpp"
@@ -73,9 +72,7 @@ class Run {
         mission_(std::move(mission)),
         dir_(std::move(dir)),
         lock_(std::move(lock)),
-        events_(dir_ / shell::kEventsFile),
-        scene_(first_scene(mission_.world.obstacles().size())),
-        scene_log_(dir_ / shell::kSceneFile, std::ios::app) {}
+        events_(dir_ / shell::kEventsFile) {}
 
   Result<void> join();
   Result<void> act(const Action& action);
@@ -100,11 +97,9 @@ class Run {
   link::ReaderPtr<link::StatusMessage> status_reader_;
   link::ReaderPtr<link::EventMessage> event_reader_;
   link::WriterPtr<link::CommandMessage> command_writer_;
-  link::WriterPtr<link::SceneMessage> scene_writer_;
   std::optional<ControlServer> control_;
   std::vector<ControlServer::ClientId> stopping_;  // clients who wait for a stop to be confirmed
-  Scene scene_;
-  std::ofstream scene_log_;
+  std::optional<SceneKeeper> scene_;
   std::optional<Supervisor> supervisor_;
   SwarmView view_;
   link::WireLimits limits_;
@@ -179,8 +174,7 @@ Result<void> Run::join() {
   status_reader_ = std::move(*status);
   event_reader_ = std::move(*event);
   command_writer_ = std::move(*command);
-  scene_writer_ = std::move(*scene);
-  scene_writer_->write(link::to_message(scene_));
+  scene_.emplace(mission_.world, dir_, std::move(*scene));
   auto control = ControlServer::listen(dir_);
   if (!control) return tl::unexpected(control.error());
   control_.emplace(std::move(*control));
@@ -234,24 +228,18 @@ void Run::send(CommandKind kind) {
       {.kind = kind, .command_id = static_cast<std::uint64_t>(stamp), .stamp_utc_ns = stamp});
 }
 
-/// Makes a change of the scene known to all; says what it was.
 Result<std::string> Run::change(const SceneChange& change) {
   const UtcTime now = utc_now();
-  auto next = after(scene_, change, mission_.world, now);
   const std::string what = fmt::format("{} {}", name_of(change), keys_of(change));
-  if (!next) {
+  auto changed = scene_->change(change, now);
+  if (!changed) {
     events_.write(now, "launcher", link::Severity::kWarning, "scene-refused",
-                  fmt::format("{}: {}", what, next.error().message));
-    return tl::unexpected(next.error());
+                  fmt::format("{}: {}", what, changed.error().message));
+    return changed;
   }
-  const bool added = next->next_id > scene_.next_id;
-  scene_ = std::move(*next);
-  scene_writer_->write(link::to_message(scene_));
-  if (std::holds_alternative<GoTo>(change)) supervisor_->on_new_goal(scene_.version);
-  scene_log_ << scene_log_line(scene_.version, change) << std::flush;
+  if (std::holds_alternative<GoTo>(change)) supervisor_->on_new_goal(scene_->scene().version);
   events_.write(now, "launcher", link::Severity::kInfo, "scene", what);
-  return added ? fmt::format("obstacle {} added", scene_.next_id - 1)
-               : std::string(name_of(change));
+  return changed;
 }
 
 Result<void> Run::act(const Action& action) {
@@ -353,27 +341,10 @@ void Run::show(SteadyTime now) {
   shown_at_ = now;
   const Supervisor::Counts c = supervisor_->counts();
   const std::uint32_t n = mission_.robots.count;
-  std::string headline;
-  switch (supervisor_->stage()) {
-    case Supervisor::Stage::kStarting:
-      headline = fmt::format("starting {} processes", supervisor_->processes());
-      break;
-    case Supervisor::Stage::kGathering:
-      headline = "waiting for all robots to be heard";
-      break;
-    case Supervisor::Stage::kRunning:
-      headline = fmt::format("mission {}", to_string(supervisor_->phase()));
-      break;
-    case Supervisor::Stage::kEnding:
-      headline = "ending all processes";
-      break;
-    case Supervisor::Stage::kDone:
-      headline = "all processes ended";
-      break;
-  }
-  progress_.show(headline, fmt::format("t {:.0f} s  ready {}/{}  arrived {}/{}  lost {}  {}",
-                                       supervisor_->mission_time(now).count(), c.ready, n,
-                                       c.arrived, n, c.lost, view_.describe(now)));
+  progress_.show(headline_of(*supervisor_),
+                 fmt::format("t {:.0f} s  ready {}/{}  arrived {}/{}  lost {}  {}",
+                             supervisor_->mission_time(now).count(), c.ready, n, c.arrived, n,
+                             c.lost, view_.describe(now)));
 }
 
 Result<Measurements> Run::fly() {

@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include "planner_service/plan_checks.hpp"
 #include "planner_service/planner.hpp"
 #include "tests/unit/planner_service/standin_scene.hpp"
 

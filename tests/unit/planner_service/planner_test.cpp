@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include "planner_service/plan_checks.hpp"
 #include "swarm_core/gmm/wasserstein.hpp"
 #include "tests/unit/planner_service/standin_scene.hpp"
 

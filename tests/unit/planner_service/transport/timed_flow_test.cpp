@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "planner_service/plan_checks.hpp"
 #include "planner_service/planner.hpp"
 #include "planner_service/transport/capped_flow.hpp"
 #include "planner_service/transport/plan_density.hpp"

@@ -1,0 +1,35 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "swarm_launcher/scene_keeper.hpp"
+
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "swarm_core/mission/scene_log.hpp"
+#include "swarm_core/shell/run_directory.hpp"
+#include "swarm_link/validation.hpp"
+
+namespace swarm::launcher {
+
+SceneKeeper::SceneKeeper(const World& mission_world, const std::filesystem::path& run_dir,
+                         link::WriterPtr<link::SceneMessage> writer)
+    : mission_world_(mission_world),
+      scene_(first_scene(mission_world.obstacles().size())),
+      log_(run_dir / shell::kSceneFile, std::ios::app),
+      writer_(std::move(writer)) {
+  writer_->write(link::to_message(scene_));
+}
+
+Result<std::string> SceneKeeper::change(const SceneChange& change, UtcTime now) {
+  auto next = after(scene_, change, mission_world_, now);
+  if (!next) return tl::unexpected(next.error());
+  const bool added = next->next_id > scene_.next_id;
+  scene_ = std::move(*next);
+  writer_->write(link::to_message(scene_));
+  log_ << scene_log_line(scene_.version, change) << std::flush;
+  return added ? fmt::format("obstacle {} added", scene_.next_id - 1)
+               : std::string(name_of(change));
+}
+
+}  // namespace swarm::launcher
