@@ -92,6 +92,7 @@ struct PlannerProcess::Impl {
   std::int64_t t0_utc_ns = 0;
   std::uint64_t beats = 0;
   link::RefusalCounters refused;
+  std::uint64_t refusals_told = 0;
   SteadyTime joined_at;
   SteadyTime tried_at;  // to plan anew
   std::vector<link::CommandMessage> commands;
@@ -329,6 +330,10 @@ void PlannerProcess::Impl::announce(link::Severity severity, const std::string& 
 }
 
 void PlannerProcess::Impl::beat(UtcTime now) {
+  if (const std::uint64_t total = refused.total(); total > refusals_told) {
+    announce(link::Severity::kWarning, "refused", fmt::format("{} message(s) so far", total));
+    refusals_told = total;
+  }
   const std::int64_t stamp = now.time_since_epoch().count();
   const double mission_time_s =
       t0_utc_ns == 0 ? 0.0 : 1e-9 * static_cast<double>(stamp - t0_utc_ns);
