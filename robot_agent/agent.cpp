@@ -10,6 +10,16 @@
 namespace swarm::agent {
 namespace {
 
+/// Whether a robot is still where the planner heard it: one that comes back later than that finds
+/// its own way into the plan, not back to where its group was.
+bool is_near_source(const FlowPlan& plan, std::uint32_t source, const Vec2& position_m) {
+  constexpr double kNear_m = 15.0;
+  constexpr double kNearSigmas = 5.0;
+  const Gaussian& g = plan.nodes()[plan.sources()[source]].gaussian;
+  return (position_m - g.mean_m()).norm() <= kNear_m ||
+         g.mahalanobis_squared(position_m) <= kNearSigmas * kNearSigmas;
+}
+
 constexpr double kArrivedNear_m = 1.0;     // of the own end point
 constexpr double kArrivedCrowded_m = 4.0;  // … if the crowd lets nobody nearer
 constexpr Duration kCrowdedAfter = std::chrono::seconds(3);
@@ -72,10 +82,10 @@ Agent::Agent(const World& world, const AgentOptions& options)
 void Agent::accept_plan(const FlowPlan& plan, const Vec2& position_m,
                         std::optional<PlanEntry> entry) {
   if (route_ && plan.digest() == plan_digest_) return;
-  if (entry) {
+  if (entry && is_near_source(plan, entry->source, position_m)) {
     route_ =
         route_from_source(plan, entry->source, entry->share, position_m, world_, options_.route);
-  } else if (moved_) {
+  } else if (moved_ || entry) {
     route_ = route_from_here(plan, options_.share, position_m, world_, options_.route);
   } else {
     route_ = route_from_start(plan, options_.share, position_m, world_, options_.route);

@@ -152,6 +152,21 @@ TEST(Agent, ChangesOverToAnotherPlanWithoutAJump) {
   EXPECT_TRUE(all_arrived()) << steps;
 }
 
+TEST(Agent, DoesNotGoBackToWhereItsGroupWasWhenItComesBackLate) {
+  Swarm sut(1);
+  sut.positions[0] = {45.0, 12.0};  // long past both sources of the plan
+  sut.agents[0].accept_plan(plan_from_the_middle(), sut.positions[0], PlanEntry{0, 0.5});
+
+  double least_x_m = 45.0;
+  for (int step = 0; step < 150; ++step) {
+    sut.tick(MissionPhase::kRunning, true);
+    least_x_m = std::min(least_x_m, sut.positions[0].x());
+  }
+
+  EXPECT_EQ(sut.outputs[0].mode, RobotMode::kArrived);
+  EXPECT_GT(least_x_m, 44.0);
+}
+
 TEST(Agent, StaysWhereItArrivedWhenThePlanLeavesItThere) {
   Swarm sut(1);
   sut.positions[0] = {49.0, 9.0};
