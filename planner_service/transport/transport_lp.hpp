@@ -19,11 +19,10 @@ struct Shipment {
 ///
 ///   min Σᵢⱼ λᵢⱼ Lᵢⱼ   s.t.  Σⱼ λᵢⱼ = ωᵢ,  Σᵢ λᵢⱼ = ω'ⱼ,  λᵢⱼ ≥ 0
 ///
-/// to the exactness of min_cost_flow(), 1e-12 of the largest cost, but every component counts at least
-/// 1e-9; a basic solution, so at most
-/// supplies + demands − 1 shipments, ordered by (from, to). `costs_m` is row-major [supplies ×
-/// demands], +∞ where no route exists. Nothing when no transport avoids those. \pre supplies and
-/// demands are positive and each sum to 1.
+/// to the exactness of min_cost_flow(), 1e-12 of the largest cost, but every component counts at
+/// least 1e-9; a basic solution, so at most supplies + demands − 1 shipments, ordered by (from,
+/// to). `costs_m` is row-major [supplies × demands], +∞ where no route exists. Nothing when no
+/// transport avoids those. \pre supplies and demands are positive and each sum to 1.
 std::optional<std::vector<Shipment>> solve_transport(std::span<const double> supplies,
                                                      std::span<const double> demands,
                                                      std::span<const double> costs_m);
