@@ -17,10 +17,11 @@ struct ProcessOptions {
   std::uint32_t ownership_strength = 100;  ///< a stand-by planner has less
 };
 
-/// The program: plans, publishes the plan (once, kept for late joiners) and the heartbeat, and
-/// follows the mission's commands for its clock t0. The same mission and seed give the same plan,
-/// so after a restart it publishes the same flow under a higher epoch and the swarm goes on where
-/// it was.
+/// The program: plans, publishes the plan (kept for late joiners) and the heartbeat, and follows
+/// the mission's commands for its clock t0. When the scene changes it plans anew from where the
+/// robots say they are. The same mission and seed give the same first plan, so after a restart in
+/// an unchanged scene it publishes the same flow under a higher epoch and the swarm goes on where
+/// it was; in a changed one it plans anew.
 class PlannerProcess {
  public:
   /// Plans first, joins the bus second: a mission that cannot be planned ends here, saying why.
