@@ -20,33 +20,50 @@ bool is_near_source(const FlowPlan& plan, std::uint32_t source, const Vec2& posi
          g.mahalanobis_squared(position_m) <= kNearSigmas * kNearSigmas;
 }
 
-constexpr double kArrivedNear_m = 1.0;     // of the own end point
-constexpr double kArrivedCrowded_m = 4.0;  // … if the crowd lets nobody nearer
-constexpr Duration kCrowdedAfter = std::chrono::seconds(3);
-constexpr double kAtRest_m = 0.1;  // from the end point: stay
 constexpr double kAtRest_mps = 0.05;
+
+double nearest_gap_m(const ControlView& view, double radius_m) {
+  double nearest_m = std::numeric_limits<double>::infinity();
+  for (const Neighbour& n : view.neighbours) {
+    nearest_m =
+        std::min(nearest_m, (n.position_m - view.position_m).norm() - radius_m - n.radius_m);
+  }
+  return nearest_m;
+}
+
+std::unique_ptr<ControlMethod> make_method(const AgentOptions& options) {
+  return std::make_unique<Apf>(options.apf);
+}
 
 }  // namespace
 
 AgentOptions agent_options(const Mission& mission, RobotId robot, std::uint64_t seed) {
-  const RobotsSpec& body = mission.robots;
+  const BodySpec& body = body_of(mission.robots, robot);
   const ControlSpec& c = mission.control;
   const LinkSpec& l = mission.link;
   const Duration period = from_seconds(1.0 / c.rate_hz);
+  const double cruise_mps = std::min(c.cruise_mps, body.speed_max_mps);
+  const double hear_m = body.hear_radius_m > 0.0 ? body.hear_radius_m : l.hear_radius_m;
   return {
       .robot = robot,
-      .share = stratified_share(robot.value(), body.count),
+      .share = stratified_share(robot.value(), mission.robots.count),
       .seed = mix_seed(seed, robot.value()),
+      .method = c.method,
       .route = {.radius_m = body.radius_m},
-      .pursuit = {.look_ahead_m = c.look_ahead_s * c.cruise_mps, .radius_m = body.radius_m},
-      .attraction = {.cruise_mps = std::min(c.cruise_mps, body.speed_max_mps),
-                     .approach_gain_hz = c.approach_gain_hz},
-      .neighbour_repulsion = {.radius_m = body.radius_m,
-                              .gap_m = c.neighbour_gap_m,
-                              .push_mps = c.neighbour_push_mps},
-      .obstacle_repulsion = {.radius_m = body.radius_m,
-                             .gap_m = c.obstacle_gap_m,
-                             .push_mps = c.obstacle_push_mps},
+      .apf = {.pursuit = {.look_ahead_m = c.look_ahead_s * cruise_mps,
+                          .radius_m = body.radius_m,
+                          .keep_clearance_m = c.keep_clearance_m},
+              .attraction = {.cruise_mps = cruise_mps, .approach_gain_hz = c.approach_gain_hz},
+              .density = {.push_mps = c.density_push_mps, .robots = mission.robots.count},
+              .neighbour_repulsion = {.radius_m = body.radius_m,
+                                      .gap_m = c.neighbour_gap_m,
+                                      .push_mps = c.neighbour_push_mps},
+              .obstacle_repulsion = {.radius_m = body.radius_m,
+                                     .gap_m = c.obstacle_gap_m,
+                                     .push_mps = c.obstacle_push_mps},
+              .kick = {.stuck_after = from_seconds(c.stuck_after_s),
+                       .duration = from_seconds(c.kick_s),
+                       .velocity_mps = c.kick_mps}},
       .safety = {.radius_m = body.radius_m,
                  .speed_max_mps = body.speed_max_mps,
                  .period = period,
@@ -54,12 +71,9 @@ AgentOptions agent_options(const Mission& mission, RobotId robot, std::uint64_t 
                  .neighbour_margin_m = mission.safety.neighbour_margin_m,
                  .obstacle_margin_m = mission.safety.obstacle_margin_m,
                  .follow_share = mission.safety.follow_share},
-      .kick = {.stuck_after = from_seconds(c.stuck_after_s),
-               .duration = from_seconds(c.kick_s),
-               .velocity_mps = c.kick_mps},
       .neighbours = {.radius_m = body.radius_m,
-                     .speed_max_mps = body.speed_max_mps,
-                     .keep_radius_m = 1.5 * l.hear_radius_m,
+                     .fleet = Fleet(mission.robots),
+                     .keep_radius_m = 1.5 * hear_m,
                      .near_m = l.send_near_m,
                      .near_silence = 3 * period,
                      .expected_silence = from_seconds(l.send_interval_max_s) + 2 * period,
@@ -71,85 +85,56 @@ AgentOptions agent_options(const Mission& mission, RobotId robot, std::uint64_t 
 }
 
 Agent::Agent(const World& world, const AgentOptions& options)
-    : world_(world),
+    : world_(&world),
       options_(options),
       rng_(options.seed),
       neighbours_(options.neighbours),
       filter_(world, options.safety),
-      kick_(options.kick),
-      say_(options.say) {}
+      say_(options.say),
+      method_(make_method(options)) {}
 
 void Agent::accept_plan(const FlowPlan& plan, const Vec2& position_m,
                         std::optional<PlanEntry> entry) {
-  if (route_ && plan.digest() == plan_digest_) return;
-  if (entry && is_near_source(plan, entry->source, position_m)) {
-    route_ =
-        route_from_source(plan, entry->source, entry->share, position_m, world_, options_.route);
-  } else if (moved_ || entry) {
-    route_ = route_from_here(plan, options_.share, position_m, world_, options_.route);
-  } else {
-    route_ = route_from_start(plan, options_.share, position_m, world_, options_.route);
-  }
+  if (has_route_ && plan.digest() == plan_digest_) return;
+  const RouteOptions& o = options_.route;
+  const Route route =
+      entry && is_near_source(plan, entry->source, position_m)
+          ? route_from_source(plan, entry->source, entry->share, position_m, *world_, o)
+      : moved_ || entry ? route_from_here(plan, options_.share, position_m, *world_, o)
+                        : route_from_start(plan, options_.share, position_m, *world_, o);
+  method_->begin(route, *world_);
+  has_route_ = true;
   plan_digest_ = plan.digest();
-  pursuit_ = Pursuit(route_->path, options_.pursuit);
-  kick_.forget();
+  way_begin_m_ = route.path.at(0.0);
   arrived_ = false;
-  best_remaining_m_ = std::numeric_limits<double>::infinity();
-}
-
-bool Agent::has_arrived(const AgentInput& input) {
-  const bool inside = route_->goal.contains_99(input.position_m);
-  if (arrived_) return inside;
-  const double left = (pursuit_.end_m() - input.position_m).norm();
-  if (left < best_remaining_m_ - 0.1) {
-    best_remaining_m_ = left;
-    progress_at_ = input.now;
-  }
-  const bool crowded = left < kArrivedCrowded_m && input.now - progress_at_ > kCrowdedAfter;
-  return inside && (left < kArrivedNear_m || crowded);
 }
 
 RobotMode Agent::decide_mode(const AgentInput& input) const {
   if (input.phase == MissionPhase::kStopped) return RobotMode::kStopped;
-  if (!route_ || input.phase == MissionPhase::kReady) return RobotMode::kWaiting;
+  if (!has_route_ || input.phase == MissionPhase::kReady) return RobotMode::kWaiting;
   if (arrived_) return RobotMode::kArrived;
   if (input.phase == MissionPhase::kPaused || !input.planner_alive) return RobotMode::kHolding;
   return RobotMode::kMoving;
 }
 
-Vec2 Agent::wish(const AgentInput& input, RobotMode mode) {
-  if (mode != RobotMode::kMoving && mode != RobotMode::kArrived) {
-    kick_.update(input.now, 0.0, false, rng_);
-    return Vec2::Zero();
-  }
-  const Pursuit::Aim aim = pursuit_.update(input.position_m, world_);
-  const Vec2 kick =
-      kick_.update(input.now, pursuit_.progress_m(), mode == RobotMode::kMoving, rng_);
-  if (mode == RobotMode::kArrived && aim.left_m < kAtRest_m) return Vec2::Zero();
-  return attraction(input.position_m, aim.point_m, aim.left_m, options_.attraction) + kick;
-}
-
 AgentOutput Agent::tick(const AgentInput& input) {
-  if (route_ && input.phase != MissionPhase::kReady) arrived_ = has_arrived(input);
+  const ControlView view{.now = input.now,
+                         .position_m = input.position_m,
+                         .neighbours = neighbours_.at(input.now, input.position_m),
+                         .world = *world_};
+  if (has_route_ && input.phase != MissionPhase::kReady) arrived_ = method_->has_arrived(view);
   AgentOutput out;
   out.mode = decide_mode(input);
   moved_ = moved_ || out.mode == RobotMode::kMoving;
-
-  const std::span<const Neighbour> neighbours = neighbours_.at(input.now, input.position_m);
-  out.nearest_gap_m = std::numeric_limits<double>::infinity();
-  for (const Neighbour& n : neighbours) {
-    const double gap = (n.position_m - input.position_m).norm() - 2.0 * options_.safety.radius_m;
-    out.nearest_gap_m = std::min(out.nearest_gap_m, gap);
-  }
-  out.neighbours = static_cast<std::uint16_t>(std::min<std::size_t>(neighbours.size(), 0xFFFF));
-  out.remaining_m = route_ ? pursuit_.remaining_m() : 0.0;
+  out.nearest_gap_m = nearest_gap_m(view, options_.safety.radius_m);
+  out.neighbours =
+      static_cast<std::uint16_t>(std::min<std::size_t>(view.neighbours.size(), 0xFFFF));
+  out.remaining_m = has_route_ ? method_->remaining_m() : 0.0;
 
   if (out.mode != RobotMode::kStopped) {
-    const Vec2 wished =
-        wish(input, out.mode) +
-        neighbour_repulsion(input.position_m, neighbours, options_.neighbour_repulsion) +
-        obstacle_repulsion(input.position_m, world_, options_.obstacle_repulsion);
-    out.velocity_mps = filter_.filter(input.position_m, wished, neighbours);
+    const bool drives = out.mode == RobotMode::kMoving || out.mode == RobotMode::kArrived;
+    const Vec2 wished = drives ? method_->wish(view, arrived_, rng_) : method_->hold(view);
+    out.velocity_mps = filter_.filter(input.position_m, wished, view.neighbours);
   }
   out.settled = out.mode == RobotMode::kArrived && out.velocity_mps.norm() < kAtRest_mps;
 

@@ -4,12 +4,10 @@
 
 #include <memory>
 #include <optional>
+#include <string>
 
-#include "robot_agent/control/attraction.hpp"
-#include "robot_agent/control/diffusion_kick.hpp"
-#include "robot_agent/control/neighbour_repulsion.hpp"
-#include "robot_agent/control/obstacle_repulsion.hpp"
-#include "robot_agent/control/pursuit.hpp"
+#include "robot_agent/control/apf.hpp"
+#include "robot_agent/control/control_method.hpp"
 #include "robot_agent/control/route.hpp"
 #include "robot_agent/control/safety_filter.hpp"
 #include "robot_agent/neighbour_table.hpp"
@@ -24,13 +22,10 @@ struct AgentOptions {
   RobotId robot;
   double share = 0.0;  ///< of the stratified draw, see stratified_share()
   std::uint64_t seed = 0;
+  std::string method = "apf";  ///< of control
   RouteOptions route;
-  PursuitOptions pursuit;
-  AttractionOptions attraction;
-  NeighbourRepulsionOptions neighbour_repulsion;
-  ObstacleRepulsionOptions obstacle_repulsion;
+  ApfOptions apf;
   SafetyOptions safety;
-  KickOptions kick;
   NeighbourOptions neighbours;
   SayOptions say;
 };
@@ -82,32 +77,29 @@ class Agent {
 
   AgentOutput tick(const AgentInput& input);
 
-  bool has_route() const { return route_.has_value(); }
-  /// Index of the goal (sink of the plan) this robot goes to. \pre has_route()
-  std::uint32_t goal() const { return route_->sink; }
+  bool has_route() const { return has_route_; }
+  /// Index of the goal (sink of the plan) this robot is at or goes to. \pre has_route()
+  std::uint32_t goal(const Vec2& position_m) const { return method_->goal(position_m); }
   /// Where the present way begins. \pre has_route()
-  Vec2 way_begin_m() const { return route_->path.at(0.0); }
-  std::uint32_t kicks() const { return kick_.kicks(); }
+  const Vec2& way_begin_m() const { return way_begin_m_; }
+  /// How often it freed itself from a deadlock.
+  std::uint32_t escapes() const { return method_->escapes(); }
 
  private:
   RobotMode decide_mode(const AgentInput& input) const;
-  bool has_arrived(const AgentInput& input);
-  Vec2 wish(const AgentInput& input, RobotMode mode);
 
-  const World& world_;
+  const World* world_;
   AgentOptions options_;
   Rng rng_;
   NeighbourTable neighbours_;
   SafetyFilter filter_;
-  DiffusionKick kick_;
   SayPolicy say_;
-  std::optional<Route> route_;
+  std::unique_ptr<ControlMethod> method_;
+  bool has_route_ = false;
   std::uint64_t plan_digest_ = 0;
-  Pursuit pursuit_;
+  Vec2 way_begin_m_ = Vec2::Zero();
   bool arrived_ = false;
   bool moved_ = false;
-  SteadyTime progress_at_;
-  double best_remaining_m_ = 0.0;
 };
 
 }  // namespace swarm::agent

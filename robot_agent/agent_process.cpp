@@ -144,7 +144,7 @@ Result<void> AgentProcess::Impl::make_robots(std::uint64_t seed) {
     box->append(blackbox::Header{.robot = id,
                                  .robots = mission.robots.count,
                                  .process_id = static_cast<std::uint32_t>(::getpid()),
-                                 .radius_m = mission.robots.radius_m,
+                                 .radius_m = body_of(mission.robots, id).radius_m,
                                  .stamp = utc_now()});
     robots.emplace_back(world, agent_options(mission, id, seed),
                         std::make_unique<SimulatedRobot>(std::chrono::steady_clock::now(), *place),

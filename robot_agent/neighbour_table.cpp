@@ -51,7 +51,8 @@ std::span<const Neighbour> NeighbourTable::at(SteadyTime now, const Vec2& own_po
   for (const NeighbourReport& r : reports_) {
     const Duration age = std::max<Duration>(now - r.as_of, Duration::zero());
     const double overdue_s = std::max(0.0, to_seconds(age - options_.expected_silence));
-    const double gap_m = (r.position_m - own_position_m).norm() - 2.0 * options_.radius_m;
+    const Fleet::Body& body = options_.fleet.of(r.robot);
+    const double gap_m = (r.position_m - own_position_m).norm() - options_.radius_m - body.radius_m;
     const bool silent = gap_m < options_.near_m && age > options_.near_silence;
     Vec2 position = r.position_m + to_seconds(age) * r.velocity_mps;
     if (silent) {
@@ -62,7 +63,7 @@ std::span<const Neighbour> NeighbourTable::at(SteadyTime now, const Vec2& own_po
     neighbours_.push_back({.robot = r.robot,
                            .position_m = position,
                            .velocity_mps = silent ? Vec2::Zero() : r.velocity_mps,
-                           .radius_m = options_.radius_m + options_.speed_max_mps * overdue_s});
+                           .radius_m = body.radius_m + body.speed_max_mps * overdue_s});
   }
   return neighbours_;
 }

@@ -9,6 +9,7 @@
 #include "swarm_core/base/ids.hpp"
 #include "swarm_core/base/linalg.hpp"
 #include "swarm_core/base/time.hpp"
+#include "swarm_core/mission/fleet.hpp"
 
 namespace swarm::agent {
 
@@ -30,8 +31,8 @@ struct Neighbour {
 };
 
 struct NeighbourOptions {
-  double radius_m = 0.2;
-  double speed_max_mps = 1.5;
+  double radius_m = 0.2;        ///< of the robot itself
+  Fleet fleet;                  ///< sizes and speeds of the others
   double keep_radius_m = 6.0;   ///< robots farther than this are not kept
   double near_m = 1.0;          ///< robots whose surface is this near speak at every tick …
   Duration near_silence{};      ///< … so that one silent for longer has stalled

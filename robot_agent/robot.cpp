@@ -29,9 +29,9 @@ Robot::Robot(const World& world, const AgentOptions& options, std::unique_ptr<Dr
 void Robot::step(const Tick& tick, const Inbox& inbox, const NewPlan* new_plan) {
   const Measurement body = driver_->measure(tick.now);
   position_m_ = body.position_m;
-  const std::uint8_t goal = agent_.has_route()
-                                ? static_cast<std::uint8_t>(std::min(agent_.goal(), 254U))
-                                : blackbox::Step::kNoGoal;
+  const std::uint8_t goal =
+      agent_.has_route() ? static_cast<std::uint8_t>(std::min(agent_.goal(position_m_), 254U))
+                         : blackbox::Step::kNoGoal;
   if (body.command_expired) {  // the body stopped between two ticks: the path has a point there
     box_.append(blackbox::Step{.stamp = tick.utc_now - (tick.now - body.expired_at),
                                .position_m = position_m_,
@@ -67,8 +67,9 @@ void Robot::step(const Tick& tick, const Inbox& inbox, const NewPlan* new_plan) 
       .lateness_us =
           static_cast<std::int32_t>(std::min<std::int64_t>(to_us(tick.lateness), INT32_MAX)),
       .mode = static_cast<std::uint8_t>(output_.mode),
-      .goal = agent_.has_route() ? static_cast<std::uint8_t>(std::min(agent_.goal(), 254U))
-                                 : blackbox::Step::kNoGoal,
+      .goal = agent_.has_route()
+                  ? static_cast<std::uint8_t>(std::min(agent_.goal(position_m_), 254U))
+                  : blackbox::Step::kNoGoal,
       .neighbours = output_.neighbours});
   if (mode_changed_) {
     note(tick.utc_now, "mode", std::string(to_string(output_.mode)),

@@ -11,11 +11,33 @@ namespace {
 constexpr double kStep_m = 0.25;    // of progress
 constexpr double kReached_m = 0.5;  // an aim this near counts as reached
 constexpr double kBackTrack_m = 30.0;
+constexpr double kSample_m = 0.5;   // of the planned clearance
+constexpr double kLeast_m = 0.05;   // surface clearance of any line of sight
+constexpr double kKeepAim_m = 1.5;  // an aim this far ahead is kept between two looks
 
 }  // namespace
 
-Pursuit::Pursuit(Polyline path, const PursuitOptions& options)
-    : path_(std::move(path)), options_(options) {}
+Pursuit::Pursuit(Polyline path, const World& world, const PursuitOptions& options)
+    : path_(std::move(path)), options_(options) {
+  const double most_m = options_.radius_m + options_.keep_clearance_m;
+  const auto pieces = static_cast<std::size_t>(path_.length_m() / kSample_m) + 1;
+  clearance_m_.reserve(pieces);
+  for (std::size_t i = 0; i < pieces; ++i) {
+    // The distance changes by at most the way: half a piece on both sides of the sample.
+    const double s = (static_cast<double>(i) + 0.5) * kSample_m;
+    const double least_m = world.distance_m(path_.at(s)) - 0.5 * kSample_m;
+    clearance_m_.push_back(static_cast<float>(std::clamp(least_m, 0.0, most_m)));
+  }
+}
+
+double Pursuit::planned_clearance_m(double from_s_m, double to_s_m) const {
+  const auto piece = [&](double s) {
+    return std::min(clearance_m_.size() - 1, static_cast<std::size_t>(s / kSample_m));
+  };
+  const auto first = clearance_m_.begin() + static_cast<std::ptrdiff_t>(piece(from_s_m));
+  const auto last = clearance_m_.begin() + static_cast<std::ptrdiff_t>(piece(to_s_m));
+  return static_cast<double>(*std::min_element(first, last + 1));
+}
 
 void Pursuit::advance(const Vec2& position_m) {
   if (aim_s_m_ > s_m_ && (path_.at(aim_s_m_) - position_m).norm() < kReached_m) s_m_ = aim_s_m_;
@@ -33,12 +55,24 @@ void Pursuit::advance(const Vec2& position_m) {
 }
 
 Pursuit::Aim Pursuit::update(const Vec2& position_m, const World& world) {
-  const double length = path_.length_m();
   advance(position_m);
-  const double own_clearance = world.distance_m(position_m) - 1e-3;
-  const double clearance = std::min(options_.radius_m + 0.05, own_clearance);
+  // Between two looks the aim is the one that was seen, while it is well ahead.
+  if (looks_in_ > 0 && aim_s_m_ - s_m_ > kKeepAim_m) {
+    --looks_in_;
+    const Vec2 point = path_.at(aim_s_m_);
+    return {point, (point - position_m).norm() + path_.length_m() - aim_s_m_, true};
+  }
+  looks_in_ = options_.look_every;
+  return look(position_m, world);
+}
+
+Pursuit::Aim Pursuit::look(const Vec2& position_m, const World& world) {
+  const double length = path_.length_m();
+  const double own_clearance = std::max(0.0, world.distance_m(position_m) - 1e-3);
   const auto visible = [&](double s) {
-    return world.segment_is_free(position_m, path_.at(s), clearance);
+    const double planned = planned_clearance_m(std::min(s_m_, s), std::max(s_m_, s));
+    const double wanted = std::max(options_.radius_m + kLeast_m, planned);
+    return world.segment_is_free(position_m, path_.at(s), std::min(wanted, own_clearance));
   };
   const auto aim_at = [&](double s) {
     aim_s_m_ = s;
@@ -55,6 +89,7 @@ Pursuit::Aim Pursuit::update(const Vec2& position_m, const World& world) {
       return aim_at(s_m_);
     }
   }
+  looks_in_ = 0;
   return {path_.at(s_m_), length - s_m_, false};
 }
 

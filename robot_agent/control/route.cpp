@@ -32,23 +32,21 @@ Vec2 clamp_offset(const Gaussian& g, const Vec2& offset, double offset_max) {
   return d > offset_max ? Vec2(offset * (offset_max / d)) : offset;
 }
 
-/// A Gaussian on the way with the robot's offset in it.
-struct Station {
-  Gaussian gaussian;
-  Vec2 offset_m;
-};
-
 /// Follows the flow from a node to a sink, drawing a leg at every split.
 std::uint32_t follow(const FlowPlan& plan, std::uint32_t node, double share,
                      std::vector<Station>& stations) {
   for (;;) {
     const auto out = plan.legs_out(node);
-    if (out.empty()) return node;
+    if (out.empty()) {
+      stations.back().mass_out = plan.nodes()[node].mass;
+      return node;
+    }
     const std::size_t pick = draw(
         out.size(), [&](std::size_t i) { return plan.legs()[out[i]].mass; }, share);
     const std::uint32_t next = plan.legs()[out[pick]].to;
     const Gaussian& to = plan.nodes()[next].gaussian;
-    const Station& last = stations.back();
+    Station& last = stations.back();
+    last.mass_out = plan.legs()[out[pick]].mass;
     stations.push_back({to, transport_map(last.gaussian, to) * last.offset_m});
     node = next;
   }
@@ -101,8 +99,14 @@ Route finish(const FlowPlan& plan, std::uint32_t node, double share, std::vector
   const auto sink = std::find(plan.sinks().begin(), plan.sinks().end(), last);
   SWARM_ASSERT(sink != plan.sinks().end());
   std::vector<Vec2> vertices = free_vertices(stations, world, options);
+  double at_m = begin_m ? (vertices.front() - *begin_m).norm() : 0.0;
+  for (std::size_t i = 0; i < stations.size(); ++i) {
+    if (i > 0) at_m += (vertices[i] - vertices[i - 1]).norm();
+    stations[i].at_m = at_m;
+  }
   if (begin_m) vertices.insert(vertices.begin(), *begin_m);
   return {.path = Polyline(std::move(vertices)),
+          .stations = std::move(stations),
           .sink = static_cast<std::uint32_t>(sink - plan.sinks().begin()),
           .goal = plan.nodes()[last].gaussian};
 }
@@ -153,8 +157,9 @@ Route route_from_here(const FlowPlan& plan, double share, const Vec2& position_m
   const std::uint32_t next = plan.legs()[best_leg].to;
   const Gaussian& to = plan.nodes()[next].gaussian;
   const Vec2 offset = clamp_offset(here, position_m - here.mean_m(), options.offset_max);
-  return finish(plan, next, share, {{here, offset}, {to, transport_map(here, to) * offset}}, world,
-                options, position_m);
+  const double mass = plan.legs()[best_leg].mass;
+  return finish(plan, next, share, {{here, offset, mass}, {to, transport_map(here, to) * offset}},
+                world, options, position_m);
 }
 
 }  // namespace swarm::agent

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "robot_agent/control/polyline.hpp"
 #include "swarm_core/plan/flow_plan.hpp"
@@ -10,9 +11,18 @@
 
 namespace swarm::agent {
 
+/// A Gaussian on a robot's way, with the robot's place in it.
+struct Station {
+  Gaussian gaussian;
+  Vec2 offset_m = Vec2::Zero();  ///< from the mean, as transported
+  double mass_out = 0.0;         ///< of the leg it leaves by; of the node at the end of the way
+  double at_m = 0.0;             ///< arc length on the path
+};
+
 /// One robot's own way through the flow.
 struct Route {
   Polyline path;
+  std::vector<Station> stations;
   std::uint32_t sink = 0;  ///< index into FlowPlan::sinks()
   Gaussian goal;           ///< the sink's Gaussian
 };

@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "swarm_core/base/ids.hpp"
 #include "swarm_core/gmm/mixture.hpp"
 #include "swarm_core/mission/phase.hpp"
 #include "swarm_core/mission/scene.hpp"
@@ -18,12 +19,34 @@ namespace swarm {
 /// Everything a mission file says, with its defaults. One struct per top-level key, one field per
 /// key of the file, the same names. Components take their own options, never the Mission.
 
-struct RobotsSpec {
-  std::uint32_t count = 100;
+/// A robot's body. Noise is zero-mean, Gaussian and independent per axis and control step.
+struct BodySpec {
+  std::string model = "single_integrator";  ///< or unicycle, double_integrator
   double radius_m = 0.2;
   double speed_max_mps = 1.5;
-  double placement_gap_m = 0.7;  ///< least surface gap to robots and obstacles at the start
+  double acceleration_max_mps2 = 3.0;  ///< unicycle (along its heading) and double integrator
+  double turn_rate_max_radps = 3.0;    ///< unicycle
+  double hear_radius_m = 0.0;          ///< its sensing range; 0 = link.hear_radius_m
+  double motion_noise_m = 0.0;         ///< σ of w(k) [ROVER, eq. 9]
+  double position_noise_m = 0.0;       ///< σ of its measured position
 };
+
+/// A number of robots that differ from the others.
+struct RobotGroupSpec : BodySpec {
+  std::uint32_t count = 1;
+};
+
+struct RobotsSpec : BodySpec {
+  std::uint32_t count = 100;
+  double placement_gap_m = 0.7;  ///< least surface gap to robots and obstacles at the start
+  /// The first ids, group after group; the rest are as the keys beside it say.
+  std::vector<RobotGroupSpec> groups;
+};
+
+/// The body of one robot. \pre robot < robots.count
+const BodySpec& body_of(const RobotsSpec& robots, RobotId robot);
+/// The largest radius of any robot [m].
+double largest_radius_m(const RobotsSpec& robots);
 
 struct PlannerSpec {
   std::string method = "swarmprm";  ///< or rover, crops, adoc
@@ -55,9 +78,12 @@ struct PlannerSpec {
 };
 
 struct ControlSpec {
+  std::string method = "apf";  ///< or crops, intermittent_diffusion
   double rate_hz = 10.0;
   double cruise_mps = 1.45;         ///< wished speed along the flow
   double look_ahead_s = 8.0;        ///< pursuit: how far ahead along the own route a robot aims
+  double keep_clearance_m = 2.0;    ///< pursuit: planned clearance up to this is not cut away
+  double density_push_mps = 0.1;    ///< apf: at a density of twice the planned one
   double neighbour_gap_m = 0.6;     ///< d0: neighbours nearer than this push
   double neighbour_push_mps = 0.6;  ///< speed of that push at contact
   double obstacle_gap_m = 0.5;      ///< obstacles nearer than this push

@@ -27,7 +27,8 @@ constexpr yaml::Range between(double low, double high) { return {.low = low, .hi
 
 /// Coordinates and sizes: beyond this it is no place robots of this size drive in.
 inline constexpr double kMaxExtent_m = 1e6;
-inline constexpr double kMaxRobots = 20'000;
+inline constexpr double kMaxRobots = 200'000;
+inline constexpr std::size_t kMaxRobotGroups = 64;
 inline constexpr std::size_t kMaxComponents = 255;  ///< a black box names goals by one byte
 inline constexpr std::size_t kMaxObstacles = 10'000;
 inline constexpr std::size_t kMaxVertices = 100'000;  ///< of all polygons together
@@ -37,16 +38,29 @@ inline constexpr std::array<std::string_view, 4> kPlannerMethods{"swarmprm", "ro
                                                                  "adoc"};
 inline constexpr std::array<std::string_view, 3> kPlannerSamplers{"fit", "halton", "uniform"};
 inline constexpr std::array<std::string_view, 2> kDensityCaps{"timed", "static"};
+inline constexpr std::array<std::string_view, 3> kControlMethods{"apf", "crops",
+                                                                 "intermittent_diffusion"};
+inline constexpr std::array<std::string_view, 3> kRobotModels{"single_integrator", "unicycle",
+                                                              "double_integrator"};
 inline constexpr std::array<std::string_view, 8> kScriptActions{
     "pause", "resume", "stop", "add_obstacle", "move_obstacle", "remove_obstacle", "goto", "risk"};
 inline constexpr yaml::Range kRiskAlpha = between(1e-6, 1 - 1e-6);
 inline constexpr yaml::Range kScriptTime_s = between(0.0, 1e6);
 
-inline constexpr std::array<Field<RobotsSpec>, 4> kRobots{{
+inline constexpr std::array<Field<RobotsSpec>, 2> kRobots{{
     {"count", &RobotsSpec::count, between(1, kMaxRobots)},
-    {"radius_m", &RobotsSpec::radius_m, positive(100)},
-    {"speed_max_mps", &RobotsSpec::speed_max_mps, positive(100)},
     {"placement_gap_m", &RobotsSpec::placement_gap_m, between(0, 100)},
+}};
+
+/// Of robots and of each of its groups.
+inline constexpr std::array<Field<BodySpec>, 7> kBody{{
+    {"radius_m", &BodySpec::radius_m, positive(100)},
+    {"speed_max_mps", &BodySpec::speed_max_mps, positive(100)},
+    {"acceleration_max_mps2", &BodySpec::acceleration_max_mps2, positive(1000)},
+    {"turn_rate_max_radps", &BodySpec::turn_rate_max_radps, positive(1000)},
+    {"hear_radius_m", &BodySpec::hear_radius_m, between(0, 10'000)},
+    {"motion_noise_m", &BodySpec::motion_noise_m, between(0, 100)},
+    {"position_noise_m", &BodySpec::position_noise_m, between(0, 100)},
 }};
 
 inline constexpr std::array<Field<PlannerSpec>, 20> kPlanner{{
@@ -72,10 +86,12 @@ inline constexpr std::array<Field<PlannerSpec>, 20> kPlanner{{
     {"crops_goal_radius_m", &PlannerSpec::crops_goal_radius_m, between(0.1, 1000)},
 }};
 
-inline constexpr std::array<Field<ControlSpec>, 11> kControl{{
+inline constexpr std::array<Field<ControlSpec>, 13> kControl{{
     {"rate_hz", &ControlSpec::rate_hz, between(0.5, 1000)},
     {"cruise_mps", &ControlSpec::cruise_mps, positive(100)},
     {"look_ahead_s", &ControlSpec::look_ahead_s, between(0, 600)},
+    {"keep_clearance_m", &ControlSpec::keep_clearance_m, between(0, 100)},
+    {"density_push_mps", &ControlSpec::density_push_mps, between(0, 100)},
     {"neighbour_gap_m", &ControlSpec::neighbour_gap_m, between(0, 100)},
     {"neighbour_push_mps", &ControlSpec::neighbour_push_mps, between(0, 100)},
     {"obstacle_gap_m", &ControlSpec::obstacle_gap_m, between(0, 100)},

@@ -45,7 +45,7 @@ class MissionReader {
     MapReader top(root, "", violations_);
     read_version(top);
     if (const Node* node = top.take("name")) read_name(*node);
-    read_section(top, "robots", mission_.robots, mission_fields::kRobots);
+    if (const Node* node = top.take("robots")) read_robots(*node);
     if (const Node* node = top.take("world", true)) read_world(*node);
     mission_.start = read_mixture(top, "start");
     mission_.goal = read_mixture(top, "goal");
@@ -86,15 +86,61 @@ class MissionReader {
     const Node* node = top.take(key);
     if (node == nullptr) return;
     MapReader keys(*node, std::string(key), violations_);
+    if constexpr (std::is_same_v<Section, ControlSpec>) {
+      read_choice(keys, "method", mission_fields::kControlMethods, section.method);
+    }
     if constexpr (std::is_same_v<Section, PlannerSpec>) {
       read_choice(keys, "method", mission_fields::kPlannerMethods, section.method);
       read_choice(keys, "sampler", mission_fields::kPlannerSamplers, section.sampler);
       read_choice(keys, "density_cap", mission_fields::kDensityCaps, section.density_cap);
     }
+    read_fields(keys, section, fields);
+    keys.finish();
+  }
+
+  template <class Section, std::size_t N>
+  void read_fields(MapReader& keys, Section& section, const std::array<Field<Section>, N>& fields) {
     for (const Field<Section>& field : fields) {
       if (const Node* value = keys.take(field.key)) read_field(*value, keys, field, section);
     }
+  }
+
+  void read_body(MapReader& keys, BodySpec& body) {
+    read_choice(keys, "model", mission_fields::kRobotModels, body.model);
+    read_fields(keys, body, mission_fields::kBody);
+  }
+
+  void read_robots(const Node& node) {
+    RobotsSpec& robots = mission_.robots;
+    MapReader keys(node, "robots", violations_);
+    read_fields(keys, robots, mission_fields::kRobots);
+    read_body(keys, robots);
+    const Node* groups = keys.take("groups");
     keys.finish();
+    if (groups == nullptr) return;
+    const auto* items =
+        yaml::read_list(*groups, "robots.groups", 0, mission_fields::kMaxRobotGroups, violations_);
+    if (items == nullptr) return;
+    std::uint64_t grouped = 0;
+    for (std::size_t i = 0; i < items->size(); ++i) {
+      RobotGroupSpec group{robots, 0};  // what it does not say is as for the others
+      MapReader keys_of_group((*items)[i], fmt::format("robots.groups[{}]", i), violations_);
+      if (const Node* value = keys_of_group.take("count", true)) {
+        group.count =
+            yaml::read_count(*value, keys_of_group.path_of("count"),
+                             mission_fields::between(1, mission_fields::kMaxRobots), violations_)
+                .value_or(0);
+      }
+      read_body(keys_of_group, group);
+      keys_of_group.finish();
+      grouped += group.count;
+      robots.groups.push_back(std::move(group));
+    }
+    if (grouped > robots.count) {
+      violations_.add(groups->at,
+                      fmt::format("robots.groups have {} robots; must be <= robots.count ({})",
+                                  grouped, robots.count));
+    }
   }
 
   template <class Section>

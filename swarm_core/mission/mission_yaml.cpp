@@ -56,6 +56,23 @@ void write_fields(Out out, const Section& section,
   }
 }
 
+void write_robots(Out out, const RobotsSpec& robots) {
+  fmt::format_to(out, "robots:\n  model: {}\n", robots.model);
+  write_fields(out, robots, mission_fields::kRobots);
+  write_fields<BodySpec>(out, robots, mission_fields::kBody);
+  if (robots.groups.empty()) return;
+  fmt::format_to(out, "  groups:\n");
+  for (const RobotGroupSpec& group : robots.groups) {
+    fmt::format_to(out, "    - {{count: {}, model: {}", group.count, group.model);
+    for (const auto& field : mission_fields::kBody) {
+      fmt::format_to(
+          out, ", {}: {}", field.key,
+          static_cast<const BodySpec&>(group).*std::get<double BodySpec::*>(field.member));
+    }
+    fmt::format_to(out, "}}\n");
+  }
+}
+
 void write_script(Out out, const std::vector<ScriptEvent>& script) {
   if (script.empty()) return;
   fmt::format_to(out, "script:\n");
@@ -77,14 +94,13 @@ std::string to_yaml(const Mission& mission) {
   const Out out(text);
   fmt::format_to(out, "version: 1\nname: \"{}\"\n", mission.name);
   write_world(out, mission.world);
-  fmt::format_to(out, "robots:\n");
-  write_fields(out, mission.robots, mission_fields::kRobots);
+  write_robots(out, mission.robots);
   write_mixture(out, "start", mission.start);
   write_mixture(out, "goal", mission.goal);
   fmt::format_to(out, "planner:\n  method: {}\n  sampler: {}\n  density_cap: {}\n",
                  mission.planner.method, mission.planner.sampler, mission.planner.density_cap);
   write_fields(out, mission.planner, mission_fields::kPlanner);
-  fmt::format_to(out, "control:\n");
+  fmt::format_to(out, "control:\n  method: {}\n", mission.control.method);
   write_fields(out, mission.control, mission_fields::kControl);
   fmt::format_to(out, "safety:\n");
   write_fields(out, mission.safety, mission_fields::kSafety);

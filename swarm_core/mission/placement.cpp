@@ -64,8 +64,9 @@ double stratified_share(std::uint32_t robot, std::uint32_t robots) {
 Result<std::vector<Vec2>> place_robots(const Mission& mission, std::uint64_t seed) {
   const RobotsSpec& spec = mission.robots;
   const Box& bounds = mission.world.bounds_m();
-  const double obstacle_clearance_m = spec.radius_m + spec.placement_gap_m;
-  PlacedRobots placed(2.0 * spec.radius_m + spec.placement_gap_m);
+  const double radius_m = largest_radius_m(spec);
+  const double obstacle_clearance_m = radius_m + spec.placement_gap_m;
+  PlacedRobots placed(2.0 * radius_m + spec.placement_gap_m);
   std::vector<Vec2> positions;
   positions.reserve(spec.count);
   for (std::uint32_t robot = 0; robot < spec.count; ++robot) {

@@ -13,7 +13,7 @@ SteadyTime at(int ms) { return SteadyTime(milliseconds(ms)); }
 
 NeighbourTable table() {
   return NeighbourTable({.radius_m = 0.2,
-                         .speed_max_mps = 1.5,
+                         .fleet = Fleet(Fleet::Body{0.2, 1.5}),
                          .keep_radius_m = 6.0,
                          .near_m = 1.0,
                          .near_silence = milliseconds(300),

@@ -20,7 +20,7 @@ PursuitOptions options() { return {.look_ahead_m = 12.0, .radius_m = 0.2}; }
 
 TEST(Pursuit, AimsOnlyAtWhatItSees) {
   const World world = corner_world();
-  Pursuit sut(Polyline({{0, 0}, {20, 0}, {20, 20}}), options());
+  Pursuit sut(Polyline({{0, 0}, {20, 0}, {20, 20}}), world, options());
 
   const auto aim = sut.update({11, 0}, world);
 
@@ -31,7 +31,7 @@ TEST(Pursuit, AimsOnlyAtWhatItSees) {
 
 TEST(Pursuit, ReachesTheEndAroundTheCorner) {
   const World world = corner_world();
-  Pursuit sut(Polyline({{0, 0}, {20, 0}, {20, 20}}), options());
+  Pursuit sut(Polyline({{0, 0}, {20, 0}, {20, 20}}), world, options());
   Vec2 robot(0, 0);
   double walked = 0.0;
   for (int step = 0; step < 400 && (robot - Vec2(20, 20)).norm() > 0.05; ++step) {
@@ -49,7 +49,7 @@ TEST(Pursuit, ReachesTheEndAroundTheCorner) {
 
 TEST(Pursuit, FallsBackToTheWayWhenPushedAroundACorner) {
   const World world = corner_world();
-  Pursuit sut(Polyline({{0, 0}, {20, 0}, {20, 20}}), options());
+  Pursuit sut(Polyline({{0, 0}, {20, 0}, {20, 20}}), world, options());
   for (double x = 0; x <= 20; x += 0.5) sut.update({x, 0}, world);
   for (double y = 0; y <= 10; y += 0.5) sut.update({20, y}, world);
 

@@ -31,7 +31,14 @@ world:
     - polygon_m: [[8, 2], [8, 3], [9, 3], [9, 2]]
     - circle_m: {center: [12, 6], radius: 0.75}
     - {polygon_m: [[5, 0], [7, 0], [7, 1], [6, 1], [6, 2], [5, 2]]}
-robots: {count: 7, radius_m: 0.1, speed_max_mps: 1, placement_gap_m: 0.3}
+robots:
+  count: 7
+  radius_m: 0.1
+  speed_max_mps: 1
+  placement_gap_m: 0.3
+  groups:
+    - {count: 2, model: unicycle, turn_rate_max_radps: 2, hear_radius_m: 6}
+    - {count: 3, radius_m: 0.15, speed_max_mps: 0.8, position_noise_m: 0.05}
 start:
   - {mean_m: [3, 5], covariance_m2: [[1, 0.1], [0.1, 1.5]], weight: 0.3}
   - {mean_m: [2, 8], covariance_m2: [[0.5, 0], [0, 0.5]], weight: 0.7}
@@ -44,7 +51,7 @@ planner:
   risk_alpha: 0.1
   sigma_min_m: 0.3
   speed_mps: 0.9
-control: {rate_hz: 20, cruise_mps: 0.95, look_ahead_s: 3.3}
+control: {method: crops, rate_hz: 20, cruise_mps: 0.95, look_ahead_s: 3.3}
 safety: {gap_share: 0.5, follow_share: 0.1}
 link: {cell_size_m: 12, send_error_m: 0.01}
 timing: {heartbeat_hz: 10}
@@ -110,8 +117,13 @@ template <class Section, std::size_t N>
 void expect_same(const Section& a, const Section& b,
                  const std::array<mission_fields::Field<Section>, N>& fields) {
   // The tables are all that reader and writer know: a member without a row would be lost.
-  constexpr std::size_t kTexts = std::is_same_v<Section, PlannerSpec> ? 3 : 0;
-  static_assert(members_of<Section>() == N + kTexts);
+  // Beside the table: texts, and of robots the body and the groups.
+  constexpr std::size_t kOthers = std::is_same_v<Section, PlannerSpec>   ? 3
+                                  : std::is_same_v<Section, RobotsSpec>  ? 2
+                                  : std::is_same_v<Section, ControlSpec> ? 1
+                                  : std::is_same_v<Section, BodySpec>    ? 1
+                                                                         : 0;
+  static_assert(members_of<Section>() == N + kOthers);
   for (const auto& field : fields) {
     std::visit([&](auto member) { EXPECT_EQ(a.*member, b.*member) << field.key; }, field.member);
   }
@@ -126,6 +138,17 @@ void expect_same(const Mission& a, const Mission& b) {
   EXPECT_EQ(a.planner.sampler, b.planner.sampler);
   EXPECT_EQ(a.planner.density_cap, b.planner.density_cap);
   expect_same(a.robots, b.robots, mission_fields::kRobots);
+  const auto expect_same_body = [](const BodySpec& one, const BodySpec& other) {
+    EXPECT_EQ(one.model, other.model);
+    expect_same(one, other, mission_fields::kBody);
+  };
+  expect_same_body(a.robots, b.robots);
+  ASSERT_EQ(a.robots.groups.size(), b.robots.groups.size());
+  for (std::size_t i = 0; i < a.robots.groups.size(); ++i) {
+    EXPECT_EQ(a.robots.groups[i].count, b.robots.groups[i].count);
+    expect_same_body(a.robots.groups[i], b.robots.groups[i]);
+  }
+  EXPECT_EQ(a.control.method, b.control.method);
   expect_same(a.planner, b.planner, mission_fields::kPlanner);
   expect_same(a.control, b.control, mission_fields::kControl);
   expect_same(a.safety, b.safety, mission_fields::kSafety);
@@ -162,6 +185,7 @@ TEST(MissionFile, FillsInTheDefaults) {
 
   ASSERT_TRUE(mission.has_value()) << mission.error().message;
   expect_same(mission->robots, RobotsSpec{}, mission_fields::kRobots);
+  expect_same<BodySpec>(mission->robots, BodySpec{}, mission_fields::kBody);
   expect_same(mission->link, LinkSpec{}, mission_fields::kLink);
   EXPECT_EQ(mission->planner.method, PlannerSpec{}.method);
   EXPECT_TRUE(mission->script.empty());

@@ -1,0 +1,44 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "robot_agent/control/apf.hpp"
+
+namespace swarm::agent {
+namespace {
+
+constexpr double kAtRest_m = 0.1;  // from the end point: stay
+
+}  // namespace
+
+void Apf::begin(const Route& route, const World& world) {
+  sink_ = route.sink;
+  pursuit_ = Pursuit(route.path, world, options_.pursuit);
+  density_ = DensityAttraction(route.stations, options_.density);
+  watch_ = GoalWatch(route.goal, pursuit_.end_m());
+  kick_.forget();
+}
+
+bool Apf::has_arrived(const ControlView& view) {
+  return watch_.has_arrived(view.now, view.position_m);
+}
+
+Vec2 Apf::repulsion(const ControlView& view) const {
+  return neighbour_repulsion(view.position_m, view.neighbours, options_.neighbour_repulsion) +
+         obstacle_repulsion(view.position_m, view.world, options_.obstacle_repulsion);
+}
+
+Vec2 Apf::wish(const ControlView& view, bool arrived, Rng& rng) {
+  const Pursuit::Aim aim = pursuit_.update(view.position_m, view.world);
+  const Vec2 kick = kick_.update(view.now, pursuit_.progress_m(), !arrived, rng);
+  const Vec2 avoid = repulsion(view);
+  if (arrived && aim.left_m < kAtRest_m) return avoid;
+  Vec2 pull = attraction(view.position_m, aim.point_m, aim.left_m, options_.attraction) + kick;
+  if (!arrived) pull += density_.pull(view.position_m, pursuit_.progress_m(), view.neighbours);
+  return pull + avoid;
+}
+
+Vec2 Apf::hold(const ControlView& view) {
+  kick_.forget();
+  return repulsion(view);
+}
+
+}  // namespace swarm::agent

@@ -1,0 +1,50 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "robot_agent/control/route.hpp"
+#include "robot_agent/neighbour_table.hpp"
+#include "swarm_core/base/random.hpp"
+#include "swarm_core/base/time.hpp"
+#include "swarm_core/world/world.hpp"
+
+namespace swarm::agent {
+
+/// What a robot knows at a tick.
+struct ControlView {
+  SteadyTime now;
+  Vec2 position_m = Vec2::Zero();
+  std::span<const Neighbour> neighbours;
+  const World& world;
+};
+
+/// How a robot turns its way through the flow into a velocity: one class per method of the papers.
+/// What it asks for is a wish; the safety filter below it decides. A method is a pure function of
+/// what it is shown and its generator, and does not allocate after begin().
+class ControlMethod {
+ public:
+  virtual ~ControlMethod() = default;
+
+  /// The robot has a way, or another one.
+  virtual void begin(const Route& route, const World& world) = 0;
+
+  /// Whether the robot is where it should end. Asked once a tick while there is a way.
+  virtual bool has_arrived(const ControlView& view) = 0;
+
+  /// Velocity wished [m/s]. An arrived robot only keeps its place.
+  virtual Vec2 wish(const ControlView& view, bool arrived, Rng& rng) = 0;
+
+  /// Velocity wished while the robot is held: avoidance alone. Time held is no time stuck.
+  virtual Vec2 hold(const ControlView& view) = 0;
+
+  /// Index of the goal (sink of the plan) the robot is at or goes to. \pre begin() was called
+  virtual std::uint32_t goal(const Vec2& position_m) const = 0;
+
+  virtual double remaining_m() const = 0;     ///< of the own way
+  virtual std::uint32_t escapes() const = 0;  ///< how often it freed itself from a deadlock
+};
+
+}  // namespace swarm::agent

@@ -1,0 +1,46 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <limits>
+
+#include "swarm_core/base/time.hpp"
+#include "swarm_core/gmm/gaussian.hpp"
+
+namespace swarm::agent {
+
+/// Whether a robot has arrived: inside its goal's 99 % ellipse and within 1 m of its own end point,
+/// or within 4 m if a crowd has let it no nearer for 3 s. Once arrived it stays so while it is
+/// inside the ellipse.
+class GoalWatch {
+ public:
+  GoalWatch() = default;
+  GoalWatch(const Gaussian& goal, const Vec2& end_m) : goal_(goal), end_m_(end_m) {}
+
+  bool has_arrived(SteadyTime now, const Vec2& position_m) {
+    const bool inside = goal_.contains_99(position_m);
+    if (arrived_) return arrived_ = inside;
+    const double left_m = (end_m_ - position_m).norm();
+    if (left_m < nearest_m_ - kProgress_m) {
+      nearest_m_ = left_m;
+      progress_at_ = now;
+    }
+    const bool crowded = left_m < kCrowded_m && now - progress_at_ > kCrowdedAfter;
+    return arrived_ = inside && (left_m < kNear_m || crowded);
+  }
+
+ private:
+  static constexpr double kNear_m = 1.0;
+  static constexpr double kCrowded_m = 4.0;
+  static constexpr double kProgress_m = 0.1;
+  static constexpr Duration kCrowdedAfter = std::chrono::seconds(3);
+
+  Gaussian goal_;
+  Vec2 end_m_ = Vec2::Zero();
+  double nearest_m_ = std::numeric_limits<double>::infinity();
+  SteadyTime progress_at_;
+  bool arrived_ = false;
+};
+
+}  // namespace swarm::agent

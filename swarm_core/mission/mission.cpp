@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "swarm_core/mission/mission.hpp"
+
+#include <algorithm>
+
+#include "swarm_core/base/assert.hpp"
+
+namespace swarm {
+
+const BodySpec& body_of(const RobotsSpec& robots, RobotId robot) {
+  SWARM_ASSERT(robot.value() < robots.count);
+  std::uint32_t first = 0;
+  for (const RobotGroupSpec& group : robots.groups) {
+    if (robot.value() - first < group.count) return group;
+    first += group.count;
+  }
+  return robots;
+}
+
+double largest_radius_m(const RobotsSpec& robots) {
+  double largest_m = 0.0;
+  std::uint32_t grouped = 0;
+  for (const RobotGroupSpec& group : robots.groups) {
+    largest_m = std::max(largest_m, group.radius_m);
+    grouped += group.count;
+  }
+  return grouped < robots.count ? std::max(largest_m, robots.radius_m) : largest_m;
+}
+
+}  // namespace swarm
