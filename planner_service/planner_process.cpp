@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <ctime>
 #include <optional>
-#include <span>
 #include <utility>
 #include <vector>
 
@@ -13,9 +12,7 @@
 #include <nlohmann/json.hpp>
 #include <unistd.h>
 
-#include "planner_service/planner.hpp"
-#include "planner_service/replan.hpp"
-#include "planner_service/robot_watch.hpp"
+#include "planner_service/plan_keeper.hpp"
 #include "swarm_core/mission/mission_file.hpp"
 #include "swarm_core/mission/phase.hpp"
 #include "swarm_core/plan/plan_json.hpp"
@@ -30,18 +27,6 @@ namespace {
 
 // A change of the scene must be a plan on the bus within 100 ms, most of which is not ours.
 constexpr Duration kStep = std::chrono::milliseconds(5);
-// After a start the launcher's scene is due at once; a bus that does not bring it must not keep a
-// mission from flying.
-constexpr Duration kScenePatience = std::chrono::seconds(3);
-// A planner that comes back in mid-flight waits this long for robots it does not hear.
-constexpr Duration kHearPatience = std::chrono::milliseconds(1500);
-// Robots that stand for this long are stuck; kicks of their own have not helped by then.
-constexpr Duration kStuckAfter = std::chrono::seconds(8);
-// … and so many of them are reason to lead the swarm another way.
-constexpr double kStuckShare = 0.1;
-// While obstacles move, and while there is no plan for the scene.
-constexpr Duration kReplanPeriod = std::chrono::seconds(2);
-
 UtcTime utc_now() {
   return std::chrono::time_point_cast<Duration>(std::chrono::system_clock::now());
 }
@@ -68,15 +53,7 @@ Result<void> write_stats(const std::filesystem::path& run_dir, const PlanStats& 
 struct PlannerProcess::Impl {
   ProcessOptions options;
   Mission mission;
-  std::uint64_t seed = 0;
-  std::optional<Planner> planner;
-  Scene scene;
-  bool scene_heard = false;
-  Replan newest;
-  bool published = false;
-  std::uint32_t version = 0;
-  std::uint64_t planned_scene = 0;
-  std::uint64_t failed_scene = 0;  // that was complained about
+  std::optional<PlanKeeper> keeper;
   PlannerEpoch epoch;
   std::unique_ptr<link::Participant> participant;
   link::WriterPtr<link::PlanMessage> plan_writer;
@@ -86,15 +63,12 @@ struct PlannerProcess::Impl {
   link::ReaderPtr<link::SceneMessage> scene_reader;
   link::ReaderPtr<link::StatusMessage> status_reader;
   link::WireLimits limits;
-  std::optional<RobotWatch> robots;
   MissionPhase phase = MissionPhase::kReady;
   std::uint64_t last_command = 0;
   std::int64_t t0_utc_ns = 0;
   std::uint64_t beats = 0;
   link::RefusalCounters refused;
   std::uint64_t refusals_told = 0;
-  SteadyTime joined_at;
-  SteadyTime tried_at;  // to plan anew
   std::vector<link::CommandMessage> commands;
   std::vector<link::SceneMessage> scenes;
   std::vector<link::StatusMessage> statuses;
@@ -105,27 +79,18 @@ struct PlannerProcess::Impl {
   void hear_scene(UtcTime now);
   void hear_robots(SteadyTime now);
   void keep_planned(SteadyTime now);
-  bool is_step_due(SteadyTime now) const;
-  Result<Replan> plan_anew(UtcTime now, std::span<const HeardRobot> heard);
-  void try_again(SteadyTime now);
-  void avoid_jams(SteadyTime now);
   void publish();
   void announce(link::Severity severity, const std::string& code, const std::string& text);
   void beat(UtcTime now);
 };
 
 Result<void> PlannerProcess::Impl::plan_first() {
-  Rng rng(seed);
-  planner.emplace(planner_options(mission.planner, mission.robots.count));
-  auto planned = planner->plan({mission.world, mission.start, mission.goal}, rng,
-                               &std::chrono::steady_clock::now);
-  if (!planned) return tl::unexpected(planned.error());
-  newest = {*std::move(planned), {}};
-  if (auto w = shell::write_file(options.run_dir / shell::kPlanFile, to_json(newest.planned.plan));
-      !w) {
+  if (auto planned = keeper->plan_first(); !planned) return planned;
+  const PlanResult& planned = keeper->newest().planned;
+  if (auto w = shell::write_file(options.run_dir / shell::kPlanFile, to_json(planned.plan)); !w) {
     return w;
   }
-  return write_stats(options.run_dir, newest.planned.stats);
+  return write_stats(options.run_dir, planned.stats);
 }
 
 Result<void> PlannerProcess::Impl::join(const shell::RunInfo& run) {
@@ -156,8 +121,7 @@ Result<void> PlannerProcess::Impl::join(const shell::RunInfo& run) {
   scene_reader = std::move(*scene_changes);
   status_reader = std::move(*health);
   limits = link::wire_limits(mission);
-  robots.emplace(mission.robots.count, from_seconds(3.0 + 3.0 / mission.link.status_hz));
-  joined_at = std::chrono::steady_clock::now();
+  keeper->begin(std::chrono::steady_clock::now());
   return {};
 }
 
@@ -178,6 +142,7 @@ void PlannerProcess::Impl::obey() {
     if (before == MissionPhase::kReady && phase == MissionPhase::kRunning)
       t0_utc_ns = command.stamp_utc_ns;
   }
+  keeper->set_phase(phase);
 }
 
 void PlannerProcess::Impl::hear_scene(UtcTime now) {
@@ -191,11 +156,8 @@ void PlannerProcess::Impl::hear_scene(UtcTime now) {
       refused.count(heard.error());
     } else if (heard->version > newest_possible) {
       refused.count(link::RefusalReason::kForged);
-    } else if (scene_heard && heard->version <= scene.version) {
+    } else if (!keeper->take_scene(std::move(*heard))) {
       refused.count(link::RefusalReason::kStale);
-    } else {
-      scene = std::move(*heard);
-      scene_heard = true;
     }
   }
 }
@@ -208,113 +170,43 @@ void PlannerProcess::Impl::hear_robots(SteadyTime now) {
       refused.count(ok.error());
       continue;
     }
-    robots->hear({.robot = RobotId(status.robot_id),
+    keeper->hear({.robot = RobotId(status.robot_id),
                   .position_m = {status.x_m, status.y_m},
                   .arrived = status.arrived},
                  status.mode == RobotMode::kMoving, now);
   }
 }
 
-/// From where the robots are, once they have left their start; before, the mission's own mixture is
-/// the truth they were placed by.
-Result<Replan> PlannerProcess::Impl::plan_anew(UtcTime now, std::span<const HeardRobot> heard) {
-  const World world = world_during(mission.world, scene, now, kReplanPeriod);
-  const Mixture& goal = scene.goal ? *scene.goal : mission.goal;
-  planner->set_risk({.alpha = scene.risk_alpha.value_or(mission.planner.risk_alpha),
-                     .delta_m = mission.planner.risk_delta_m});
-  Rng rng(mix_seed(seed, version));
-  if (phase != MissionPhase::kReady) {
-    return replan(*planner, world, goal, heard, mission.robots.count, rng,
-                  &std::chrono::steady_clock::now);
-  }
-  auto planned = planner->plan({world, mission.start, goal}, rng, &std::chrono::steady_clock::now);
-  if (!planned) return tl::unexpected(planned.error());
-  return Replan{*std::move(planned), {}};
-}
-
-void PlannerProcess::Impl::try_again(SteadyTime now) {
-  const std::vector<HeardRobot> heard = robots->fresh(now);
-  if (phase != MissionPhase::kReady) {
-    if (heard.empty() || (!robots->heard_all(now) && now - joined_at < kHearPatience)) return;
-  }
-  tried_at = now;
-  auto planned = plan_anew(utc_now(), heard);
-  if (!planned) {
-    if (failed_scene == scene.version) return;
-    failed_scene = scene.version;
-    std::string why = planned.error().message;
-    for (std::size_t at = 0; (at = why.find('\n', at)) != std::string::npos;) {
-      why.replace(at, 1, "; ");  // an event is one line
-    }
-    announce(link::Severity::kWarning, "replan-failed", "the last plan stays: " + why);
-    return;
-  }
-  newest = *std::move(planned);
-  publish();
-}
-
-/// There is to be a plan on the bus for the scene as it is; anew while obstacles move, and, with
-/// ROVER, for every step it takes.
 void PlannerProcess::Impl::keep_planned(SteadyTime now) {
-  if (!scene_heard && now - joined_at < kScenePatience) return;
-  if (scene.version == 0 && !published) {
-    publish();
-    tried_at = now;
-    return;
+  const PlanKeeper::Step step = keeper->step(now, utc_now());
+  for (const PlanKeeper::Notice& notice : step.notices) {
+    announce(notice.warning ? link::Severity::kWarning : link::Severity::kInfo, notice.code,
+             notice.text);
   }
-  const bool news = !published || scene.version != planned_scene;
-  const bool tried = failed_scene == scene.version;
-  const bool due = now - tried_at >= kReplanPeriod;
-  if ((news && (!tried || due)) || (scene.moves(utc_now()) && due) || is_step_due(now)) {
-    try_again(now);
-  }
-}
-
-bool PlannerProcess::Impl::is_step_due(SteadyTime now) const {
-  if (mission.planner.method != "rover" || phase != MissionPhase::kRunning) return false;
-  const double step_s = mission.planner.transport_radius_m / mission.planner.speed_mps;
-  if (now - tried_at < from_seconds(step_s)) return false;
-  const std::vector<HeardRobot> heard = robots->fresh(now);
-  return std::any_of(heard.begin(), heard.end(), [](const HeardRobot& r) { return !r.arrived; });
-}
-
-/// CRoPS: where many are stuck the guide becomes dear, and may lead another way.
-void PlannerProcess::Impl::avoid_jams(SteadyTime now) {
-  if (phase != MissionPhase::kRunning) return;
-  const std::vector<HeardRobot> stuck = robots->stuck(now, kStuckAfter);
-  if (stuck.empty() || static_cast<double>(stuck.size()) < kStuckShare * mission.robots.count) {
-    return;
-  }
-  robots->forgive(now);
-  const Vec2& at_m = stuck[stuck.size() / 2].position_m;
-  if (!planner->avoid(at_m)) return;
-  announce(link::Severity::kInfo, "jam",
-           fmt::format("{} robots are stuck, about ({:.1f}, {:.1f}) m: the guide leads another way",
-                       stuck.size(), at_m.x(), at_m.y()));
-  try_again(now);
+  if (step.publish) publish();
 }
 
 void PlannerProcess::Impl::publish() {
   const UtcTime now = utc_now();
+  const Replan& newest = keeper->newest();
+  const std::uint32_t version = keeper->version();
+  const std::uint64_t scene = keeper->scene().version;
   link::PlanMessage message =
-      link::to_message(newest.planned.plan, epoch, PlanVersion(++version), now);
-  message.scene_version = scene.version;
+      link::to_message(newest.planned.plan, epoch, PlanVersion(version), now);
+  message.scene_version = scene;
   for (const PlanEntry& entry : newest.entries) {
     message.entries.push_back({entry.source, entry.share});
   }
   plan_writer->write(message);
-  published = true;
-  planned_scene = scene.version;
   const PlanStats& stats = newest.planned.stats;
-  const double after_ms = 1e-6 * static_cast<double>(now.time_since_epoch().count() -
-                                                     static_cast<std::int64_t>(scene.version));
-  announce(
-      link::Severity::kInfo, "planned",
-      fmt::format("version {}: {} nodes, {} legs, {:.1f} m mean path, {:.1f} ms{}", version,
-                  newest.planned.plan.nodes().size(), newest.planned.plan.legs().size(),
-                  stats.planned_mean_path_m, stats.total_ms,
-                  scene.version == 0 ? "" : fmt::format(", {:.1f} ms after the change", after_ms)));
-  if (version == 1 && scene.version == 0) return;  // kept when it was made
+  const double after_ms =
+      1e-6 * static_cast<double>(now.time_since_epoch().count() - static_cast<std::int64_t>(scene));
+  announce(link::Severity::kInfo, "planned",
+           fmt::format("version {}: {} nodes, {} legs, {:.1f} m mean path, {:.1f} ms{}", version,
+                       newest.planned.plan.nodes().size(), newest.planned.plan.legs().size(),
+                       stats.planned_mean_path_m, stats.total_ms,
+                       scene == 0 ? "" : fmt::format(", {:.1f} ms after the change", after_ms)));
+  if (version == 1 && scene == 0) return;  // kept when it was made
   const auto kept = shell::write_file(options.run_dir / fmt::format("plan-{:04}.json", version),
                                       to_json(newest.planned.plan));
   if (!kept) announce(link::Severity::kWarning, "plan-file", kept.error().message);
@@ -338,7 +230,7 @@ void PlannerProcess::Impl::beat(UtcTime now) {
   const double mission_time_s =
       t0_utc_ns == 0 ? 0.0 : 1e-9 * static_cast<double>(stamp - t0_utc_ns);
   heartbeat_writer->write({.phase = phase,
-                           .version = version,
+                           .version = keeper->version(),
                            .epoch = epoch.value(),
                            .sequence_number = ++beats,
                            .stamp_utc_ns = stamp,
@@ -356,8 +248,7 @@ Result<std::unique_ptr<PlannerProcess>> PlannerProcess::make(const ProcessOption
   auto mission = load_mission(options.run_dir / shell::kMissionFile);
   if (!mission) return tl::unexpected(mission.error());
   impl->mission = std::move(*mission);
-  impl->seed = run->seed;
-  impl->scene = first_scene(impl->mission.world.obstacles().size());
+  impl->keeper.emplace(impl->mission, run->seed, &std::chrono::steady_clock::now);
   impl->epoch = PlannerEpoch(static_cast<std::uint64_t>(utc_now().time_since_epoch().count()));
   if (auto planned = impl->plan_first(); !planned) return tl::unexpected(planned.error());
   if (auto joined = impl->join(*run); !joined) return tl::unexpected(joined.error());
@@ -375,7 +266,6 @@ Result<void> PlannerProcess::run() {
     p.hear_scene(utc_now());
     p.hear_robots(now);
     p.keep_planned(now);
-    p.avoid_jams(now);
     if (now >= next_beat) {
       p.beat(utc_now());
       next_beat = std::max(next_beat + beat_period, now);

@@ -13,6 +13,7 @@
 #include "swarm_launcher/command.hpp"
 #include "swarm_launcher/plan.hpp"
 #include "swarm_launcher/run.hpp"
+#include "swarm_launcher/simulation/simulate.hpp"
 
 int main(int argc, char** argv) {
   using namespace swarm;
@@ -58,6 +59,37 @@ int main(int argc, char** argv) {
     plan_command->add_option("--out", plan.out, "Directory for plan.json and plan.svg");
     plan_command->add_flag("--json", plan.json, "Print the result as JSON");
 
+    launcher::SimulateOptions simulate;
+    double delay_ms = 0.0;
+    double jitter_ms = 0.0;
+    bool clocks_apart = false;
+    bool no_record = false;
+    CLI::App* simulate_command = app.add_subcommand(
+        "simulate", "Fly a mission in lock-step, in one process, as fast as it goes");
+    simulate_command->add_option("mission", simulate.mission_file, "Mission file")
+        ->required()
+        ->type_name("MISSION.yaml");
+    simulate_command
+        ->add_option("--robots", simulate.robots, "Number of robots, instead of the mission's")
+        ->check(CLI::Range(1, 200000));
+    simulate_command->add_option("--seed", simulate.seed,
+                                 "Seed of placement, plan, robots, faults");
+    simulate_command->add_option("--loss", simulate.faults.loss, "Share of robot states lost")
+        ->check(CLI::Range(0.0, 1.0));
+    simulate_command->add_option("--delay-ms", delay_ms, "How late robot states arrive")
+        ->check(CLI::Range(0.0, 60000.0));
+    simulate_command->add_option("--jitter-ms", jitter_ms, "… and by how much earlier or later")
+        ->check(CLI::Range(0.0, 60000.0));
+    simulate_command->add_flag("--clocks-apart", clocks_apart,
+                               "Robots tick at different moments of the control period");
+    simulate_command->add_option("--threads", simulate.threads, "0: as many as make it faster")
+        ->check(CLI::Range(0, 256));
+    simulate_command->add_flag("--no-record", no_record,
+                               "No black boxes, audit and report: arrivals and times alone");
+    simulate_command->add_option("--out", simulate.out,
+                                 "Run directory (default: runs/<mission>-<time>)");
+    simulate_command->add_flag("--json", simulate.json, "Print the summary as JSON");
+
     std::filesystem::path run_dir;
     std::vector<std::string> words;
     CLI::App* command = app.add_subcommand(
@@ -81,6 +113,11 @@ int main(int argc, char** argv) {
     run.channel = channels.at(channel);
     if (run_command->parsed()) return launcher::run_mission(run);
     if (plan_command->parsed()) return launcher::plan_mission(plan);
+    simulate.faults.delay = from_seconds(1e-3 * delay_ms);
+    simulate.faults.jitter = from_seconds(1e-3 * jitter_ms);
+    simulate.clocks_in_step = !clocks_apart;
+    simulate.record = !no_record;
+    if (simulate_command->parsed()) return launcher::simulate_mission(simulate);
     return launcher::command_mission(run_dir, fmt::format("{}", fmt::join(words, " ")));
   });
 }

@@ -60,7 +60,7 @@ std::string write_report(const std::filesystem::path& run_dir, bool audited) {
 Result<ExitCode> summarise(const std::filesystem::path& run_dir, const Measurements& measured,
                            bool json) {
   const Json own = {
-      {"plan_ms", plan_ms(run_dir)},
+      {"plan_ms", measured.plan_ms ? Json(*measured.plan_ms) : plan_ms(run_dir)},
       {"discovery_s", measured.discovery_s < 0.0 ? Json() : Json(measured.discovery_s)},
       {"cpu_s", measured.cpu_s},
       {"max_rss_mb", measured.max_rss_mb}};
@@ -71,7 +71,9 @@ Result<ExitCode> summarise(const std::filesystem::path& run_dir, const Measureme
   Json summary =
       audit ? Json::parse(monitor::to_json(*audit)) : empty_summary(own, audit.error().message);
   if (measured.outcome != Outcome::kCompleted) summary["outcome"] = to_string(measured.outcome);
-  summary["channel"] = to_string(measured.channel);
+  summary["channel"] = measured.channel ? to_string(*measured.channel) : "lock-step";
+  if (measured.wall_s) summary["wall_s"] = *measured.wall_s;
+  if (measured.ns_per_agent_step) summary["ns_per_agent_step"] = *measured.ns_per_agent_step;
   summary["hearing_s"] = measured.hearing_s < 0.0 ? Json() : Json(measured.hearing_s);
   summary["refused_by_launcher"] = measured.refused_by_launcher;
   const std::string text = summary.dump(2) + "\n";
@@ -83,6 +85,10 @@ Result<ExitCode> summarise(const std::filesystem::path& run_dir, const Measureme
     std::fputs(text.c_str(), stdout);
   } else {
     std::fputs((audit ? monitor::to_text(*audit) : audit.error().message + "\n").c_str(), stdout);
+    if (measured.wall_s) {
+      std::printf("wall time        %.2f s, %.0f ns per agent and step\n", *measured.wall_s,
+                  *measured.ns_per_agent_step);
+    }
     std::printf("mission          %s\nreport           %s\n",
                 std::string(to_string(measured.outcome)).c_str(), report.c_str());
   }

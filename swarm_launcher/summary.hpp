@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 
 #include "swarm_core/base/result.hpp"
 #include "swarm_core/mission/channel.hpp"
@@ -14,12 +15,15 @@ namespace swarm::launcher {
 /// What only the launcher can measure.
 struct Measurements {
   Outcome outcome = Outcome::kNone;
-  Channel channel = Channel::kTopics;
-  double discovery_s = -1.0;  ///< negative: never complete
-  double hearing_s = -1.0;    ///< from then to everyone hearing its neighbours; negative: never
-  double cpu_s = 0.0;         ///< of all processes of the run
-  double max_rss_mb = 0.0;    ///< of the largest child
+  std::optional<Channel> channel;  ///< empty: in lock-step
+  double discovery_s = -1.0;       ///< negative: never complete
+  double hearing_s = -1.0;  ///< from then to everyone hearing its neighbours; negative: never
+  double cpu_s = 0.0;       ///< of all processes of the run
+  double max_rss_mb = 0.0;  ///< of the largest child
   std::uint64_t refused_by_launcher = 0;
+  /// Of a simulation: of all its plans, of planning and flying together, and the median over
+  /// control periods.
+  std::optional<double> plan_ms, wall_s, ns_per_agent_step;
 };
 
 /// Audits the run from its black boxes, adds the launcher's measurements, writes summary.json and

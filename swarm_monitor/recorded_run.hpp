@@ -69,13 +69,13 @@ class TrackMaker {
   TrackMaker(RobotId robot, UtcTime origin) : origin_(origin) { track_.robot = robot; }
 
   void add(const blackbox::Record& record);
-  Track finish();
-
- private:
   void take(const blackbox::Header& header);
   void take(const blackbox::Step& step);
   void take(const blackbox::LinkStats& stats) { life_ = stats; }
   void take(const blackbox::Note& note);
+  Track finish();
+
+ private:
   void close_life();
 
   UtcTime origin_;

@@ -3,7 +3,9 @@
 #include "swarm_core/blackbox/blackbox_file.hpp"
 
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -86,6 +88,24 @@ Result<std::vector<unsigned char>> bytes_of(const std::filesystem::path& file) {
   return bytes;
 }
 
+/// Appends the framed record to `out`.
+void frame_record(const Record& record, std::vector<unsigned char>& out) {
+  const std::size_t frame = out.size();
+  out.resize(frame + kFrameBytes);
+  const std::uint8_t kind = encode(record, out);
+  const auto payload = std::span<const unsigned char>(out).subspan(frame + kFrameBytes);
+  const std::size_t size = payload.size();
+  const std::uint32_t crc = crc_of(payload);
+  out[frame] = kind;
+  out[frame + 1] = 0;
+  for (std::size_t i = 0; i < 2; ++i) {
+    out[frame + 2 + i] = static_cast<unsigned char>(size >> (8U * i));
+  }
+  for (std::size_t i = 0; i < 4; ++i) {
+    out[frame + 4 + i] = static_cast<unsigned char>(crc >> (8U * i));
+  }
+}
+
 }  // namespace
 
 std::filesystem::path file_of(const std::filesystem::path& run_dir, RobotId robot) {
@@ -132,20 +152,7 @@ void Writer::append(const Record& record) {
   buffer_.clear();
   // The magic goes with the first record that the disk takes, in the same write.
   if (status.st_size == 0) buffer_.assign(kMagic.begin(), kMagic.end());
-  const std::size_t frame = buffer_.size();
-  buffer_.resize(frame + kFrameBytes);
-  const std::uint8_t kind = encode(record, buffer_);
-  const auto payload = std::span<const unsigned char>(buffer_).subspan(frame + kFrameBytes);
-  const std::size_t size = payload.size();
-  const std::uint32_t crc = crc_of(payload);
-  buffer_[frame] = kind;
-  buffer_[frame + 1] = 0;
-  for (std::size_t i = 0; i < 2; ++i) {
-    buffer_[frame + 2 + i] = static_cast<unsigned char>(size >> (8U * i));
-  }
-  for (std::size_t i = 0; i < 4; ++i) {
-    buffer_[frame + 4 + i] = static_cast<unsigned char>(crc >> (8U * i));
-  }
+  frame_record(record, buffer_);
   ssize_t written = -1;
   do {
     written = ::write(fd_, buffer_.data(), buffer_.size());
@@ -155,6 +162,21 @@ void Writer::append(const Record& record) {
   // Half a record would hide the next one from a simple reader. If this fails too, readers resync.
   if (written > 0) [[maybe_unused]]
     const int ignored = ::ftruncate(fd_, status.st_size);
+}
+
+Batch::Batch() : bytes_(kMagic.begin(), kMagic.end()) {}
+
+void Batch::append(const Record& record) { frame_record(record, bytes_); }
+
+Result<void> Batch::write(const std::filesystem::path& file) const {
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(file.c_str(), "wb"),
+                                                               &std::fclose);
+  if (!stream || std::fwrite(bytes_.data(), 1, bytes_.size(), stream.get()) != bytes_.size() ||
+      std::fflush(stream.get()) != 0) {
+    return fail(ErrorCode::kEnvironment, fmt::format("black box {} cannot be written: {}",
+                                                     file.string(), std::strerror(errno)));
+  }
+  return {};
 }
 
 Result<Damage> read_records(const std::filesystem::path& file,

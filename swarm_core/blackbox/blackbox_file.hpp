@@ -37,6 +37,18 @@ class Writer {
   std::vector<unsigned char> buffer_;
 };
 
+/// The same file, made in memory and written at once: for what cannot be killed half-way.
+class Batch {
+ public:
+  Batch();
+  void append(const Record& record);
+  /// Writes the file anew. \pre its folder exists
+  Result<void> write(const std::filesystem::path& file) const;
+
+ private:
+  std::vector<unsigned char> bytes_;
+};
+
 struct Damage {
   std::uint64_t damaged = 0;  ///< stretches of bytes that are no record; reading goes on after them
   bool truncated = false;     ///< the last record is incomplete (the process was killed)

@@ -1,0 +1,84 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "planner_service/planner.hpp"
+#include "planner_service/replan.hpp"
+#include "planner_service/robot_watch.hpp"
+#include "swarm_core/mission/mission.hpp"
+#include "swarm_core/mission/phase.hpp"
+
+namespace swarm::planner {
+
+/// Sees to it that there is a plan for the scene as it is: the first one, anew when the scene
+/// changes, while obstacles move, for every step ROVER takes, and where CRoPS finds the swarm
+/// stuck. Pure: what was heard and the time in, plans out; the program around it owns bus and
+/// files.
+class PlanKeeper {
+ public:
+  /// \pre the mission outlives the keeper
+  PlanKeeper(const Mission& mission, std::uint64_t seed, StageClock clock);
+
+  /// The plan of the mission file. The same mission and seed give the same flow.
+  Result<void> plan_first();
+
+  /// The keeper is on the bus from now on: what it has not heard yet may still come.
+  void begin(SteadyTime now) { begun_at_ = now; }
+
+  void set_phase(MissionPhase phase) { phase_ = phase; }
+  /// False if it is not newer than the present one.
+  bool take_scene(Scene scene);
+  /// \pre the id is below the number of robots
+  void hear(const HeardRobot& robot, bool moving, SteadyTime now) {
+    robots_.hear(robot, moving, now);
+  }
+
+  /// What happened, for the event log; the text is one line.
+  struct Notice {
+    bool warning = false;
+    std::string code;
+    std::string text;
+  };
+  struct Step {
+    bool publish = false;  ///< newest() is to go out, as version()
+    std::vector<Notice> notices;
+  };
+  /// Call it often. May plan, which takes as long as that takes.
+  Step step(SteadyTime now, UtcTime utc);
+
+  const Replan& newest() const { return newest_; }
+  std::uint32_t version() const { return version_; }
+  const Scene& scene() const { return scene_; }
+  /// Version of the scene newest() was made for.
+  std::uint64_t planned_scene() const { return planned_scene_; }
+
+ private:
+  void keep_planned(SteadyTime now, UtcTime utc, Step& step);
+  void avoid_jams(SteadyTime now, UtcTime utc, Step& step);
+  void try_again(SteadyTime now, UtcTime utc, Step& step);
+  bool is_step_due(SteadyTime now) const;
+  Result<Replan> plan_anew(UtcTime utc, std::span<const HeardRobot> heard);
+  void publish(Step& step);
+
+  const Mission& mission_;
+  std::uint64_t seed_;
+  StageClock clock_;
+  Planner planner_;
+  RobotWatch robots_;
+  MissionPhase phase_ = MissionPhase::kReady;
+  Scene scene_;
+  bool scene_heard_ = false;
+  Replan newest_;
+  std::uint32_t version_ = 0;  // 0 = nothing published
+  std::uint64_t planned_scene_ = 0;
+  std::uint64_t failed_scene_ = 0;  // that was complained about
+  SteadyTime begun_at_;
+  SteadyTime tried_at_;  // to plan anew
+};
+
+}  // namespace swarm::planner

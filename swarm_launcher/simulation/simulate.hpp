@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+
+#include "swarm_core/base/result.hpp"
+#include "swarm_launcher/simulation/air.hpp"
+
+namespace swarm::launcher {
+
+struct SimulateOptions {
+  std::filesystem::path mission_file;
+  std::optional<std::uint32_t> robots;  ///< instead of the mission's
+  std::uint64_t seed = 1;
+  LinkFaults faults;
+  bool clocks_in_step = true;
+  std::size_t threads = 0;    ///< 0: as many as make it faster
+  bool record = true;         ///< black boxes, audit and report; else arrivals and times alone
+  std::filesystem::path out;  ///< run directory; empty: runs/<mission>-<time>
+  bool json = false;
+};
+
+/// Threads that make a simulation of so many robots faster: more than one only where a control
+/// period is long against waking the others.
+std::size_t useful_threads(std::uint32_t robots);
+
+/// `swarm_launcher simulate`: the mission in lock-step, in one process, as fast as it goes; the
+/// same run directory and audit as of a real run. Result on stdout, progress on stderr.
+Result<ExitCode> simulate_mission(const SimulateOptions& options);
+
+}  // namespace swarm::launcher

@@ -1,0 +1,282 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "swarm_launcher/simulation/simulation.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "robot_agent/drivers/simulated_robot.hpp"
+#include "swarm_core/mission/placement.hpp"
+
+namespace swarm::launcher {
+namespace {
+
+// Where a robot's clock stands matters only relative to others'.
+constexpr SteadyTime kBegin{std::chrono::seconds(1000)};
+// Of a control period, with clocks out of step.
+constexpr std::size_t kSlots = 10;
+// A robot's states' ages are looked at in every so manieth period.
+constexpr std::uint64_t kAgesEvery = 10;
+
+double hear_radius_m(const Mission& mission, RobotId robot) {
+  const double own_m = body_of(mission.robots, robot).hear_radius_m;
+  return own_m > 0.0 ? own_m : mission.link.hear_radius_m;
+}
+
+double largest_hear_radius_m(const Mission& mission) {
+  double largest_m = mission.robots.hear_radius_m;
+  for (const RobotGroupSpec& group : mission.robots.groups) {
+    largest_m = std::max(largest_m, group.hear_radius_m);
+  }
+  return std::max(largest_m, mission.link.hear_radius_m);
+}
+
+SupervisorOptions supervisor_options(const Mission& mission) {
+  return {.robots = mission.robots.count,
+          .per_process = mission.robots.count,
+          .launcher = mission.launcher,
+          .script = mission.script};
+}
+
+}  // namespace
+
+Simulation::Simulation(const Mission& mission, const SimulationOptions& options,
+                       Recording& recording, SimulationObserver& observer)
+    : mission_(mission),
+      options_(options),
+      recording_(recording),
+      observer_(observer),
+      period_(from_seconds(1.0 / mission.control.rate_hz)),
+      world_(mission.world),
+      scene_(first_scene(mission.world.obstacles().size())),
+      keeper_(mission, options.seed, &std::chrono::steady_clock::now),
+      supervisor_(supervisor_options(mission), kBegin),
+      air_(mission.world.bounds_m(), largest_hear_radius_m(mission), options.faults,
+           mix_seed(options.seed, 0xA1B)),
+      crew_(std::max<std::size_t>(options.threads, 1)),
+      ages_(crew_.size()),
+      now_(kBegin) {}
+
+Result<std::unique_ptr<Simulation>> Simulation::make(const Mission& mission,
+                                                     const SimulationOptions& options,
+                                                     Recording& recording,
+                                                     SimulationObserver& observer) {
+  const auto positions_m = place_robots(mission, options.seed);
+  if (!positions_m) return tl::unexpected(positions_m.error());
+  std::unique_ptr<Simulation> made(new Simulation(mission, options, recording, observer));
+  if (auto planned = made->keeper_.plan_first(); !planned) return tl::unexpected(planned.error());
+  made->keeper_.begin(kBegin);
+  made->keeper_.take_scene(made->scene_);
+  made->place(*positions_m);
+  return made;
+}
+
+UtcTime Simulation::begin_utc() { return std::chrono::sys_days{std::chrono::year{2026} / 1 / 1}; }
+
+UtcTime Simulation::utc(SteadyTime t) const { return begin_utc() + (t - kBegin); }
+
+void Simulation::place(const std::vector<Vec2>& positions_m) {
+  robots_.reserve(positions_m.size());
+  slots_.resize(options_.clocks_in_step ? 1 : kSlots);
+  for (std::uint32_t i = 0; i < positions_m.size(); ++i) {
+    const RobotId id(i);
+    robots_.push_back({.agent = {world_, agent::agent_options(mission_, id, options_.seed)},
+                       .body = std::make_unique<agent::SimulatedRobot>(kBegin, positions_m[i]),
+                       .hear_radius_m = hear_radius_m(mission_, id),
+                       .heard_until = kBegin,
+                       .output = {},
+                       .position_m = positions_m[i]});
+    // As processes do: multiples of the golden ratio spread any number of them evenly.
+    const double turn = i * (std::numbers::phi - 1.0);
+    const auto slot =
+        static_cast<std::size_t>((turn - std::floor(turn)) * static_cast<double>(slots_.size()));
+    slots_[std::min(slot, slots_.size() - 1)].push_back(i);
+  }
+}
+
+void Simulation::publish() {
+  const planner::Replan& newest = keeper_.newest();
+  plan_ms_ += newest.planned.stats.total_ms;
+  observer_.on_plan(keeper_.version(), newest.planned);
+  const std::string text = fmt::format("took plan version {}", keeper_.version());
+  crew_.run([&](std::size_t part) {
+    for (std::size_t i = part; i < robots_.size(); i += crew_.size()) {
+      std::optional<agent::PlanEntry> entry;
+      if (i < newest.entries.size() && newest.entries[i].source != planner::PlanEntry::kAnywhere) {
+        entry = {newest.entries[i].source, newest.entries[i].share / 65536.0};
+      }
+      robots_[i].agent.accept_plan(newest.planned.plan, robots_[i].position_m, entry);
+      recording_.note(RobotId(static_cast<std::uint32_t>(i)), utc(now_), "plan", text);
+    }
+  });
+}
+
+void Simulation::keep_planned() {
+  const planner::PlanKeeper::Step step = keeper_.step(now_, utc(now_));
+  for (const planner::PlanKeeper::Notice& notice : step.notices) {
+    observer_.on_event(utc(now_), "planner", notice.warning, notice.code, notice.text);
+  }
+  if (step.publish) publish();
+}
+
+void Simulation::change_scene(const SceneChange& change) {
+  auto next = after(scene_, change, mission_.world, utc(now_));
+  if (!next) {
+    observer_.on_event(utc(now_), "launcher", true, "scene-refused", next.error().message);
+    return;
+  }
+  scene_ = *std::move(next);
+  observer_.on_scene(scene_, change);
+  keeper_.take_scene(scene_);
+  if (std::holds_alternative<GoTo>(change)) supervisor_.on_new_goal(scene_.version);
+  world_moves_ = true;
+}
+
+void Simulation::act(const Action& action) {
+  if (const auto* command = std::get_if<SendCommand>(&action)) {
+    phase_ = command->kind == CommandKind::kStop ? MissionPhase::kStopped
+                                                 : phase_after(phase_, command->kind);
+    keeper_.set_phase(phase_);
+  } else if (const auto* scene = std::get_if<ChangeScene>(&action)) {
+    change_scene(scene->change);
+  } else if (const auto* signal = std::get_if<SignalProcess>(&action)) {
+    supervisor_.on_exit(signal->process, {}, now_);
+  } else if (const auto* event = std::get_if<LogEvent>(&action)) {
+    observer_.on_event(utc(now_), "launcher", event->warning, event->code, event->text);
+  }
+}
+
+void Simulation::supervise() {
+  for (const Action& action : supervisor_.step(now_)) act(action);
+}
+
+/// Once a second and at every change of mode, as over the bus.
+void Simulation::report_status() {
+  const auto every = std::max<std::uint64_t>(
+      1,
+      static_cast<std::uint64_t>(std::llround(mission_.control.rate_hz / mission_.link.status_hz)));
+  for (std::uint32_t i = 0; i < robots_.size(); ++i) {
+    Robot& robot = robots_[i];
+    if (!robot.reported && (periods_ + i) % every != 0) continue;
+    robot.reported = false;
+    supervisor_.on_status(RobotId(i), {.has_plan = robot.agent.has_route(),
+                                       .hears_neighbours = true,
+                                       .mode = robot.output.mode,
+                                       .settled = robot.output.settled,
+                                       .scene_version = keeper_.planned_scene()});
+    keeper_.hear({.robot = RobotId(i),
+                  .position_m = robot.position_m,
+                  .arrived = robot.output.mode == RobotMode::kArrived},
+                 robot.output.mode == RobotMode::kMoving, now_);
+  }
+}
+
+void Simulation::tick_robot(std::uint32_t id, SteadyTime now, Histogram* ages) {
+  Robot& robot = robots_[id];
+  const agent::Measurement body = robot.body->measure(now);
+  robot.position_m = body.position_m;
+  air_.hear(
+      RobotId(id), robot.position_m, robot.hear_radius_m, robot.heard_until, now,
+      [&](const agent::NeighbourReport& report) {
+        robot.agent.hear(report, robot.position_m);
+        ++robot.received;
+        if (ages == nullptr) return;
+        ages->add(
+            std::chrono::duration_cast<std::chrono::microseconds>(now - report.as_of).count());
+      });
+  robot.heard_until = now;
+  const RobotMode before = robot.output.mode;
+  robot.output = robot.agent.tick(
+      {.now = now, .position_m = robot.position_m, .phase = phase_, .planner_alive = true});
+  const agent::AgentOutput& out = robot.output;
+  robot.body->command(now, out.velocity_mps, 2 * period_);
+
+  const RobotId robot_id(id);
+  const UtcTime stamp = utc(now);
+  if (out.mode != before || out.settled) robot.reported = true;
+  if (out.mode != before)
+    recording_.note(robot_id, stamp, "mode", std::string(to_string(out.mode)));
+  recording_.step(robot_id,
+                  {.stamp = stamp,
+                   .position_m = robot.position_m,
+                   .velocity_mps = out.velocity_mps,
+                   .mode = static_cast<std::uint8_t>(out.mode),
+                   .goal = robot.agent.has_route() ? static_cast<std::uint8_t>(std::min(
+                                                         robot.agent.goal(robot.position_m), 254U))
+                                                   : blackbox::Step::kNoGoal,
+                   .neighbours = out.neighbours});
+}
+
+void Simulation::tick_slot(std::size_t slot) {
+  const std::vector<std::uint32_t>& members = slots_[slot];
+  const SteadyTime now =
+      now_ + period_ * static_cast<std::int64_t>(slot) / static_cast<std::int64_t>(slots_.size());
+  const std::size_t parts = crew_.size();
+  crew_.run([&](std::size_t part) {
+    const std::size_t first = members.size() * part / parts;
+    const std::size_t last = members.size() * (part + 1) / parts;
+    for (std::size_t i = first; i < last; ++i) {
+      const std::uint32_t id = members[i];
+      tick_robot(id, now, (periods_ + id) % kAgesEvery == 0 ? &ages_[part] : nullptr);
+    }
+  });
+  said_.clear();
+  for (const std::uint32_t id : members) {
+    Robot& robot = robots_[id];
+    if (!robot.output.say) continue;
+    said_.push_back({.robot = RobotId(id),
+                     .sequence = ++robot.sequence,
+                     .as_of = now,
+                     .position_m = robot.position_m,
+                     .velocity_mps = robot.output.velocity_mps});
+  }
+  air_.post(now, said_);
+}
+
+bool Simulation::step() {
+  supervise();
+  if (supervisor_.stage() == Supervisor::Stage::kDone) {
+    for (std::uint32_t i = 0; i < robots_.size(); ++i) {
+      recording_.note(RobotId(i), utc(now_), "exit", "graceful end");
+      recording_.link().states_sent += robots_[i].sequence;
+      recording_.link().states_received += robots_[i].received;
+    }
+    for (const Histogram& ages : ages_) recording_.link().state_age.merge(ages);
+    return false;
+  }
+  keep_planned();
+  if (world_moves_) {
+    world_ = world_at(mission_.world, scene_, utc(now_));
+    world_moves_ = scene_.moves(utc(now_));
+  }
+  const auto begin = std::chrono::steady_clock::now();
+  for (std::size_t slot = 0; slot < slots_.size(); ++slot) tick_slot(slot);
+  const double took_s = to_seconds(std::chrono::steady_clock::now() - begin);
+  agents_s_ += took_s;
+  step_ns_.push_back(static_cast<float>(1e9 * took_s / static_cast<double>(robots_.size())));
+  report_status();
+  ++periods_;
+  now_ += period_;
+  air_.forget(now_ - period_);
+  return true;
+}
+
+Simulation::Cost Simulation::cost() const {
+  Cost cost{.plan_ms = plan_ms_,
+            .agent_steps = periods_ * robots_.size(),
+            .agents_s = agents_s_,
+            .median_step_ns = 0.0};
+  if (step_ns_.empty()) return cost;
+  std::vector<float> sorted = step_ns_;
+  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+  std::nth_element(sorted.begin(), middle, sorted.end());
+  cost.median_step_ns = static_cast<double>(*middle);
+  return cost;
+}
+
+}  // namespace swarm::launcher

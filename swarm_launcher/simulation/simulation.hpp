@@ -1,0 +1,126 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "planner_service/plan_keeper.hpp"
+#include "robot_agent/agent.hpp"
+#include "robot_agent/drivers/driver.hpp"
+#include "swarm_core/base/result.hpp"
+#include "swarm_core/mission/mission.hpp"
+#include "swarm_launcher/simulation/air.hpp"
+#include "swarm_launcher/simulation/crew.hpp"
+#include "swarm_launcher/simulation/recording.hpp"
+#include "swarm_launcher/supervisor.hpp"
+
+namespace swarm::launcher {
+
+struct SimulationOptions {
+  std::uint64_t seed = 1;
+  LinkFaults faults;
+  /// All robots tick at the same moment, or spread over the control period as processes are.
+  bool clocks_in_step = true;
+  std::size_t threads = 1;
+};
+
+/// Told what happens in a simulation.
+class SimulationObserver {
+ public:
+  virtual ~SimulationObserver() = default;
+  virtual void on_event(UtcTime, const std::string& /*source*/, bool /*warning*/,
+                        const std::string& /*code*/, const std::string& /*text*/) {}
+  virtual void on_plan(std::uint32_t /*version*/, const planner::PlanResult&) {}
+  virtual void on_scene(const Scene&, const SceneChange&) {}
+};
+
+/// A mission in lock-step: the agents, planner and supervisor of a real run, each a pure function
+/// of what it hears, driven by a clock that waits for nobody. In each control period every robot
+/// measures, hears what the air brings, decides and commands; then what was said goes on the air.
+/// So results depend on mission and options alone, not on the number of threads, to the last bit.
+/// The planner answers at once: how long it thinks costs no mission time.
+class Simulation {
+ public:
+  /// Places the robots and plans. Mission and observer outlive the simulation.
+  static Result<std::unique_ptr<Simulation>> make(const Mission& mission,
+                                                  const SimulationOptions& options,
+                                                  Recording& recording,
+                                                  SimulationObserver& observer);
+
+  /// Runs one control period. False when the mission is over.
+  bool step();
+
+  /// Ends the mission early, as SIGINT would.
+  void interrupt() { supervisor_.on_interrupt(); }
+
+  Outcome outcome() const { return supervisor_.outcome(); }
+  double mission_s() const { return supervisor_.mission_time(now_).count(); }
+  Supervisor::Counts counts() const { return supervisor_.counts(); }
+
+  struct Cost {
+    double plan_ms = 0.0;  ///< of all plans together
+    std::uint64_t agent_steps = 0;
+    double agents_s = 0.0;        ///< in agent steps, wall time
+    double median_step_ns = 0.0;  ///< per agent, over the control periods
+  };
+  Cost cost() const;
+
+  /// The simulated UTC at which every mission begins: the same run gives the same bytes.
+  static UtcTime begin_utc();
+
+ private:
+  struct Robot {
+    agent::Agent agent;
+    std::unique_ptr<agent::Driver> body;
+    double hear_radius_m = 0.0;
+    SteadyTime heard_until;
+    agent::AgentOutput output;
+    Vec2 position_m = Vec2::Zero();
+    std::uint32_t sequence = 0;
+    std::uint32_t received = 0;
+    bool reported = false;
+  };
+
+  Simulation(const Mission& mission, const SimulationOptions& options, Recording& recording,
+             SimulationObserver& observer);
+
+  UtcTime utc(SteadyTime t) const;
+  void place(const std::vector<Vec2>& positions_m);
+  void keep_planned();
+  void publish();
+  void supervise();
+  void act(const Action& action);
+  void change_scene(const SceneChange& change);
+  void report_status();
+  void tick_slot(std::size_t slot);
+  void tick_robot(std::uint32_t id, SteadyTime now, Histogram* ages);
+
+  const Mission& mission_;
+  SimulationOptions options_;
+  Recording& recording_;
+  SimulationObserver& observer_;
+  Duration period_;
+  World world_;
+  Scene scene_;
+  bool world_moves_ = false;
+  planner::PlanKeeper keeper_;
+  Supervisor supervisor_;
+  MissionPhase phase_ = MissionPhase::kReady;
+  Air air_;
+  Crew crew_;
+  std::vector<Robot> robots_;
+  std::vector<std::vector<std::uint32_t>> slots_;  // robots that tick together
+  std::vector<agent::NeighbourReport> said_;
+  std::vector<Histogram> ages_;  // one a thread
+  SteadyTime now_;
+  std::uint64_t periods_ = 0;
+  double plan_ms_ = 0.0;
+  std::vector<float> step_ns_;
+  double agents_s_ = 0.0;
+};
+
+}  // namespace swarm::launcher
