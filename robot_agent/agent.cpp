@@ -21,6 +21,7 @@ bool is_near_source(const FlowPlan& plan, std::uint32_t source, const Vec2& posi
 }
 
 constexpr double kAtRest_mps = 0.05;
+constexpr double kSettling_m = 4.0;  // nearer to the end than this a turn aside would only stir
 
 double nearest_gap_m(const ControlView& view, double radius_m) {
   double nearest_m = std::numeric_limits<double>::infinity();
@@ -68,7 +69,9 @@ AgentOptions agent_options(const Mission& mission, RobotId robot, std::uint64_t 
                  .speed_max_mps = body.speed_max_mps,
                  .period = period,
                  .gap_share = mission.safety.gap_share,
+                 .stale_gain = mission.safety.stale_gain,
                  .neighbour_margin_m = mission.safety.neighbour_margin_m,
+                 .evade_margin_m = mission.safety.evade_margin_m,
                  .obstacle_margin_m = mission.safety.obstacle_margin_m,
                  .follow_share = mission.safety.follow_share},
       .neighbours = {.radius_m = body.radius_m,
@@ -134,7 +137,8 @@ AgentOutput Agent::tick(const AgentInput& input) {
   if (out.mode != RobotMode::kStopped) {
     const bool drives = out.mode == RobotMode::kMoving || out.mode == RobotMode::kArrived;
     const Vec2 wished = drives ? method_->wish(view, arrived_, rng_) : method_->hold(view);
-    out.velocity_mps = filter_.filter(input.position_m, wished, view.neighbours);
+    const bool gives_way = out.mode == RobotMode::kMoving && out.remaining_m > kSettling_m;
+    out.velocity_mps = filter_.filter(input.position_m, wished, view.neighbours, gives_way);
   }
   out.settled = out.mode == RobotMode::kArrived && out.velocity_mps.norm() < kAtRest_mps;
 

@@ -20,6 +20,7 @@ struct NeighbourReport {
   SteadyTime as_of;  ///< when it was true, on our steady clock
   Vec2 position_m = Vec2::Zero();
   Vec2 velocity_mps = Vec2::Zero();
+  double late_s = 0.0;  ///< how old it was when it was heard
 };
 
 /// What we believe of a neighbour now.
@@ -28,6 +29,9 @@ struct Neighbour {
   Vec2 position_m = Vec2::Zero();  ///< dead-reckoned
   Vec2 velocity_mps = Vec2::Zero();
   double radius_m = 0.0;  ///< its radius, grown while it is silent for longer than it should be
+  /// How old our knowledge of its motion is: the time since its last word if it should speak at
+  /// every tick, else, since it would have spoken had it turned, the time a word takes.
+  double stale_s = 0.0;
 };
 
 struct NeighbourOptions {
@@ -35,7 +39,7 @@ struct NeighbourOptions {
   Fleet fleet;                  ///< sizes and speeds of the others
   double keep_radius_m = 6.0;   ///< robots farther than this are not kept
   double near_m = 1.0;          ///< robots whose surface is this near speak at every tick …
-  Duration near_silence{};      ///< … so that one silent for longer has stalled
+  Duration near_silence{};      ///< … so that one silent for longer, three ticks, has stalled
   Duration expected_silence{};  ///< a healthy robot speaks at least this often
   Duration forget_after{};
 };
@@ -43,8 +47,11 @@ struct NeighbourOptions {
 /// The robots near us, as far as the bus tells. Between two words of a robot its position is
 /// extrapolated. A near one that is silent for longer than `near_silence` may have stalled, so that
 /// its driver has stopped it, or may go on unheard: it is taken to stand at the nearest place
-/// between the two. From `expected_silence` on its radius grows by v_max for every second more, and
-/// after `forget_after` it is forgotten. Sorted by id; no allocation once warm.
+/// between the two. From `expected_silence` on its radius grows by its largest speed for every
+/// second more, and after `forget_after` it is forgotten. A robot in a crowd hears fifty others at
+/// every tick: taking a report is a look into a hash table, and believing one a pass over an array.
+/// The same reports in the same order give the same neighbours in the same order. No allocation
+/// once warm.
 class NeighbourTable {
  public:
   explicit NeighbourTable(const NeighbourOptions& options);
@@ -59,8 +66,32 @@ class NeighbourTable {
   std::span<const Neighbour> at(SteadyTime now, const Vec2& own_position_m);
 
  private:
+  /// One cache line.
+  struct alignas(64) Known {
+    Vec2 position_m;
+    Vec2 velocity_mps;
+    SteadyTime as_of;
+    RobotId robot;
+    std::uint32_t sequence = 0;
+    double radius_m = 0.0;
+    float late_s = 0.0F;
+    bool gone = false;  // left the neighbourhood; dropped by the next at()
+  };
+  /// Of the hash table, with open addressing.
+  struct Slot {
+    RobotId robot;
+    std::uint32_t known = kFree;
+  };
+  static constexpr std::uint32_t kFree = 0xFFFF'FFFF;
+
+  Slot& slot_of(RobotId robot);
+  void insert(const NeighbourReport& report, Slot& slot);
+  void rebuild_index();
+
   NeighbourOptions options_;
-  std::vector<NeighbourReport> reports_;  // sorted by robot
+  std::vector<Known> known_;
+  std::vector<Slot> index_;  // a power of two of them
+  bool any_gone_ = false;
   std::vector<Neighbour> neighbours_;
 };
 

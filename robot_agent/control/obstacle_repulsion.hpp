@@ -18,6 +18,7 @@ struct ObstacleRepulsionOptions {
 /// the signed distance while the surface gap s is below s0.
 inline Vec2 obstacle_repulsion(const Vec2& position_m, const World& world,
                                const ObstacleRepulsionOptions& options) {
+  if (world.is_clear(position_m, options.radius_m + options.gap_m)) return Vec2::Zero();
   const SignedDistance sd = world.signed_distance(position_m);
   const double gap = sd.distance_m - options.radius_m;
   if (gap >= options.gap_m) return Vec2::Zero();

@@ -3,54 +3,120 @@
 #include "robot_agent/control/safety_filter.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 namespace swarm::agent {
+namespace {
+
+constexpr int kBisections = 8;          // of the least violation: to 1 % of the speed
+constexpr double kBlocked = 0.1;        // less than this share of the wish is left: blocked
+constexpr double kTurn_rad = 0.4;       // to the right, while blocked
+constexpr double kLeastWish_mps = 0.1;  // slower wishes are not worth a detour
+
+}  // namespace
 
 SafetyFilter::SafetyFilter(const World& world, const SafetyOptions& options)
     : world_(world), options_(options) {
-  constraints_.reserve(256);
+  constraints_.reserve(64);
+  relaxed_.reserve(64);
 }
 
-Vec2 SafetyFilter::filter(const Vec2& position_m, const Vec2& wish_mps,
-                          std::span<const Neighbour> neighbours) {
-  constraints_.clear();
+void SafetyFilter::collect_obstacles(const Vec2& position_m) {
   const double horizon_s = 2.0 * to_seconds(options_.period);
   const double reach_m = options_.speed_max_mps * horizon_s + options_.obstacle_margin_m;
-
   const auto keep_off = [&](const Vec2& towards, double surface_gap_m, double coming_mps = 0.0) {
     if (surface_gap_m > reach_m + coming_mps * horizon_s) return;
     constraints_.push_back(
         {towards, (surface_gap_m - options_.obstacle_margin_m) / horizon_s - coming_mps});
   };
-  for (const ConvexObstacle& obstacle : world_.convex_obstacles()) {
-    const double way_m = obstacle.velocity_mps.norm() * horizon_s;
-    if (obstacle.box.distance_m(position_m) - options_.radius_m > reach_m + way_m) continue;
+  const double searched_m = options_.radius_m + reach_m + world_.fastest_mps() * horizon_s;
+  world_.convex_boxes().for_each_within({position_m, position_m}, searched_m, [&](std::uint32_t i) {
+    const ConvexObstacle& obstacle = world_.convex_obstacles()[i];
     const SignedDistance sd = obstacle.signed_distance(position_m);
     keep_off(-sd.gradient, sd.distance_m - options_.radius_m,
              std::max(0.0, sd.gradient.dot(obstacle.velocity_mps)));
-  }
+  });
   const Box& bounds = world_.bounds_m();
   keep_off({-1.0, 0.0}, position_m.x() - bounds.min_m.x() - options_.radius_m);
   keep_off({1.0, 0.0}, bounds.max_m.x() - position_m.x() - options_.radius_m);
   keep_off({0.0, -1.0}, position_m.y() - bounds.min_m.y() - options_.radius_m);
   keep_off({0.0, 1.0}, bounds.max_m.y() - position_m.y() - options_.radius_m);
+  obstacles_ = constraints_.size();
+}
 
+void SafetyFilter::collect_neighbours(const Vec2& position_m,
+                                      std::span<const Neighbour> neighbours) {
+  const double period_s = to_seconds(options_.period);
+  const double v_max = options_.speed_max_mps;
   for (const Neighbour& n : neighbours) {
+    const double time_s = period_s + options_.stale_gain * std::max(0.0, n.stale_s - period_s);
+    // From here on the robot may do what it likes: nobody comes faster than its own brake allows.
+    const double sum_m = options_.radius_m + n.radius_m;
+    const double brake_m = options_.neighbour_margin_m + 2.0 * v_max * time_s / options_.gap_share;
     const Vec2 offset = n.position_m - position_m;
-    const double distance = offset.norm();
-    // Robots believed to be in the same spot: part to opposite sides, told apart by nothing but
-    // chance.
+    const double squared = offset.squaredNorm();
+    if (squared > (sum_m + brake_m) * (sum_m + brake_m)) continue;
+    const double distance = std::sqrt(squared);
+    // Robots believed to be in the same spot part to opposite sides by chance.
     const Vec2 towards = distance > 1e-9 ? Vec2(offset / distance) : Vec2(1.0, 0.0);
-    const double gap = distance - options_.radius_m - n.radius_m;
-    const double retreat = std::max(0.0, towards.dot(n.velocity_mps));
-    const double bound = options_.gap_share * (gap - options_.neighbour_margin_m) / horizon_s +
-                         options_.follow_share * retreat;
-    if (bound < options_.speed_max_mps) constraints_.push_back({towards, bound});
+    const double gap = distance - sum_m;
+    const double leaving = towards.dot(n.velocity_mps);
+    const double share = options_.gap_share * (gap - options_.neighbour_margin_m) / (2.0 * time_s) +
+                         options_.follow_share * std::max(0.0, leaving);
+    const double evade =
+        (gap - options_.evade_margin_m) / (2.0 * period_s) - std::max(0.0, -leaving);
+    const double bound = std::min(share, evade);
+    if (bound < v_max) constraints_.push_back({towards, std::max(bound, -v_max)});
   }
+}
 
+/// All neighbours give in by the same speed, the least that leaves a common point.
+Vec2 SafetyFilter::least_violation(const Vec2& wish_mps) {
+  relaxed_ = constraints_;
+  const auto relax = [&](double by_mps) {
+    for (std::size_t i = obstacles_; i < constraints_.size(); ++i) {
+      relaxed_[i].bound_mps = constraints_[i].bound_mps + by_mps;
+    }
+    return nearest_velocity(wish_mps, relaxed_, options_.speed_max_mps);
+  };
+  double low = 0.0;
+  double high = 0.0;
+  for (std::size_t i = obstacles_; i < constraints_.size(); ++i) {
+    high = std::max(high, -constraints_[i].bound_mps);
+  }
+  // Standing still breaks nothing by more than this, unless an obstacle comes.
+  std::optional<Vec2> best = relax(high);
+  if (!best) return Vec2::Zero();
+  for (int i = 0; i < kBisections; ++i) {
+    const double middle = 0.5 * (low + high);
+    if (auto u = relax(middle)) {
+      best = u;
+      high = middle;
+    } else {
+      low = middle;
+    }
+  }
+  return *best;
+}
+
+Vec2 SafetyFilter::nearest(const Vec2& wish_mps) {
   if (auto u = nearest_velocity(wish_mps, constraints_, options_.speed_max_mps)) return *u;
-  for (HalfPlane& c : constraints_) c.bound_mps = std::max(0.0, c.bound_mps);
-  return nearest_velocity(wish_mps, constraints_, options_.speed_max_mps).value_or(Vec2::Zero());
+  return least_violation(wish_mps);
+}
+
+Vec2 SafetyFilter::filter(const Vec2& position_m, const Vec2& wish_mps,
+                          std::span<const Neighbour> neighbours, bool gives_way) {
+  constraints_.clear();
+  collect_obstacles(position_m);
+  collect_neighbours(position_m, neighbours);
+  const Vec2 u = nearest(wish_mps);
+  const double wished = wish_mps.norm();
+  if (!gives_way || wished < kLeastWish_mps) return u;
+  if (u.dot(wish_mps) > kBlocked * wished * wished) return u;
+  const double c = std::cos(kTurn_rad);
+  const double s = std::sin(kTurn_rad);
+  return nearest({c * wish_mps.x() + s * wish_mps.y(), c * wish_mps.y() - s * wish_mps.x()});
 }
 
 }  // namespace swarm::agent

@@ -14,41 +14,61 @@ namespace swarm::agent {
 struct SafetyOptions {
   double radius_m = 0.2;
   double speed_max_mps = 1.5;
-  Duration period{};                 ///< of control
-  double gap_share = 0.25;           ///< γ
-  double neighbour_margin_m = 0.25;  ///< m
-  double obstacle_margin_m = 0.05;   ///< m_o
-  double follow_share = 0.5;         ///< β
+  Duration period{};                ///< Δt, of control
+  double gap_share = 0.5;           ///< γ
+  double stale_gain = 1.0;          ///< a
+  double neighbour_margin_m = 0.3;  ///< m
+  double evade_margin_m = 0.1;      ///< m_e
+  double obstacle_margin_m = 0.05;  ///< m_o
+  double follow_share = 0.8;        ///< β
 };
 
 /// The layer under every control method: the velocity nearest to the wished one that keeps its
 /// promises.
 ///
-///   neighbour j:  n_j·u ≤ γ (gap_j − m)/(2Δt) + β max(0, n_j·v_j)      n_j points to the neighbour
-///   obstacle o:   n_o·u ≤ (s_o − m_o)/(2Δt) − max(0, −n_o·v_o)         n_o points into the
-///   obstacle, v_o is its velocity
+///   neighbour j:  n·u ≤ γ (gap − m) / (2T) + β max(0, n·v_j),   T = Δt + a max(0, τ_j − Δt)
+///                 n·u ≤ (gap − m_e) / (2Δt) − max(0, −n·v_j)     n points to the neighbour, v_j is
+///                                                                what it said of its velocity
+///   obstacle o:   n·u ≤ (s − m_o) / (2Δt) − max(0, −n·v_o)       n points into the obstacle
 ///   bounds:       the same with the four walls of the world
 ///
-/// A command is valid for 2Δt, then the driver stops the robot. Hence: a robot that starts with
-/// s_o ≥ m_o keeps it, however late its ticks are (an obstacle is convex and within its
-/// half-plane). Two robots that start with gap ≥ m, know each other's position to within e and both
-/// obey (with β = 0) keep a gap of m − e: each closes at most γ/1 of half of what is left above m.
-/// β lets a robot follow one that moves away; what it gives up when that one stops at once, m − e
-/// must hold: γ = 0.25, m = 0.25 m, β = 0.5 stand 150 ms and 20 % loss (tests). u = 0 obeys
-/// everything while the gaps are above their margins; where one is below, the filter first asks for
-/// what re-opens it and, if that has no solution, for not closing it: that always has one. It never
-/// freezes what may move.
+/// What is promised, given speeds of at most v_max and commands that run out after 2Δt:
+///
+/// 1. A robot that begins with s ≥ m_o from every obstacle keeps it, however late its ticks are: an
+///    obstacle is convex and lies within its half-plane, and u = 0 obeys all of them.
+/// 2. Two robots that obey, begin with gap ≥ m and know each other to within e keep gap ≥ m − e
+///    (with β = 0), however late their ticks are: a command closes at most γ (gap − m) in its life
+///    of 2Δt, half of what is left above m for each, γ ≤ ½. With knowledge that is τ old the pair
+///    is the delayed system ẋ = −(γ/T) x(t − τ) for x = gap − m, which does not overshoot as long
+///    as γτ/T ≤ 1/e: that is what a ≥ eγ is for. β lets a robot follow one that moves away; what is
+///    given up when that one stops at once is β v_max τ, and m has room for it.
+/// 3. From a robot that obeys nobody, heard at every tick and no faster than v_max, a robot
+///    withdraws before contact: the second line asks for u at least as fast as the other comes once
+///    the gap is down to m_e. It is met whenever there is room to go to.
+/// 4. Nobody freezes who may move: where the lines have no common point, obstacles stay as they are
+///    and all neighbours give in by the same least speed, so that the most endangered gap is served
+///    best. A robot whose wish is blocked by robots that face it turns its wish to its right, as
+///    everyone does, so that opposing streams part into lanes.
 class SafetyFilter {
  public:
   SafetyFilter(const World& world, const SafetyOptions& options);
 
-  /// No allocation once warm. Cost: O(obstacles in reach + neighbours).
-  Vec2 filter(const Vec2& position_m, const Vec2& wish_mps, std::span<const Neighbour> neighbours);
+  /// No allocation once warm. Cost: O(obstacles in reach + neighbours). `gives_way` allows the turn
+  /// to the right: not where robots settle.
+  Vec2 filter(const Vec2& position_m, const Vec2& wish_mps, std::span<const Neighbour> neighbours,
+              bool gives_way = false);
 
  private:
+  void collect_obstacles(const Vec2& position_m);
+  void collect_neighbours(const Vec2& position_m, std::span<const Neighbour> neighbours);
+  Vec2 nearest(const Vec2& wish_mps);
+  Vec2 least_violation(const Vec2& wish_mps);
+
   const World& world_;
   SafetyOptions options_;
-  std::vector<HalfPlane> constraints_;
+  std::vector<HalfPlane> constraints_;  // obstacles first
+  std::vector<HalfPlane> relaxed_;
+  std::size_t obstacles_ = 0;  // of constraints_
 };
 
 }  // namespace swarm::agent

@@ -82,9 +82,9 @@ struct ControlSpec {
   double rate_hz = 10.0;
   double cruise_mps = 1.45;         ///< wished speed along the flow
   double look_ahead_s = 8.0;        ///< pursuit: how far ahead along the own route a robot aims
-  double keep_clearance_m = 2.0;    ///< pursuit: planned clearance up to this is not cut away
-  double density_push_mps = 0.1;    ///< apf: at a density of twice the planned one
-  double neighbour_gap_m = 0.6;     ///< d0: neighbours nearer than this push
+  double keep_clearance_m = 1.0;    ///< pursuit: planned clearance up to this is not cut away
+  double density_push_mps = 0.05;   ///< apf: at a density of twice the planned one
+  double neighbour_gap_m = 1.0;     ///< d0: neighbours nearer than this push
   double neighbour_push_mps = 0.6;  ///< speed of that push at contact
   double obstacle_gap_m = 0.5;      ///< obstacles nearer than this push
   double obstacle_push_mps = 1.0;
@@ -95,10 +95,12 @@ struct ControlSpec {
 };
 
 struct SafetySpec {
-  double gap_share = 0.25;           ///< γ: share of the gap a robot may close in one step
-  double neighbour_margin_m = 0.25;  ///< m
+  double gap_share = 0.5;            ///< γ: share of the gap a robot may close by one command
+  double stale_gain = 1.0;           ///< a: how much slower by what is known late
+  double neighbour_margin_m = 0.3;   ///< m
+  double evade_margin_m = 0.1;       ///< m_e: least gap to a robot that does not keep off
   double obstacle_margin_m = 0.05;   ///< m_o
-  double follow_share = 0.5;         ///< β: how much of a neighbour's retreat may be used
+  double follow_share = 0.8;         ///< β: how much of a neighbour's retreat may be used
 };
 
 struct LinkSpec {

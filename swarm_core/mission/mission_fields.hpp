@@ -102,8 +102,10 @@ inline constexpr std::array<Field<ControlSpec>, 13> kControl{{
     {"kick_s", &ControlSpec::kick_s, between(0, 600)},
 }};
 
-inline constexpr std::array<Field<SafetySpec>, 4> kSafety{{
+inline constexpr std::array<Field<SafetySpec>, 6> kSafety{{
     {"gap_share", &SafetySpec::gap_share, positive(1)},
+    {"stale_gain", &SafetySpec::stale_gain, between(0, 100)},
+    {"evade_margin_m", &SafetySpec::evade_margin_m, between(0, 100)},
     {"neighbour_margin_m", &SafetySpec::neighbour_margin_m, between(0, 100)},
     {"obstacle_margin_m", &SafetySpec::obstacle_margin_m, between(0, 100)},
     {"follow_share", &SafetySpec::follow_share, between(0, 1)},

@@ -220,6 +220,7 @@ Result<World> World::make(Box bounds_m, std::vector<Obstacle> obstacles,
   if (!velocities_mps.empty()) {
     for (ConvexObstacle& part : world.convex_obstacles_) {
       part.velocity_mps = velocities_mps[part.obstacle];
+      world.fastest_mps_ = std::max(world.fastest_mps_, part.velocity_mps.norm());
     }
   }
   world.obstacles_ = std::move(obstacles);

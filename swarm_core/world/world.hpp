@@ -83,6 +83,9 @@ class World {
   /// The obstacles, non-convex ones decomposed into convex parts.
   const std::vector<ConvexObstacle>& convex_obstacles() const { return convex_obstacles_; }
 
+  /// Speed of the fastest obstacle [m/s].
+  double fastest_mps() const { return fastest_mps_; }
+
   /// The boxes of the convex obstacles, for what asks only about those near a place.
   const BoxIndex& convex_boxes() const { return convex_boxes_; }
 
@@ -105,6 +108,7 @@ class World {
   Box bounds_m_;
   std::vector<Obstacle> obstacles_;
   std::vector<ConvexObstacle> convex_obstacles_;
+  double fastest_mps_ = 0.0;
   BoxIndex boxes_;         // of obstacles_
   BoxIndex convex_boxes_;  // of convex_obstacles_
 };

@@ -74,8 +74,11 @@ double fly_crowd(std::vector<Body>& bodies, const World& world, int steps, std::
         const double age = kPeriod_s * (step - heard[i].step[j]);
         const Vec2 at = heard[i].position[j] + age * heard[i].velocity[j];
         if ((at - bodies[i].position).norm() > 6.0) continue;
-        neighbours.push_back(
-            {RobotId(static_cast<std::uint32_t>(j)), at, heard[i].velocity[j], kRadius_m});
+        neighbours.push_back({.robot = RobotId(static_cast<std::uint32_t>(j)),
+                              .position_m = at,
+                              .velocity_mps = heard[i].velocity[j],
+                              .radius_m = kRadius_m,
+                              .stale_s = age});
       }
       const Vec2 way = bodies[i].goal - bodies[i].position;
       const Vec2 wish = way.norm() > 1e-9
@@ -113,7 +116,7 @@ TEST(SafetyFilter, KeepsItsMarginWhenEveryoneIsHeardAtOnce) {
 
     // What β gives up in one step when the neighbour it follows stops: β v_max Δt, below the
     // margin.
-    EXPECT_GT(least, 0.25 - 0.5 * 1.5 * kPeriod_s);
+    EXPECT_GT(least, 0.3 - 0.8 * 1.5 * kPeriod_s);
   }
 }
 
