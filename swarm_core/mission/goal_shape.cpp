@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "swarm_core/gmm/fit_mixture.hpp"
+#include "swarm_core/gmm/image_boxes.hpp"
 #include "swarm_core/gmm/shape_patches.hpp"
 #include "swarm_core/mission/bitmap_file.hpp"
 #include "swarm_core/mission/mission_fields.hpp"
@@ -27,12 +28,29 @@ constexpr std::size_t kMaxShapeVertices = 1'000;
 constexpr double kMaxChosenComponents = 64;
 constexpr yaml::Range kCoordinate_m = between(-kMaxExtent_m, kMaxExtent_m);
 
+std::optional<Polygon> read_vertices(const Node& node, const std::string& path,
+                                     yaml::Violations& violations) {
+  const auto* items = yaml::read_list(node, path, 3, kMaxShapeVertices, violations);
+  if (items == nullptr) return std::nullopt;
+  std::vector<Vec2> vertices_m;
+  for (std::size_t i = 0; i < items->size(); ++i) {
+    const auto p = yaml::read_numbers((*items)[i], fmt::format("{}[{}]", path, i), 2, kCoordinate_m,
+                                      violations);
+    if (p) vertices_m.emplace_back((*p)[0], (*p)[1]);
+  }
+  if (vertices_m.size() != items->size()) return std::nullopt;
+  auto polygon = Polygon::make(std::move(vertices_m));
+  if (polygon) return *std::move(polygon);
+  violations.add(node.at, fmt::format("{}: {}", path, polygon.error().message));
+  return std::nullopt;
+}
+
 class GoalShapeReader {
  public:
   GoalShapeReader(std::filesystem::path directory, yaml::Violations& violations)
       : directory_(std::move(directory)), violations_(violations) {}
 
-  std::optional<Mixture> read(const Node& node, const std::string& path) {
+  std::optional<DrawnGoal> read(const Node& node, const std::string& path) {
     MapReader keys(node, path, violations_);
     const Node* polygon = keys.take("polygon_m");
     const Node* bitmap = keys.take("bitmap");
@@ -48,7 +66,7 @@ class GoalShapeReader {
     if (!patches || !options) return std::nullopt;
     Rng rng(kFitSeed);
     auto fit = fit_mixture(*patches, *options, rng);
-    if (fit) return std::move(fit->mixture);
+    if (fit) return DrawnGoal{std::move(fit->mixture), std::move(shape_)};
     violations_.add(node.at, fmt::format("{}: {}", path, fit.error().message));
     return std::nullopt;
   }
@@ -79,19 +97,16 @@ class GoalShapeReader {
   }
 
   std::optional<std::vector<Patch>> read_polygon(const Node& node, const std::string& path) {
-    const auto* items = yaml::read_list(node, path, 3, kMaxShapeVertices, violations_);
-    if (items == nullptr) return std::nullopt;
-    std::vector<Vec2> vertices_m;
-    for (std::size_t i = 0; i < items->size(); ++i) {
-      const auto p = yaml::read_numbers((*items)[i], fmt::format("{}[{}]", path, i), 2,
-                                        kCoordinate_m, violations_);
-      if (p) vertices_m.emplace_back((*p)[0], (*p)[1]);
-    }
-    if (vertices_m.size() != items->size()) return std::nullopt;
-    const auto polygon = Polygon::make(std::move(vertices_m));
-    if (polygon) return polygon_patches(*polygon);
-    violations_.add(node.at, fmt::format("{}: {}", path, polygon.error().message));
-    return std::nullopt;
+    auto polygon = read_vertices(node, path, violations_);
+    if (!polygon) return std::nullopt;
+    auto patches = polygon_patches(*polygon);
+    keep_shape({*std::move(polygon)}, {});
+    return patches;
+  }
+
+  void keep_shape(std::vector<Polygon> polygons, std::vector<Box> boxes_m) {
+    auto shape = ShapeField::make(std::move(polygons), std::move(boxes_m));
+    if (shape) shape_ = std::make_shared<const ShapeField>(*std::move(shape));
   }
 
   std::optional<std::vector<Patch>> read_bitmap(const Node& node, const std::string& path) {
@@ -109,7 +124,10 @@ class GoalShapeReader {
       return std::nullopt;
     }
     auto patches = image_patches(*image, *frame);
-    if (!patches.empty()) return patches;
+    if (!patches.empty()) {
+      keep_shape({}, image_boxes(*image, *frame));
+      return patches;
+    }
     violations_.add(file_node->at,
                     fmt::format("{}.file: {} has no {} pixel; draw the shape, or set dark to {}",
                                 path, *file, frame->dark ? "dark" : "bright", !frame->dark));
@@ -145,14 +163,48 @@ class GoalShapeReader {
 
   std::filesystem::path directory_;
   yaml::Violations& violations_;
+  std::shared_ptr<const ShapeField> shape_;
 };
 
 }  // namespace
 
-std::optional<Mixture> read_goal_shape(const Node& node, const std::string& path,
-                                       const std::filesystem::path& directory,
-                                       yaml::Violations& violations) {
+std::optional<DrawnGoal> read_goal_shape(const Node& node, const std::string& path,
+                                         const std::filesystem::path& directory,
+                                         yaml::Violations& violations) {
   return GoalShapeReader(directory, violations).read(node, path);
+}
+
+std::shared_ptr<const ShapeField> read_shape_field(const Node& node, const std::string& path,
+                                                   yaml::Violations& violations) {
+  MapReader keys(node, path, violations);
+  bool good = keys.is_map();
+  std::vector<Polygon> polygons;
+  std::vector<Box> boxes_m;
+  if (const Node* value = keys.take("polygons_m")) {
+    const std::string list = keys.path_of("polygons_m");
+    const auto* items = yaml::read_list(*value, list, 0, kShapeBoxes, violations);
+    for (std::size_t i = 0; items != nullptr && i < items->size(); ++i) {
+      auto polygon = read_vertices((*items)[i], fmt::format("{}[{}]", list, i), violations);
+      if (polygon) polygons.push_back(*std::move(polygon));
+    }
+    good = good && items != nullptr && polygons.size() == items->size();
+  }
+  if (const Node* value = keys.take("boxes_m")) {
+    const std::string list = keys.path_of("boxes_m");
+    const auto* items = yaml::read_list(*value, list, 0, kShapeBoxes, violations);
+    for (std::size_t i = 0; items != nullptr && i < items->size(); ++i) {
+      const auto b = yaml::read_numbers((*items)[i], fmt::format("{}[{}]", list, i), 4,
+                                        kCoordinate_m, violations);
+      if (b) boxes_m.push_back({.min_m = {(*b)[0], (*b)[1]}, .max_m = {(*b)[2], (*b)[3]}});
+    }
+    good = good && items != nullptr && boxes_m.size() == items->size();
+  }
+  keys.finish();
+  if (!good) return nullptr;
+  auto shape = ShapeField::make(std::move(polygons), std::move(boxes_m));
+  if (shape) return std::make_shared<const ShapeField>(*std::move(shape));
+  violations.add(node.at, fmt::format("{}: {}", path, shape.error().message));
+  return nullptr;
 }
 
 }  // namespace swarm

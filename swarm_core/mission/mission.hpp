@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <variant>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "swarm_core/mission/phase.hpp"
 #include "swarm_core/mission/scene.hpp"
 #include "swarm_core/risk/cvar.hpp"
+#include "swarm_core/world/shape_field.hpp"
 #include "swarm_core/world/world.hpp"
 
 namespace swarm {
@@ -147,6 +149,7 @@ struct Mission {
   RobotsSpec robots;
   Mixture start;
   Mixture goal;
+  std::shared_ptr<const ShapeField> goal_shape;  ///< the drawing `goal` was fitted to; null = none
   PlannerSpec planner;
   ControlSpec control;
   SafetySpec safety;

@@ -14,6 +14,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "swarm_core/mission/goal_shape.hpp"
 #include "swarm_core/mission/mission_fields.hpp"
 #include "swarm_core/mission/mission_rules.hpp"
 #include "swarm_core/mission/scene_change_file.hpp"
@@ -48,7 +49,8 @@ class MissionReader {
     if (const Node* node = top.take("robots")) read_robots(*node);
     if (const Node* node = top.take("world", true)) read_world(*node);
     mission_.start = read_mixture(top, "start");
-    mission_.goal = read_mixture(top, "goal");
+    mission_.goal = read_mixture(top, "goal", &mission_.goal_shape);
+    if (const Node* node = top.take("goal_shape")) read_drawing(*node);
     read_section(top, "planner", mission_.planner, mission_fields::kPlanner);
     read_section(top, "control", mission_.control, mission_fields::kControl);
     read_section(top, "safety", mission_.safety, mission_fields::kSafety);
@@ -208,13 +210,26 @@ class MissionReader {
     return obstacles;
   }
 
-  Mixture read_mixture(MapReader& top, const std::string& key) {
+  /// Of a resolved mission, whose goal is the mixture fitted to it.
+  void read_drawing(const Node& node) {
+    if (mission_.goal_shape != nullptr) {
+      violations_.add(node.at,
+                      "goal_shape stands beside a goal that is a shape itself; must be "
+                      "left out, or beside a list of components");
+      return;
+    }
+    mission_.goal_shape = read_shape_field(node, "goal_shape", violations_);
+  }
+
+  Mixture read_mixture(MapReader& top, const std::string& key,
+                       std::shared_ptr<const ShapeField>* drawing = nullptr) {
     const Node* node = top.take(key, true);
     if (node == nullptr) return {};
     return shapes_
         .read_mixture(
             *node, key,
-            {.world = has_world_ ? &mission_.world : nullptr, .radius_m = mission_.robots.radius_m})
+            {.world = has_world_ ? &mission_.world : nullptr, .radius_m = mission_.robots.radius_m},
+            drawing)
         .value_or(Mixture{});
   }
 

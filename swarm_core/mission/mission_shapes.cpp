@@ -90,8 +90,9 @@ std::optional<Obstacle> ShapeReader::read_circle(const Node& node, const std::st
 }
 
 std::optional<Mixture> ShapeReader::read_mixture(const Node& node, const std::string& path,
-                                                 const MeanRule& rule) {
-  if (node.kind == Node::Kind::kMap) return read_shape(node, path, rule);
+                                                 const MeanRule& rule,
+                                                 std::shared_ptr<const ShapeField>* drawing) {
+  if (node.kind == Node::Kind::kMap) return read_shape(node, path, rule, drawing);
   const auto* items = yaml::read_list(node, path, 1, mission_fields::kMaxComponents, violations_);
   if (items == nullptr) return std::nullopt;
   std::vector<WeightedGaussian> components;
@@ -107,14 +108,17 @@ std::optional<Mixture> ShapeReader::read_mixture(const Node& node, const std::st
 }
 
 std::optional<Mixture> ShapeReader::read_shape(const Node& node, const std::string& path,
-                                               const MeanRule& rule) {
-  auto mixture = read_goal_shape(node, path, directory_, violations_);
-  if (!mixture) return std::nullopt;
-  for (std::size_t i = 0; i < mixture->components().size(); ++i) {
+                                               const MeanRule& rule,
+                                               std::shared_ptr<const ShapeField>* drawing) {
+  auto drawn = read_goal_shape(node, path, directory_, violations_);
+  if (!drawn) return std::nullopt;
+  const auto& components = drawn->mixture.components();
+  for (std::size_t i = 0; i < components.size(); ++i) {
     check_mean(node.at, fmt::format("{}: mean of fitted component {}", path, i),
-               mixture->components()[i].gaussian.mean_m(), rule);
+               components[i].gaussian.mean_m(), rule);
   }
-  return mixture;
+  if (drawing != nullptr) *drawing = std::move(drawn->shape);
+  return std::move(drawn->mixture);
 }
 
 std::optional<WeightedGaussian> ShapeReader::read_component(const Node& node,

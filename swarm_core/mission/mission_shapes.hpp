@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -10,6 +11,7 @@
 
 #include "swarm_core/gmm/mixture.hpp"
 #include "swarm_core/mission/yaml_reader.hpp"
+#include "swarm_core/world/shape_field.hpp"
 #include "swarm_core/world/world.hpp"
 
 namespace swarm {
@@ -37,9 +39,10 @@ class ShapeReader {
   std::optional<Box> read_bounds(const yaml::Node& node);
 
   /// A list of components with mean_m, covariance_m2 and weight, or a shape to fit them to
-  /// (goal_shape.hpp).
+  /// (goal_shape.hpp). `drawing`, if given, is set to that shape.
   std::optional<Mixture> read_mixture(const yaml::Node& node, const std::string& path,
-                                      const MeanRule& rule);
+                                      const MeanRule& rule,
+                                      std::shared_ptr<const ShapeField>* drawing = nullptr);
 
  private:
   std::optional<Obstacle> read_polygon(const yaml::Node& node, const std::string& path);
@@ -51,7 +54,8 @@ class ShapeReader {
                   const MeanRule& rule);
 
   std::optional<Mixture> read_shape(const yaml::Node& node, const std::string& path,
-                                    const MeanRule& rule);
+                                    const MeanRule& rule,
+                                    std::shared_ptr<const ShapeField>* drawing);
 
   yaml::Violations& violations_;
   std::filesystem::path directory_;

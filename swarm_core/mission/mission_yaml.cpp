@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
 #include <iterator>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -44,6 +45,23 @@ void write_mixture(Out out, std::string_view key, const Mixture& mixture) {
     const Mat2& c = gaussian.covariance_m2();
     fmt::format_to(out, "  - mean_m: {}\n    covariance_m2: [[{}, {}], [{}, {}]]\n    weight: {}\n",
                    point(gaussian.mean_m()), c(0, 0), c(0, 1), c(1, 0), c(1, 1), weight);
+  }
+}
+
+void write_shape(Out out, const ShapeField& shape) {
+  fmt::format_to(out, "goal_shape:\n");
+  if (!shape.polygons().empty()) fmt::format_to(out, "  polygons_m:\n");
+  for (const Polygon& polygon : shape.polygons()) {
+    std::string_view before = "    - [";
+    for (const Vec2& vertex : polygon.vertices_m()) {
+      fmt::format_to(out, "{}{}", std::exchange(before, ", "), point(vertex));
+    }
+    fmt::format_to(out, "]\n");
+  }
+  if (!shape.boxes_m().empty()) fmt::format_to(out, "  boxes_m:\n");
+  for (const Box& box : shape.boxes_m()) {
+    fmt::format_to(out, "    - [{}, {}, {}, {}]\n", box.min_m.x(), box.min_m.y(), box.max_m.x(),
+                   box.max_m.y());
   }
 }
 
@@ -97,6 +115,7 @@ std::string to_yaml(const Mission& mission) {
   write_robots(out, mission.robots);
   write_mixture(out, "start", mission.start);
   write_mixture(out, "goal", mission.goal);
+  if (mission.goal_shape) write_shape(out, *mission.goal_shape);
   fmt::format_to(out, "planner:\n  method: {}\n  sampler: {}\n  density_cap: {}\n",
                  mission.planner.method, mission.planner.sampler, mission.planner.density_cap);
   write_fields(out, mission.planner, mission_fields::kPlanner);

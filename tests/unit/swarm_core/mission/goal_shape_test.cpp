@@ -87,6 +87,28 @@ TEST(GoalShape, BecomesAnOrdinaryMixtureOfTheResolvedMission) {
   }
 }
 
+TEST(GoalShape, DrawingSurvivesInTheResolvedMission) {
+  for (const char* goal :
+       {"{bitmap: {file: pictures/bars.pbm, origin_m: [50, 20], pixel_m: 5.1}, components: 2}",
+        "{polygon_m: [[20, 30], [80, 30.3], [50, 90], [50, 40]], components: 2}"}) {
+    const auto mission = with_goal(goal);
+    ASSERT_TRUE(mission.has_value()) << mission.error().message;
+    ASSERT_NE(mission->goal_shape, nullptr);
+
+    const auto again = parse_mission(to_yaml(*mission), "resolved");
+
+    ASSERT_TRUE(again.has_value()) << again.error().message;
+    ASSERT_NE(again->goal_shape, nullptr);
+    EXPECT_EQ(again->goal_shape->polygons(), mission->goal_shape->polygons());
+    ASSERT_EQ(again->goal_shape->boxes_m().size(), mission->goal_shape->boxes_m().size());
+    for (std::size_t i = 0; i < again->goal_shape->boxes_m().size(); ++i) {
+      EXPECT_EQ(again->goal_shape->boxes_m()[i].min_m, mission->goal_shape->boxes_m()[i].min_m);
+      EXPECT_EQ(again->goal_shape->boxes_m()[i].max_m, mission->goal_shape->boxes_m()[i].max_m);
+    }
+    EXPECT_EQ(to_yaml(*again), to_yaml(*mission));
+  }
+}
+
 TEST(GoalShape, MayBeAStart) {
   const auto mission = parse_mission(
       "version: 1\n"
