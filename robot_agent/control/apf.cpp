@@ -14,7 +14,7 @@ void Apf::begin(const Route& route, const World& world) {
   pursuit_ = Pursuit(route.path, world, options_.pursuit);
   density_ = DensityAttraction(route.stations, options_.density);
   watch_ = GoalWatch(route.goal, pursuit_.end_m());
-  kick_.forget();
+  escape_.forget();
 }
 
 bool Apf::has_arrived(const ControlView& view) {
@@ -28,16 +28,20 @@ Vec2 Apf::repulsion(const ControlView& view) const {
 
 Vec2 Apf::wish(const ControlView& view, bool arrived, Rng& rng) {
   const Pursuit::Aim aim = pursuit_.update(view.position_m, view.world);
-  const Vec2 kick = kick_.update(view.now, pursuit_.progress_m(), !arrived, rng);
+  const auto escape = escape_.update(view, pursuit_.progress_m(), !arrived, rng);
   const Vec2 avoid = repulsion(view);
+  if (escape) {
+    const double left_m = (*escape - view.position_m).norm();
+    return attraction(view.position_m, *escape, left_m, options_.attraction) + avoid;
+  }
   if (arrived && aim.left_m < kAtRest_m) return avoid;
-  Vec2 pull = attraction(view.position_m, aim.point_m, aim.left_m, options_.attraction) + kick;
+  Vec2 pull = attraction(view.position_m, aim.point_m, aim.left_m, options_.attraction);
   if (!arrived) pull += density_.pull(view.position_m, pursuit_.progress_m(), view.neighbours);
   return pull + avoid;
 }
 
 Vec2 Apf::hold(const ControlView& view) {
-  kick_.forget();
+  escape_.forget();
   return repulsion(view);
 }
 

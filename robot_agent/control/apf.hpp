@@ -5,7 +5,7 @@
 #include "robot_agent/control/attraction.hpp"
 #include "robot_agent/control/control_method.hpp"
 #include "robot_agent/control/density_attraction.hpp"
-#include "robot_agent/control/diffusion_kick.hpp"
+#include "robot_agent/control/diffusion_escape.hpp"
 #include "robot_agent/control/neighbour_repulsion.hpp"
 #include "robot_agent/control/obstacle_repulsion.hpp"
 #include "robot_agent/control/pursuit.hpp"
@@ -19,7 +19,7 @@ struct ApfOptions {
   DensityAttractionOptions density;
   NeighbourRepulsionOptions neighbour_repulsion;
   ObstacleRepulsionOptions obstacle_repulsion;
-  KickOptions kick;
+  EscapeOptions escape;
 };
 
 /// The artificial potential field of SwarmPRM and ROVER [SwarmPRM, eq. 14]:
@@ -27,11 +27,11 @@ struct ApfOptions {
 ///   u = −∂(w₁U_att + w₂U_rep)/∂x
 ///
 /// with flow tracking (pursuit of the own way, attraction.hpp) and the pull towards the planned
-/// density (density_attraction.hpp) for U_att, neighbours and obstacles for U_rep, and diffusion
-/// where the sum of them has a local minimum.
+/// density (density_attraction.hpp) for U_att, neighbours and obstacles for U_rep, and
+/// intermittent diffusion where the sum of them has a local minimum.
 class Apf final : public ControlMethod {
  public:
-  explicit Apf(const ApfOptions& options) : options_(options), kick_(options.kick) {}
+  explicit Apf(const ApfOptions& options) : options_(options), escape_(options.escape) {}
 
   void begin(const Route& route, const World& world) override;
   bool has_arrived(const ControlView& view) override;
@@ -39,7 +39,7 @@ class Apf final : public ControlMethod {
   Vec2 hold(const ControlView& view) override;
   std::uint32_t goal(const Vec2&) const override { return sink_; }
   double remaining_m() const override { return pursuit_.remaining_m(); }
-  std::uint32_t escapes() const override { return kick_.kicks(); }
+  std::uint32_t escapes() const override { return escape_.escapes(); }
 
  private:
   Vec2 repulsion(const ControlView& view) const;
@@ -47,7 +47,7 @@ class Apf final : public ControlMethod {
   ApfOptions options_;
   Pursuit pursuit_;
   DensityAttraction density_;
-  DiffusionKick kick_;
+  DiffusionEscape escape_;
   GoalWatch watch_;
   std::uint32_t sink_ = 0;
 };

@@ -91,9 +91,9 @@ struct ControlSpec {
   double obstacle_gap_m = 0.5;      ///< obstacles nearer than this push
   double obstacle_push_mps = 1.0;
   double approach_gain_hz = 0.8;  ///< P-gain towards the aim point near the end
-  double stuck_after_s = 4.0;     ///< no progress for this long → diffusion kick
-  double kick_mps = 0.8;          ///< σ of the kick's velocity
-  double kick_s = 1.5;            ///< duration of one kick
+  double stuck_after_s = 4.0;     ///< no progress for this long → diffusion to a place nearby
+  double escape_spread_m = 4.0;   ///< largest standard deviation per axis of such places
+  double escape_s = 5.0;          ///< longest way to one
 };
 
 struct SafetySpec {

@@ -98,8 +98,8 @@ inline constexpr std::array<Field<ControlSpec>, 13> kControl{{
     {"obstacle_push_mps", &ControlSpec::obstacle_push_mps, between(0, 100)},
     {"approach_gain_hz", &ControlSpec::approach_gain_hz, positive(1000)},
     {"stuck_after_s", &ControlSpec::stuck_after_s, positive(3600)},
-    {"kick_mps", &ControlSpec::kick_mps, between(0, 100)},
-    {"kick_s", &ControlSpec::kick_s, between(0, 600)},
+    {"escape_spread_m", &ControlSpec::escape_spread_m, between(0, 1000)},
+    {"escape_s", &ControlSpec::escape_s, between(0, 600)},
 }};
 
 inline constexpr std::array<Field<SafetySpec>, 6> kSafety{{

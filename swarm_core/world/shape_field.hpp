@@ -34,7 +34,8 @@ class ShapeField {
   };
 
   /// O(pieces that can be the nearest in one cell of a grid); farther from S than half its size the
-  /// pieces are searched. 20 ns for the picture of a letter (276 boxes). Does not allocate.
+  /// pieces are searched. 155 ns on average in and around the picture of a letter (276 boxes),
+  /// whose middle all boxes of a bow may be nearest to. Does not allocate.
   Value at(const Vec2& point_m) const;
 
   /// What it was made of.
