@@ -33,6 +33,9 @@ double nearest_gap_m(const ControlView& view, double radius_m) {
 }
 
 std::unique_ptr<ControlMethod> make_method(const AgentOptions& options) {
+  if (options.method == "intermittent_diffusion") {
+    return std::make_unique<IntermittentDiffusion>(options.diffusion);
+  }
   return std::make_unique<Apf>(options.apf);
 }
 
@@ -66,6 +69,23 @@ AgentOptions agent_options(const Mission& mission, RobotId robot, std::uint64_t 
                          .duration = from_seconds(c.escape_s),
                          .spread_m = c.escape_spread_m,
                          .radius_m = body.radius_m}},
+      .diffusion = {.shape = mission.goal_shape,
+                    .goal = mission.goal,
+                    .repulsion = {.strength_m2 = c.diffusion_strength_m2,
+                                  .range_m = c.diffusion_range_m > 0.0 ? c.diffusion_range_m
+                                                                       : 10.0 * body.radius_m},
+                    .diffusion = {.noise_mps05 = c.diffusion_noise_mps05,
+                                  .time_s = c.diffusion_time_s,
+                                  .clearance_m = body.radius_m + mission.safety.obstacle_margin_m},
+                    .obstacles = {.radius_m = body.radius_m,
+                                  .gap_m = c.obstacle_gap_m,
+                                  .push_mps = c.obstacle_push_mps},
+                    .radius_m = body.radius_m,
+                    .tolerance_m2 = c.diffusion_tolerance_m2,
+                    .gain_hz = c.diffusion_gain_hz,
+                    .cruise_mps = cruise_mps,
+                    .period = period,
+                    .flow_time = from_seconds(c.diffusion_flow_s)},
       .safety = {.radius_m = body.radius_m,
                  .speed_max_mps = body.speed_max_mps,
                  .period = period,
@@ -106,6 +126,7 @@ void Agent::accept_plan(const FlowPlan& plan, const Vec2& position_m,
           ? route_from_source(plan, entry->source, entry->share, position_m, *world_, o)
       : moved_ || entry ? route_from_here(plan, options_.share, position_m, *world_, o)
                         : route_from_start(plan, options_.share, position_m, *world_, o);
+  method_->see_goals(plan);
   method_->begin(route, *world_);
   has_route_ = true;
   plan_digest_ = plan.digest();

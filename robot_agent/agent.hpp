@@ -8,6 +8,7 @@
 
 #include "robot_agent/control/apf.hpp"
 #include "robot_agent/control/control_method.hpp"
+#include "robot_agent/control/intermittent_diffusion.hpp"
 #include "robot_agent/control/route.hpp"
 #include "robot_agent/control/safety_filter.hpp"
 #include "robot_agent/neighbour_table.hpp"
@@ -25,6 +26,7 @@ struct AgentOptions {
   std::string method = "apf";  ///< of control
   RouteOptions route;
   ApfOptions apf;
+  IntermittentDiffusionOptions diffusion;
   SafetyOptions safety;
   NeighbourOptions neighbours;
   SayOptions say;

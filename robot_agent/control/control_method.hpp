@@ -9,6 +9,7 @@
 #include "robot_agent/neighbour_table.hpp"
 #include "swarm_core/base/random.hpp"
 #include "swarm_core/base/time.hpp"
+#include "swarm_core/plan/flow_plan.hpp"
 #include "swarm_core/world/world.hpp"
 
 namespace swarm::agent {
@@ -27,6 +28,9 @@ struct ControlView {
 class ControlMethod {
  public:
   virtual ~ControlMethod() = default;
+
+  /// The plan that the robot's way is taken from, told before begin().
+  virtual void see_goals(const FlowPlan& /*plan*/) {}
 
   /// The robot has a way, or another one.
   virtual void begin(const Route& route, const World& world) = 0;

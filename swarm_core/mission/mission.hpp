@@ -94,6 +94,14 @@ struct ControlSpec {
   double stuck_after_s = 4.0;     ///< no progress for this long → diffusion to a place nearby
   double escape_spread_m = 4.0;   ///< largest standard deviation per axis of such places
   double escape_s = 5.0;          ///< longest way to one
+  // intermittent_diffusion, Alg. 1 of its paper
+  double diffusion_strength_m2 = 0.01;    ///< G₀
+  double diffusion_range_m = 0.0;         ///< R; 0 = 10 robots.radius_m
+  double diffusion_tolerance_m2 = 0.045;  ///< of a robot's F + G
+  double diffusion_gain_hz = 4.0;         ///< speed per gradient, as far as the step bound allows
+  double diffusion_flow_s = 2.5;          ///< longest gradient flow before diffusing (i_max steps)
+  double diffusion_noise_mps05 = 3.0;     ///< largest σ of the virtual diffusion [m/√s]
+  double diffusion_time_s = 10.0;         ///< its longest duration; 0 = plain gradient descent
 };
 
 struct SafetySpec {

@@ -86,7 +86,7 @@ inline constexpr std::array<Field<PlannerSpec>, 20> kPlanner{{
     {"crops_goal_radius_m", &PlannerSpec::crops_goal_radius_m, between(0.1, 1000)},
 }};
 
-inline constexpr std::array<Field<ControlSpec>, 13> kControl{{
+inline constexpr std::array<Field<ControlSpec>, 20> kControl{{
     {"rate_hz", &ControlSpec::rate_hz, between(0.5, 1000)},
     {"cruise_mps", &ControlSpec::cruise_mps, positive(100)},
     {"look_ahead_s", &ControlSpec::look_ahead_s, between(0, 600)},
@@ -100,6 +100,13 @@ inline constexpr std::array<Field<ControlSpec>, 13> kControl{{
     {"stuck_after_s", &ControlSpec::stuck_after_s, positive(3600)},
     {"escape_spread_m", &ControlSpec::escape_spread_m, between(0, 1000)},
     {"escape_s", &ControlSpec::escape_s, between(0, 600)},
+    {"diffusion_strength_m2", &ControlSpec::diffusion_strength_m2, positive(1000)},
+    {"diffusion_range_m", &ControlSpec::diffusion_range_m, between(0, 1000)},
+    {"diffusion_tolerance_m2", &ControlSpec::diffusion_tolerance_m2, positive(1000)},
+    {"diffusion_gain_hz", &ControlSpec::diffusion_gain_hz, positive(1000)},
+    {"diffusion_flow_s", &ControlSpec::diffusion_flow_s, positive(3600)},
+    {"diffusion_noise_mps05", &ControlSpec::diffusion_noise_mps05, between(0, 1000)},
+    {"diffusion_time_s", &ControlSpec::diffusion_time_s, between(0, 3600)},
 }};
 
 inline constexpr std::array<Field<SafetySpec>, 6> kSafety{{

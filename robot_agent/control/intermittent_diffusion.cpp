@@ -1,0 +1,167 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "robot_agent/control/intermittent_diffusion.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "robot_agent/control/shape_attraction.hpp"
+#include "swarm_core/base/assert.hpp"
+
+namespace swarm::agent {
+namespace {
+
+constexpr double kChiSquared2Dof90 = 4.605170185988091;
+constexpr double kReachShare = 0.05;     // of the distance to the nearest neighbour
+constexpr double kLeaveTolerance = 1.1;  // an arrived robot stays so up to this share
+constexpr double kRoom = 0.9;            // of the tolerance: here a robot on its way may stay
+constexpr double kReached = 1.0;         // radii from the target
+
+bool is_goal_of(const Mixture& mixture, const Gaussian& g) {
+  constexpr double kSame_m = 1e-6;
+  return std::any_of(mixture.components().begin(), mixture.components().end(), [&](const auto& c) {
+    return (c.gaussian.mean_m() - g.mean_m()).norm() < kSame_m;
+  });
+}
+
+}  // namespace
+
+ShapeField shape_of(const std::vector<WeightedGaussian>& components) {
+  constexpr int kCorners = 32;
+  std::vector<Polygon> ellipses;
+  for (const WeightedGaussian& c : components) {
+    const Mat2 root = std::sqrt(kChiSquared2Dof90) * cholesky_lower(c.gaussian.covariance_m2());
+    std::vector<Vec2> corners;
+    for (int i = 0; i < kCorners; ++i) {
+      const double angle = 2.0 * std::numbers::pi * i / kCorners;
+      corners.emplace_back(c.gaussian.mean_m() + root * Vec2(std::cos(angle), std::sin(angle)));
+    }
+    if (auto polygon = Polygon::make(std::move(corners))) ellipses.push_back(*std::move(polygon));
+  }
+  auto shape = ShapeField::make(std::move(ellipses));
+  SWARM_ASSERT(shape.has_value());
+  return *std::move(shape);
+}
+
+IntermittentDiffusion::IntermittentDiffusion(const IntermittentDiffusionOptions& options)
+    : options_(options), shape_(options.shape) {}
+
+void IntermittentDiffusion::see_goals(const FlowPlan& plan) {
+  goals_.clear();
+  bool drawn = options_.shape != nullptr;
+  for (const std::uint32_t sink : plan.sinks()) {
+    const PlanNode& node = plan.nodes()[sink];
+    goals_.push_back({node.mass, node.gaussian});
+    drawn = drawn && is_goal_of(options_.goal, node.gaussian);
+  }
+  // Another goal than the mission's is known by its mixture alone.
+  shape_ = drawn ? options_.shape : std::make_shared<const ShapeField>(shape_of(goals_));
+}
+
+void IntermittentDiffusion::begin(const Route& route, const World&) {
+  if (goals_.empty()) goals_.push_back({1.0, route.goal});
+  if (shape_ == nullptr) shape_ = std::make_shared<const ShapeField>(shape_of(goals_));
+  begun_ = false;
+  arrived_ = false;
+}
+
+std::uint32_t IntermittentDiffusion::goal(const Vec2& position_m) const {
+  const auto density = [&](const WeightedGaussian& g) {
+    // The logarithm, so that far from all goals they still differ.
+    return std::log(g.weight) - 0.5 * g.gaussian.mahalanobis_squared(position_m) -
+           0.5 * std::log(g.gaussian.determinant());
+  };
+  const auto best =
+      std::max_element(goals_.begin(), goals_.end(),
+                       [&](const auto& a, const auto& b) { return density(a) < density(b); });
+  return static_cast<std::uint32_t>(best - goals_.begin());
+}
+
+double IntermittentDiffusion::reach_m(const ControlView& view) const {
+  double nearest_squared = options_.repulsion.range_m * options_.repulsion.range_m;
+  for (const Neighbour& n : view.neighbours) {
+    nearest_squared = std::min(nearest_squared, (n.position_m - view.position_m).squaredNorm());
+  }
+  return kReachShare * std::sqrt(nearest_squared);
+}
+
+Potential IntermittentDiffusion::own_potential(const ControlView& view) const {
+  Potential v =
+      cotangent_repulsion(view.position_m, view.neighbours, options_.repulsion, reach_m(view));
+  v += shape_attraction(view.position_m, *shape_);
+  return v;
+}
+
+Vec2 IntermittentDiffusion::descend(const Potential& potential, double reach_m) const {
+  const double period_s = to_seconds(options_.period);
+  const double gain_hz = std::min(options_.gain_hz, 1.0 / (potential.curvature * period_s));
+  const Vec2 wish_mps = -gain_hz * potential.gradient_m;
+  const double limit_mps = std::min(options_.cruise_mps, reach_m / period_s);
+  const double speed_mps = wish_mps.norm();
+  return speed_mps > limit_mps ? Vec2(limit_mps / speed_mps * wish_mps) : wish_mps;
+}
+
+bool IntermittentDiffusion::has_arrived(const ControlView& view) {
+  const Potential v = own_potential(view);
+  energy_m2_ = v.energy_m2;
+  const double limit = (arrived_ ? kLeaveTolerance : 1.0) * options_.tolerance_m2;
+  return arrived_ = v.energy_m2 <= limit;
+}
+
+void IntermittentDiffusion::enter(Phase phase, const ControlView& view, Rng& rng) {
+  phase_ = phase;
+  begun_ = true;
+  const double flow_s = to_seconds(options_.flow_time);
+  // Robots of a crowd must not leave it all at once; on the way there is time to give way.
+  until_ = view.now + from_seconds(phase == Phase::kShape
+                                       ? uniform(rng, 0.2, 1.0) * flow_s
+                                       : flow_s + 2.0 * target_.width_m / options_.cruise_mps);
+}
+
+void IntermittentDiffusion::diffuse(const ControlView& view, Rng& rng) {
+  const DiffusionPotential potential{shape_.get(), view.neighbours, options_.repulsion};
+  const Vec2 end_m =
+      virtual_diffusion(view.position_m, potential, view.world, true, options_.diffusion, rng);
+  target_ = target_from(view.position_m, end_m, options_.radius_m);
+  ++diffusions_;
+  enter(Phase::kTarget, view, rng);
+}
+
+Vec2 IntermittentDiffusion::wish(const ControlView& view, bool, Rng& rng) {
+  const double reach = reach_m(view);
+  Potential v = cotangent_repulsion(view.position_m, view.neighbours, options_.repulsion, reach);
+  const Potential f = shape_attraction(view.position_m, *shape_);
+  energy_m2_ = v.energy_m2 + f.energy_m2;
+  if (!begun_) enter(Phase::kShape, view, rng);
+
+  const double to_target_m = (target_.end_m - view.position_m).norm();
+  if (phase_ == Phase::kTarget &&
+      (view.now >= until_ || to_target_m < kReached * options_.radius_m ||
+       energy_m2_ <= kRoom * options_.tolerance_m2)) {
+    enter(Phase::kShape, view, rng);
+  } else if (phase_ == Phase::kShape && view.now >= until_) {
+    const bool diffuses = energy_m2_ > options_.tolerance_m2 && options_.diffusion.time_s > 0.0;
+    if (diffuses) {
+      diffuse(view, rng);
+    } else {
+      enter(Phase::kShape, view, rng);
+    }
+  }
+
+  const bool to_target = phase_ == Phase::kTarget;
+  v += to_target ? target_attraction(view.position_m, target_) : f;
+  remaining_m_ = to_target ? to_target_m : std::sqrt(f.energy_m2);
+  return descend(v, reach) + obstacle_repulsion(view.position_m, view.world, options_.obstacles);
+}
+
+Vec2 IntermittentDiffusion::hold(const ControlView& view) {
+  begun_ = false;
+  const double reach = reach_m(view);
+  return descend(cotangent_repulsion(view.position_m, view.neighbours, options_.repulsion, reach),
+                 reach) +
+         obstacle_repulsion(view.position_m, view.world, options_.obstacles);
+}
+
+}  // namespace swarm::agent
