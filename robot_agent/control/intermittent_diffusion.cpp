@@ -64,6 +64,7 @@ void IntermittentDiffusion::begin(const Route& route, const World&) {
   if (goals_.empty()) goals_.push_back({1.0, route.goal});
   if (shape_ == nullptr) shape_ = std::make_shared<const ShapeField>(shape_of(goals_));
   begun_ = false;
+  felt_.reset();
   arrived_ = false;
 }
 
@@ -87,11 +88,14 @@ double IntermittentDiffusion::reach_m(const ControlView& view) const {
   return kReachShare * std::sqrt(nearest_squared);
 }
 
-Potential IntermittentDiffusion::own_potential(const ControlView& view) const {
-  Potential v =
-      cotangent_repulsion(view.position_m, view.neighbours, options_.repulsion, reach_m(view));
-  v += shape_attraction(view.position_m, *shape_);
-  return v;
+const IntermittentDiffusion::Felt& IntermittentDiffusion::feel(const ControlView& view) {
+  if (felt_ && felt_->at == view.now) return *felt_;
+  const double reach = reach_m(view);
+  felt_ = {view.now, reach,
+           cotangent_repulsion(view.position_m, view.neighbours, options_.repulsion, reach),
+           shape_attraction(view.position_m, *shape_)};
+  energy_m2_ = felt_->repulsion.energy_m2 + felt_->shape.energy_m2;
+  return *felt_;
 }
 
 Vec2 IntermittentDiffusion::descend(const Potential& potential, double reach_m) const {
@@ -104,10 +108,9 @@ Vec2 IntermittentDiffusion::descend(const Potential& potential, double reach_m) 
 }
 
 bool IntermittentDiffusion::has_arrived(const ControlView& view) {
-  const Potential v = own_potential(view);
-  energy_m2_ = v.energy_m2;
+  feel(view);
   const double limit = (arrived_ ? kLeaveTolerance : 1.0) * options_.tolerance_m2;
-  return arrived_ = v.energy_m2 <= limit;
+  return arrived_ = energy_m2_ <= limit;
 }
 
 void IntermittentDiffusion::enter(Phase phase, const ControlView& view, Rng& rng) {
@@ -130,10 +133,7 @@ void IntermittentDiffusion::diffuse(const ControlView& view, Rng& rng) {
 }
 
 Vec2 IntermittentDiffusion::wish(const ControlView& view, bool, Rng& rng) {
-  const double reach = reach_m(view);
-  Potential v = cotangent_repulsion(view.position_m, view.neighbours, options_.repulsion, reach);
-  const Potential f = shape_attraction(view.position_m, *shape_);
-  energy_m2_ = v.energy_m2 + f.energy_m2;
+  const Felt& felt = feel(view);
   if (!begun_) enter(Phase::kShape, view, rng);
 
   const double to_target_m = (target_.end_m - view.position_m).norm();
@@ -151,16 +151,17 @@ Vec2 IntermittentDiffusion::wish(const ControlView& view, bool, Rng& rng) {
   }
 
   const bool to_target = phase_ == Phase::kTarget;
-  v += to_target ? target_attraction(view.position_m, target_) : f;
-  remaining_m_ = to_target ? to_target_m : std::sqrt(f.energy_m2);
-  return descend(v, reach) + obstacle_repulsion(view.position_m, view.world, options_.obstacles);
+  Potential v = felt.repulsion;
+  v += to_target ? target_attraction(view.position_m, target_) : felt.shape;
+  remaining_m_ = to_target ? to_target_m : std::sqrt(felt.shape.energy_m2);
+  return descend(v, felt.reach_m) +
+         obstacle_repulsion(view.position_m, view.world, options_.obstacles);
 }
 
 Vec2 IntermittentDiffusion::hold(const ControlView& view) {
   begun_ = false;
-  const double reach = reach_m(view);
-  return descend(cotangent_repulsion(view.position_m, view.neighbours, options_.repulsion, reach),
-                 reach) +
+  const Felt& felt = feel(view);
+  return descend(felt.repulsion, felt.reach_m) +
          obstacle_repulsion(view.position_m, view.world, options_.obstacles);
 }
 

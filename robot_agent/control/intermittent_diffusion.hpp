@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "robot_agent/control/control_method.hpp"
@@ -66,10 +67,17 @@ class IntermittentDiffusion final : public ControlMethod {
 
  private:
   enum class Phase { kShape, kTarget };
+  /// What it feels at a tick: asked by has_arrived() and wish(), taken once.
+  struct Felt {
+    SteadyTime at;
+    double reach_m = 0.0;
+    Potential repulsion;  // G
+    Potential shape;      // F
+  };
 
+  const Felt& feel(const ControlView& view);
   void enter(Phase phase, const ControlView& view, Rng& rng);
   void diffuse(const ControlView& view, Rng& rng);
-  Potential own_potential(const ControlView& view) const;
   double reach_m(const ControlView& view) const;
   Vec2 descend(const Potential& potential, double reach_m) const;
 
@@ -80,6 +88,7 @@ class IntermittentDiffusion final : public ControlMethod {
   bool begun_ = false;  // a phase is on
   SteadyTime until_;    // of the phase
   Target target_;
+  std::optional<Felt> felt_;
   bool arrived_ = false;
   double energy_m2_ = 0.0;
   double remaining_m_ = 0.0;

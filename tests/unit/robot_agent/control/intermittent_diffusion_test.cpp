@@ -188,9 +188,11 @@ TEST(IntermittentDiffusion, ArrivesWithHysteresis) {
   method.begin(Route{}, mission.world);
   const Vec2 on_letter_m(3.6, 0.35);
   // Alone, F + G is the squared distance to the stroke's edge, 0.25 m from its middle.
+  SteadyTime now;
   const auto arrived_off_by = [&](double squared_m2) {
+    now += std::chrono::milliseconds(10);
     const Vec2 p = on_letter_m + Vec2(0.25 + std::sqrt(squared_m2), 0.0);
-    return method.has_arrived({SteadyTime{}, p, {}, mission.world});
+    return method.has_arrived({now, p, {}, mission.world});
   };
 
   EXPECT_FALSE(arrived_off_by(0.06));
