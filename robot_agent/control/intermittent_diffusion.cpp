@@ -14,10 +14,11 @@ namespace swarm::agent {
 namespace {
 
 constexpr double kChiSquared2Dof90 = 4.605170185988091;
-constexpr double kReachShare = 0.05;     // of the distance to the nearest neighbour
-constexpr double kLeaveTolerance = 1.1;  // an arrived robot stays so up to this share
-constexpr double kRoom = 0.9;            // of the tolerance: here a robot on its way may stay
-constexpr double kReached = 1.0;         // radii from the target
+constexpr double kReachShare = 0.05;  // of the distance to the nearest neighbour
+constexpr double kArrive = 0.97;      // of the tolerance; once arrived all of it
+constexpr double kRest = 2.0;         // slopes of g at R: less moves no arrived robot
+constexpr double kRoom = 0.9;         // of the tolerance: here a robot on its way may stay
+constexpr double kReached = 1.0;      // radii from the target
 
 bool is_goal_of(const Mixture& mixture, const Gaussian& g) {
   constexpr double kSame_m = 1e-6;
@@ -64,6 +65,7 @@ void IntermittentDiffusion::begin(const Route& route, const World&) {
   if (goals_.empty()) goals_.push_back({1.0, route.goal});
   if (shape_ == nullptr) shape_ = std::make_shared<const ShapeField>(shape_of(goals_));
   begun_ = false;
+  resting_ = false;
   felt_.reset();
   arrived_ = false;
 }
@@ -95,6 +97,7 @@ const IntermittentDiffusion::Felt& IntermittentDiffusion::feel(const ControlView
            cotangent_repulsion(view.position_m, view.neighbours, options_.repulsion, reach),
            shape_attraction(view.position_m, *shape_)};
   energy_m2_ = felt_->repulsion.energy_m2 + felt_->shape.energy_m2;
+  arrived_ = energy_m2_ <= (arrived_ ? 1.0 : kArrive) * options_.tolerance_m2;
   return *felt_;
 }
 
@@ -109,8 +112,7 @@ Vec2 IntermittentDiffusion::descend(const Potential& potential, double reach_m) 
 
 bool IntermittentDiffusion::has_arrived(const ControlView& view) {
   feel(view);
-  const double limit = (arrived_ ? kLeaveTolerance : 1.0) * options_.tolerance_m2;
-  return arrived_ = energy_m2_ <= limit;
+  return arrived_;
 }
 
 void IntermittentDiffusion::enter(Phase phase, const ControlView& view, Rng& rng) {
@@ -142,10 +144,10 @@ Vec2 IntermittentDiffusion::wish(const ControlView& view, bool, Rng& rng) {
        energy_m2_ <= kRoom * options_.tolerance_m2)) {
     enter(Phase::kShape, view, rng);
   } else if (phase_ == Phase::kShape && view.now >= until_) {
-    const bool diffuses = energy_m2_ > options_.tolerance_m2 && options_.diffusion.time_s > 0.0;
-    if (diffuses) {
+    if (!arrived_ && options_.diffusion.time_s > 0.0) {
       diffuse(view, rng);
     } else {
+      resting_ = options_.diffusion.time_s > 0.0;
       enter(Phase::kShape, view, rng);
     }
   }
@@ -154,6 +156,11 @@ Vec2 IntermittentDiffusion::wish(const ControlView& view, bool, Rng& rng) {
   Potential v = felt.repulsion;
   v += to_target ? target_attraction(view.position_m, target_) : felt.shape;
   remaining_m_ = to_target ? to_target_m : std::sqrt(felt.shape.energy_m2);
+  // Else pairs would step to and fro over the corner of g at R for ever.
+  const CotangentOptions& g = options_.repulsion;
+  const double rest_m = kRest * g.strength_m2 * std::numbers::pi / g.range_m;
+  resting_ = resting_ && arrived_ && !to_target;
+  if (resting_ && v.gradient_m.norm() < rest_m) v.gradient_m.setZero();
   return descend(v, felt.reach_m) +
          obstacle_repulsion(view.position_m, view.world, options_.obstacles);
 }

@@ -163,6 +163,51 @@ TEST(IntermittentDiffusion, FormsALetterWhereGradientDescentStalls) {
   EXPECT_EQ(descent.diffusions(), 0U);
 }
 
+TEST(IntermittentDiffusion, AgentsThatHearEachOtherByDeadReckoningComeToRest) {
+  const Mission mission = letter_q();
+  const auto& goals = mission.goal.components();
+  std::vector<PlanNode> nodes{{mission.start.components()[0].gaussian, MissionTime(0), 1.0}};
+  std::vector<PlanLeg> legs;
+  for (std::uint32_t i = 0; i < goals.size(); ++i) {
+    nodes.push_back({goals[i].gaussian, MissionTime(10), goals[i].weight});
+    legs.push_back({0, i + 1, goals[i].weight});
+  }
+  const FlowPlan plan = *FlowPlan::make(nodes, legs);
+  std::vector<Vec2> positions_m = *place_robots(mission, 1);
+  const auto robots = static_cast<std::uint32_t>(positions_m.size());
+  std::vector<Agent> agents;
+  for (std::uint32_t i = 0; i < robots; ++i) {
+    agents.emplace_back(mission.world, agent_options(mission, RobotId(i), 1));
+    agents.back().accept_plan(plan, positions_m[i]);
+  }
+  std::vector<AgentOutput> outputs(robots);
+  for (AgentOutput& output : outputs) output.say = true;
+  SteadyTime now{std::chrono::seconds(1000)};
+  const Duration period = from_seconds(1.0 / mission.control.rate_hz);
+
+  std::size_t settled = 0;
+  for (std::uint32_t step = 1; step < 6000 && settled < robots; ++step, now += period) {
+    for (std::uint32_t j = 0; j < robots; ++j) {
+      if (!outputs[j].say) continue;
+      for (std::uint32_t i = 0; i < robots; ++i) {
+        if (i == j) continue;
+        agents[i].hear({RobotId(j), step, now, positions_m[j], outputs[j].velocity_mps},
+                       positions_m[i]);
+      }
+    }
+    settled = 0;
+    for (std::uint32_t i = 0; i < robots; ++i) {
+      outputs[i] = agents[i].tick({now, positions_m[i], MissionPhase::kRunning, true});
+      settled += outputs[i].settled ? 1 : 0;
+    }
+    for (std::uint32_t i = 0; i < robots; ++i) {
+      positions_m[i] += to_seconds(period) * outputs[i].velocity_mps;
+    }
+  }
+
+  EXPECT_EQ(settled, robots);
+}
+
 TEST(IntermittentDiffusion, StepsKeepTheBoundAndLoseEnergy) {
   Mission mission = letter_q();
   mission.control.diffusion_time_s = 0.0;
