@@ -14,6 +14,7 @@
 #include "swarm_launcher/plan.hpp"
 #include "swarm_launcher/run.hpp"
 #include "swarm_launcher/simulation/simulate.hpp"
+#include "swarm_launcher/table/table.hpp"
 
 int main(int argc, char** argv) {
   using namespace swarm;
@@ -90,6 +91,16 @@ int main(int argc, char** argv) {
                                  "Run directory (default: runs/<mission>-<time>)");
     simulate_command->add_flag("--json", simulate.json, "Print the summary as JSON");
 
+    launcher::TableOptions table;
+    CLI::App* table_command = app.add_subcommand(
+        "table", "Simulate a paper's experiment: its table, its peers and ours side by side");
+    table_command->add_option("which", table.which, "swarmprm, rover, crops or diffusion")
+        ->required()
+        ->check(CLI::IsMember({"swarmprm", "rover", "crops", "diffusion"}));
+    table_command->add_flag("--quick", table.quick, "Fewer robots and seeds");
+    table_command->add_option("--missions", table.missions, "Where the mission files are");
+    table_command->add_option("--out", table.out, "Directory for Markdown, JSON and pictures");
+
     std::filesystem::path run_dir;
     std::vector<std::string> words;
     CLI::App* command = app.add_subcommand(
@@ -118,6 +129,7 @@ int main(int argc, char** argv) {
     simulate.clocks_in_step = !clocks_apart;
     simulate.record = !no_record;
     if (simulate_command->parsed()) return launcher::simulate_mission(simulate);
+    if (table_command->parsed()) return launcher::make_table(table);
     return launcher::command_mission(run_dir, fmt::format("{}", fmt::join(words, " ")));
   });
 }

@@ -1,0 +1,108 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "swarm_launcher/table/flown.hpp"
+
+#include <atomic>
+#include <chrono>
+#include <optional>
+#include <thread>
+
+#include "swarm_core/shell/stop_signal.hpp"
+#include "swarm_monitor/audit.hpp"
+#include "swarm_monitor/report.hpp"
+
+namespace swarm::launcher {
+namespace {
+
+// Distances to obstacles are looked at in every so manieth step.
+constexpr std::size_t kRiskEvery = 5;
+
+class PlanKept final : public SimulationObserver {
+ public:
+  void on_plan(std::uint32_t version, const planner::PlanResult& planned) override {
+    if (version == 1) first = planned.plan;
+  }
+  void on_scene(const Scene& scene, const SceneChange&) override { scenes.push_back(scene); }
+  std::optional<FlowPlan> first;
+  std::vector<Scene> scenes;
+};
+
+double risk_share(const monitor::RecordedRun& run) {
+  const double near_m = -run.mission.planner.risk_delta_m;
+  std::size_t looked = 0;
+  std::size_t inside = 0;
+  for (const monitor::Track& track : run.tracks) {
+    for (std::size_t k = 0; k < track.points.size(); k += kRiskEvery) {
+      if (track.points[k].mode != RobotMode::kMoving) continue;
+      ++looked;
+      if (run.mission.world.distance_m(track.points[k].position_m) < near_m) ++inside;
+    }
+  }
+  return looked == 0 ? 0.0 : static_cast<double>(inside) / static_cast<double>(looked);
+}
+
+}  // namespace
+
+Result<Flown> fly(const Mission& mission, const SimulationOptions& options, bool draw) {
+  const auto begin = std::chrono::steady_clock::now();
+  Recording recording(mission, Simulation::begin_utc(), true);
+  PlanKept plan;
+  plan.scenes.push_back(first_scene(mission.world.obstacles().size()));
+  auto simulation = Simulation::make(mission, options, recording, plan);
+  if (!simulation) return tl::unexpected(simulation.error());
+  while ((*simulation)->step()) {
+    if (shell::stop_requests() > 0) (*simulation)->interrupt();
+  }
+  Flown flown{.seed = options.seed,
+              .outcome = (*simulation)->outcome(),
+              .wall_s = to_seconds(std::chrono::steady_clock::now() - begin)};
+  const Simulation::Cost cost = (*simulation)->cost();
+  const monitor::AuditedRun audited = monitor::audit_recorded({.mission = mission,
+                                                               .plan = plan.first,
+                                                               .begin = Simulation::begin_utc(),
+                                                               .tracks = recording.tracks(),
+                                                               .scenes = plan.scenes});
+  const monitor::Audit& audit = audited.audit;
+  flown.robots = audit.robots;
+  flown.arrived = audit.arrived;
+  flown.contacts = audit.collisions_robot + audit.collisions_obstacle;
+  flown.plan_ms = cost.plan_ms;
+  flown.ns_per_agent_step = cost.median_step_ns;
+  flown.mission_s = audit.mission_s.value_or(0.0);
+  flown.path_m = audit.mean_path_m.value_or(0.0);
+  flown.bound_m = audit.geodesic_bound_m.value_or(0.0);
+  flown.robot_gap_m = audit.min_robot_gap_m.value_or(0.0);
+  flown.obstacle_gap_m = audit.min_obstacle_gap_m.value_or(0.0);
+  for (const double gap_m : audited.obstacles.by_robot_m) {
+    flown.clearance_m += gap_m / static_cast<double>(audited.obstacles.by_robot_m.size());
+  }
+  flown.risk_share = risk_share(audited.run);
+  if (draw) flown.paths_svg = monitor::paths_svg(audited);
+  return flown;
+}
+
+Result<std::vector<Flown>> fly_seeds(const Mission& mission, std::uint32_t seeds) {
+  std::vector<std::optional<Result<Flown>>> results(seeds);
+  std::atomic<std::uint32_t> next = 0;
+  const auto work = [&] {
+    for (std::uint32_t i = next++; i < seeds && shell::stop_requests() == 0; i = next++) {
+      SimulationOptions options;
+      options.seed = i + 1;
+      results[i] = fly(mission, options, i == 0);
+    }
+  };
+  {
+    std::vector<std::jthread> others;
+    for (unsigned i = 1; i < std::thread::hardware_concurrency(); ++i) others.emplace_back(work);
+    work();
+  }
+  std::vector<Flown> flown;
+  for (std::optional<Result<Flown>>& result : results) {
+    if (!result) return fail(ErrorCode::kEnvironment, "interrupted");
+    if (!*result) return tl::unexpected(result->error());
+    flown.push_back(**std::move(result));
+  }
+  return flown;
+}
+
+}  // namespace swarm::launcher

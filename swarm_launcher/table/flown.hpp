@@ -1,0 +1,46 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "swarm_core/base/result.hpp"
+#include "swarm_core/mission/mission.hpp"
+#include "swarm_launcher/simulation/simulation.hpp"
+
+namespace swarm::launcher {
+
+/// What a table keeps of one simulated and audited mission.
+struct Flown {
+  std::uint64_t seed = 0;
+  Outcome outcome = Outcome::kNone;
+  std::uint32_t robots = 0;
+  std::uint32_t arrived = 0;
+  std::uint32_t contacts = 0;  ///< pairs of robots, and robots with obstacles
+  double wall_s = 0.0;         ///< planning and flying
+  double plan_ms = 0.0;
+  double ns_per_agent_step = 0.0;
+  double mission_s = 0.0;
+  double path_m = 0.0;   ///< mean over the robots
+  double bound_m = 0.0;  ///< geodesic, over their own begins and ends
+  double robot_gap_m = 0.0;
+  double obstacle_gap_m = 0.0;
+  /// Mean over the robots of the least clearance of each, at most 2 m.
+  double clearance_m = 0.0;
+  /// Share of robot-time nearer to an obstacle than planner.risk_delta_m allows: −sdf > δ.
+  double risk_share = 0.0;
+  std::string paths_svg{};  ///< if it was asked for
+
+  double ratio() const { return bound_m > 0.0 ? path_m / bound_m : 0.0; }
+};
+
+/// Simulates and audits in memory.
+Result<Flown> fly(const Mission& mission, const SimulationOptions& options, bool draw);
+
+/// The same for seeds 1 … `seeds`, as many at a time as there are cores; the first one is drawn.
+/// Fails if one of them cannot be planned.
+Result<std::vector<Flown>> fly_seeds(const Mission& mission, std::uint32_t seeds);
+
+}  // namespace swarm::launcher

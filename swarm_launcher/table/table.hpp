@@ -1,0 +1,25 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "swarm_core/base/result.hpp"
+
+namespace swarm::launcher {
+
+struct TableOptions {
+  std::string which;   ///< swarmprm, rover, crops or diffusion
+  bool quick = false;  ///< fewer robots and seeds, to see that it works
+  std::filesystem::path missions = "deploy/missions";
+  std::filesystem::path
+      out;  ///< directory for the table (Markdown, JSON) and pictures; empty: none
+};
+
+/// `swarm_launcher table`: a paper's experiment, simulated, with the paper's and its peers' figures
+/// beside ours. The table goes to stdout as Markdown, progress to stderr. What the papers' metres
+/// and minutes can be compared to is told by docs/BENCHMARKS.md: their obstacles are not published.
+Result<ExitCode> make_table(const TableOptions& options);
+
+}  // namespace swarm::launcher
