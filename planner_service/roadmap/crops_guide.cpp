@@ -171,10 +171,13 @@ Result<void> CropsGuide::move_ends(const Mixture& start, const Mixture& goal) {
 // Returns how many there was room for.
 std::size_t CropsGuide::add_samples(std::size_t count, HaltonMeans& means) {
   const double clearance_m = std::max(options_.clearance_min_m, edge_clearance_m_);
+  // The bounds are walls to robots: a gap beside them is as wide as one between obstacles.
+  const Box& bounds = world_->bounds_m();
+  const Box inside{bounds.min_m.array() + clearance_m, bounds.max_m.array() - clearance_m};
   std::size_t added = 0;
   for (std::size_t tries = kTriesPerSample * count; tries > 0 && added < count; --tries) {
     const Vec2 point_m = means.next();
-    if (!world_->is_clear(point_m, clearance_m)) continue;
+    if (!inside.contains(point_m) || !world_->is_clear(point_m, clearance_m)) continue;
     points_m_.push_back(point_m);
     ++added;
   }

@@ -24,8 +24,8 @@ struct CropsOptions {
   std::size_t samples = 300;          ///< N
   double connection_radius_m = 4.0;   ///< 80 px
   std::uint32_t neighbours_max = 20;  ///< k: at most so many edges are asked for by a node
-  double clearance_min_m = 0.5;       ///< 10 px; nodes nearer to an obstacle are discarded
-  double sigma_min_m = 0.05;          ///< edges have room for it: clearance ≥ k σ_min − δ
+  double clearance_min_m = 0.5;  ///< 10 px; nodes nearer to an obstacle or the bounds are discarded
+  double sigma_min_m = 0.05;     ///< edges have room for it: clearance ≥ k σ_min − δ
   /// p: 3 in the paper, 1 in its code. On the scenes of the code, paths at p = 1 are up to 18 %
   /// longer than the shortest on the graph, at p = 3 up to 23 %; around scattered obstacles p = 3
   /// may double the way.

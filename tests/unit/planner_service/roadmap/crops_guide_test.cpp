@@ -94,6 +94,24 @@ TEST(CropsGuide, GuidesThroughTheScenesOfItsCodeOnEverySeed) {
   }
 }
 
+TEST(CropsGuide, KeepsOffTheBoundsAsOffObstacles) {
+  // Beside the block a gap of 0.85 m to the bounds, on its other side one of 4 m.
+  const World world = World::make({{0, 0}, {20, 20}}, {box(0.85, 9, 16, 11)}).value();
+  CropsOptions options;
+  options.clearance_power = 0.0;  // the shortest
+  Rng rng(1);
+
+  const auto guide =
+      CropsGuide::make(world, single(2.5, 4, 0.5), single(2.5, 16, 0.5), {}, options, rng);
+
+  ASSERT_TRUE(guide.has_value()) << guide.error().message;
+  double farthest_x_m = 0.0;
+  for (const Gaussian& g : guide->routes()[0].waypoints) {
+    farthest_x_m = std::max(farthest_x_m, g.mean_m().x());
+  }
+  EXPECT_GT(farthest_x_m, 16.0);
+}
+
 TEST(CropsGuide, IsTheUnionOfEachNodesNearestVisibleNeighbours) {
   const Mission mission = crops_scene("s");
   CropsOptions options;
