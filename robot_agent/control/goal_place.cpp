@@ -1,0 +1,79 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "robot_agent/control/goal_place.hpp"
+
+#include <algorithm>
+
+namespace swarm::agent {
+namespace {
+
+constexpr double kNear_m = 1.0;
+constexpr double kProgress_m = 0.1;
+constexpr Duration kBlockedAfter = std::chrono::seconds(2);
+constexpr double kAtRest_m = 0.1;  // from the place: stay
+constexpr double kRim = 8.2;       // squared Mahalanobis distance; the 99 % ellipse is at 9.21
+
+}  // namespace
+
+GoalPlace::GoalPlace(const Gaussian& goal, const Vec2& place_m, const GoalPlaceOptions& options)
+    : options_(options), goal_(goal), place_m_(place_m) {}
+
+bool GoalPlace::has_arrived(SteadyTime now, const Vec2& position_m) {
+  const bool inside = goal_.contains_99(position_m);
+  if (arrived_) {
+    if (!inside) nearest_m_ = std::numeric_limits<double>::infinity();
+    return arrived_ = inside;
+  }
+  const double left_m = (aim_m() - position_m).norm();
+  if (left_m < nearest_m_ - kProgress_m) {
+    nearest_m_ = left_m;
+    progress_at_ = now;
+  }
+  if (now - progress_at_ > kBlockedAfter) {
+    if (inside) {
+      place_m_ = position_m;
+      blocked_ = false;
+    } else {
+      blocked_ = !blocked_;
+    }
+    nearest_m_ = std::numeric_limits<double>::infinity();
+  }
+  return arrived_ = inside && (place_m_ - position_m).norm() < kNear_m;
+}
+
+Vec2 GoalPlace::room(const ControlView& view) const {
+  const double own = goal_.mahalanobis_squared(view.position_m);
+  Vec2 push = Vec2::Zero();
+  for (const Neighbour& n : view.neighbours) {
+    const Vec2 away_m = view.position_m - n.position_m;
+    const double distance_m = away_m.norm();
+    const double lacking_m = options_.radius_m + n.radius_m + options_.room_gap_m - distance_m;
+    if (lacking_m <= 0.0 || distance_m < 1e-9) continue;
+    const double its = goal_.mahalanobis_squared(n.position_m);
+    const double share = its > kChiSquared2Dof99 ? options_.outside_share
+                         : its > own             ? 1.0
+                                                 : options_.inner_share;
+    push += share * lacking_m / distance_m * away_m;
+  }
+  return options_.room_gain_hz * push;
+}
+
+Vec2 GoalPlace::keep(const ControlView& view) {
+  Vec2 push = room(view);
+  // Not out of the goal for anybody's sake.
+  if (goal_.mahalanobis_squared(view.position_m) > kRim) {
+    const Vec2 inwards = (goal_.mean_m() - view.position_m).normalized();
+    push -= std::min(0.0, push.dot(inwards)) * inwards;
+  }
+  if (push != Vec2::Zero()) {
+    place_m_ = view.position_m;
+    return push;
+  }
+  const Vec2 way_m = place_m_ - view.position_m;
+  const double left_m = way_m.norm();
+  if (left_m < kAtRest_m) return Vec2::Zero();
+  const double speed = std::min(options_.approach_max_mps, options_.approach_gain_hz * left_m);
+  return speed / left_m * way_m;
+}
+
+}  // namespace swarm::agent

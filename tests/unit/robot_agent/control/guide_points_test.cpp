@@ -1,0 +1,72 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "robot_agent/control/guide_points.hpp"
+
+#include <gtest/gtest.h>
+
+namespace swarm::agent {
+namespace {
+
+// A wall that the way goes around:
+//
+//   12   . 1 ------ 2 .
+//   10       ####
+//    5   0   ####     3
+//
+World walled() {
+  return World::make({{0, 0}, {20, 20}},
+                     {Polygon::make({{8, 0}, {12, 0}, {12, 10}, {8, 10}}).value()})
+      .value();
+}
+
+const Polyline kWay({{2, 5}, {6, 12}, {14, 12}, {18, 5}});
+
+TEST(GuidePoints, GoesForTheFarthestInSight) {
+  GuidePoints sut(kWay, {.sight_m = 30.0});
+
+  EXPECT_EQ(sut.update({2, 5}, walled()), Vec2(6, 12));
+  EXPECT_FALSE(sut.is_last());
+  EXPECT_NEAR(sut.remaining_m({2, 5}), kWay.length_m(), 1e-9);
+}
+
+TEST(GuidePoints, GoesOnWithinTheGoalRadius) {
+  GuidePoints sut(kWay, {.goal_radius_m = 1.0, .sight_m = 0.0, .look_every = 1});
+
+  EXPECT_EQ(sut.update({2, 5.5}, walled()), Vec2(6, 12));
+  EXPECT_EQ(sut.update({5, 11.5}, walled()), Vec2(6, 12));
+  EXPECT_EQ(sut.update({5.5, 11.5}, walled()), Vec2(14, 12));
+}
+
+TEST(GuidePoints, FallsBackToTheLastItSees) {
+  GuidePoints sut(kWay, {.sight_m = 30.0, .look_every = 1});
+  ASSERT_EQ(sut.update({10, 13}, walled()), Vec2(18, 5));  // over the wall
+  ASSERT_TRUE(sut.is_last());
+
+  EXPECT_EQ(sut.update({6, 8}, walled()), Vec2(6, 12));  // pushed back behind it
+}
+
+TEST(GuidePoints, KeepsItsPointWhenItSeesNone) {
+  const World cell = World::make({{0, 0}, {20, 20}},
+                                 {Polygon::make({{1, 1}, {4, 1}, {4, 1.5}, {1, 1.5}}).value(),
+                                  Polygon::make({{1, 3}, {4, 3}, {4, 3.5}, {1, 3.5}}).value(),
+                                  Polygon::make({{0.5, 1}, {1, 1}, {1, 3.5}, {0.5, 3.5}}).value(),
+                                  Polygon::make({{4, 1}, {4.5, 1}, {4.5, 3.5}, {4, 3.5}}).value()})
+                         .value();
+  GuidePoints sut(kWay, {.look_every = 1});
+
+  const Vec2 before = sut.update({6, 12}, cell);
+  EXPECT_EQ(sut.update({2.5, 2.25}, cell), before);
+}
+
+TEST(GuidePoints, EndsAtTheEnd) {
+  GuidePoints sut(kWay, {.look_every = 1});
+  for (const Vec2& p : {Vec2(2, 5), Vec2(6, 12), Vec2(14, 12), Vec2(18, 5), Vec2(18, 5)}) {
+    sut.update(p, walled());
+  }
+
+  EXPECT_TRUE(sut.is_last());
+  EXPECT_NEAR(sut.remaining_m({18, 6}), 1.0, 1e-12);
+}
+
+}  // namespace
+}  // namespace swarm::agent
