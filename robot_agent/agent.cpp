@@ -3,6 +3,7 @@
 #include "robot_agent/agent.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "swarm_core/mission/placement.hpp"
@@ -32,10 +33,34 @@ double nearest_gap_m(const ControlView& view, double radius_m) {
   return nearest_m;
 }
 
+CropsOptions crops_options(const Mission& mission, const BodySpec& body) {
+  const ControlSpec& c = mission.control;
+  const double cruise_mps = std::min(c.cruise_mps, body.speed_max_mps);
+  const auto ticks = [&](double time_s) {
+    return static_cast<std::size_t>(std::max(1.0, std::round(time_s * c.rate_hz)));
+  };
+  // In a crowd gaps are as small as the filter's margin: what acts in contact begins a hand above.
+  const double near_gap_m = mission.safety.neighbour_margin_m + 0.15;
+  return {
+      .cruise_mps = cruise_mps,
+      .approach_gain_hz = c.approach_gain_hz,
+      .guide = {.radius_m = body.radius_m,
+                .goal_radius_m = mission.planner.crops_goal_radius_m,
+                .sight_m = c.look_ahead_s * cruise_mps},
+      .place = {.radius_m = body.radius_m,
+                .room_gap_m = near_gap_m,
+                .approach_gain_hz = c.approach_gain_hz},
+      .obstacle = {.radius_m = body.radius_m},
+      .give_way = {.radius_m = body.radius_m, .gap_m = near_gap_m},
+      .escape = {.window = ticks(c.stuck_after_s), .step = ticks(c.escape_s)},
+  };
+}
+
 std::unique_ptr<ControlMethod> make_method(const AgentOptions& options) {
   if (options.method == "intermittent_diffusion") {
     return std::make_unique<IntermittentDiffusion>(options.diffusion);
   }
+  if (options.method == "crops") return std::make_unique<Crops>(options.crops);
   return std::make_unique<Apf>(options.apf);
 }
 
@@ -86,6 +111,7 @@ AgentOptions agent_options(const Mission& mission, RobotId robot, std::uint64_t 
                     .cruise_mps = cruise_mps,
                     .period = period,
                     .flow_time = from_seconds(c.diffusion_flow_s)},
+      .crops = crops_options(mission, body),
       .safety = {.radius_m = body.radius_m,
                  .speed_max_mps = body.speed_max_mps,
                  .period = period,

@@ -8,6 +8,7 @@
 
 #include "robot_agent/control/apf.hpp"
 #include "robot_agent/control/control_method.hpp"
+#include "robot_agent/control/crops.hpp"
 #include "robot_agent/control/intermittent_diffusion.hpp"
 #include "robot_agent/control/route.hpp"
 #include "robot_agent/control/safety_filter.hpp"
@@ -27,6 +28,7 @@ struct AgentOptions {
   RouteOptions route;
   ApfOptions apf;
   IntermittentDiffusionOptions diffusion;
+  CropsOptions crops;
   SafetyOptions safety;
   NeighbourOptions neighbours;
   SayOptions say;
