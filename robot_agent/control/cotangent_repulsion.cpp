@@ -42,8 +42,11 @@ Potential cotangent_repulsion(const Vec2& position_m, std::span<const Neighbour>
     if (d_squared >= range_squared) continue;
     const Cotangent c = cotangent(0.5 * k * d_squared);
     sum.energy_m2 += options.strength_m2 * c.cot;
-    sum.gradient_m -= options.strength_m2 * c.csc_squared * k * away;
-    const double nearer_m = std::max(least_m, std::sqrt(d_squared) - 2.0 * reach_m);
+    const double d_m = std::sqrt(d_squared);
+    const double left = 1.0 - d_m / options.range_m;
+    const double fade = left < options.fade_share ? left / options.fade_share : 1.0;
+    sum.gradient_m -= fade * options.strength_m2 * c.csc_squared * k * away;
+    const double nearer_m = std::max(least_m, d_m - 2.0 * reach_m);
     sum.curvature += 2.0 * bend(nearer_m * nearer_m, k, options.strength_m2);
   }
   return sum;

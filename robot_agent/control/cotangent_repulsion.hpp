@@ -12,6 +12,9 @@ namespace swarm::agent {
 struct CotangentOptions {
   double strength_m2 = 0.01;  ///< G₀
   double range_m = 1.0;       ///< R, from centre to centre
+  /// The slope fades to 0 over this share of R below R; 0: exact, with a corner there. Robots at
+  /// rest need it: over a corner pairs step to and fro for ever.
+  double fade_share = 0.0;
 };
 
 /// Repulsion of a robot by those it senses [intermittent diffusion, eq. 7 and section 5]:

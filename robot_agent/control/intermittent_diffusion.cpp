@@ -15,8 +15,8 @@ namespace {
 
 constexpr double kChiSquared2Dof90 = 4.605170185988091;
 constexpr double kReachShare = 0.05;  // of the distance to the nearest neighbour
-constexpr double kArrive = 0.97;      // of the tolerance; once arrived all of it
-constexpr double kRest = 2.0;         // slopes of g at R: less moves no arrived robot
+constexpr double kArrive = 0.99;      // of the tolerance; once arrived all of it
+constexpr double kFadeAtRest = 0.1;   // of the range, see CotangentOptions
 constexpr double kRoom = 0.9;         // of the tolerance: here a robot on its way may stay
 constexpr double kReached = 1.0;      // radii from the target
 
@@ -93,8 +93,9 @@ double IntermittentDiffusion::reach_m(const ControlView& view) const {
 const IntermittentDiffusion::Felt& IntermittentDiffusion::feel(const ControlView& view) {
   if (felt_ && felt_->at == view.now) return *felt_;
   const double reach = reach_m(view);
-  felt_ = {view.now, reach,
-           cotangent_repulsion(view.position_m, view.neighbours, options_.repulsion, reach),
+  CotangentOptions repulsion = options_.repulsion;
+  if (resting_) repulsion.fade_share = kFadeAtRest;
+  felt_ = {view.now, reach, cotangent_repulsion(view.position_m, view.neighbours, repulsion, reach),
            shape_attraction(view.position_m, *shape_)};
   energy_m2_ = felt_->repulsion.energy_m2 + felt_->shape.energy_m2;
   arrived_ = energy_m2_ <= (arrived_ ? 1.0 : kArrive) * options_.tolerance_m2;
@@ -156,11 +157,7 @@ Vec2 IntermittentDiffusion::wish(const ControlView& view, bool, Rng& rng) {
   Potential v = felt.repulsion;
   v += to_target ? target_attraction(view.position_m, target_) : felt.shape;
   remaining_m_ = to_target ? to_target_m : std::sqrt(felt.shape.energy_m2);
-  // Else pairs would step to and fro over the corner of g at R for ever.
-  const CotangentOptions& g = options_.repulsion;
-  const double rest_m = kRest * g.strength_m2 * std::numbers::pi / g.range_m;
   resting_ = resting_ && arrived_ && !to_target;
-  if (resting_ && v.gradient_m.norm() < rest_m) v.gradient_m.setZero();
   return descend(v, felt.reach_m) +
          obstacle_repulsion(view.position_m, view.world, options_.obstacles);
 }

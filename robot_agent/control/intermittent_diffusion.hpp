@@ -39,8 +39,8 @@ struct IntermittentDiffusionOptions {
 /// The paper diffuses all robots together. Here only one whose own F + G stays above tolerance
 /// does, after a random time, so that of a crowd some leave and the others find room, and on its
 /// way it stays wherever F + G is within tolerance. Arrived robots stay on (10): they yield to
-/// whoever passes, but once (10) is through they rest where the gradient is below twice the slope
-/// of g at R.
+/// whoever passes, and once (10) is through they do not feel the corner of g at R, so that they
+/// come to rest.
 ///
 /// Step bound (Th. 6.3, h ≤ 1/L, here with a bound of its own for every robot): k·dt ≤ 1/Lᵢ with
 /// Lᵢ = 2 + 2 Σⱼ g''(dᵢⱼ − 2s) and no step longer than s, a twentieth of the distance to the

@@ -39,6 +39,19 @@ TEST(CotangentRepulsion, EndsAtItsRange) {
   EXPECT_EQ(cotangent_repulsion(Vec2::Zero(), far, kOptions).gradient_m, Vec2::Zero());
 }
 
+TEST(CotangentRepulsion, FadesWithoutACornerWhereAsked) {
+  CotangentOptions fading = kOptions;
+  fading.fade_share = 0.1;
+  const auto slope = [](double d_m, const CotangentOptions& options) {
+    return cotangent_repulsion(Vec2::Zero(), std::vector<Neighbour>{at({d_m, 0})}, options)
+        .gradient_m.x();
+  };
+
+  EXPECT_NEAR(slope(0.9999, fading), 0.0, 1e-4);
+  EXPECT_NEAR(slope(0.95, fading), 0.5 * slope(0.95, kOptions), 1e-12);
+  EXPECT_EQ(slope(0.85, fading), slope(0.85, kOptions));
+}
+
 TEST(CotangentRepulsion, IsFiniteWhereRobotsCoincide) {
   const Potential g = cotangent_repulsion({1, 1}, std::vector<Neighbour>{at({1, 1})}, kOptions);
 
