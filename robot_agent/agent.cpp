@@ -118,7 +118,6 @@ AgentOptions agent_options(const Mission& mission, RobotId robot, std::uint64_t 
                  .gap_share = mission.safety.gap_share,
                  .stale_gain = mission.safety.stale_gain,
                  .neighbour_margin_m = mission.safety.neighbour_margin_m,
-                 .evade_margin_m = mission.safety.evade_margin_m,
                  .obstacle_margin_m = mission.safety.obstacle_margin_m,
                  .follow_share = mission.safety.follow_share},
       .neighbours = {.radius_m = body.radius_m,

@@ -61,6 +61,19 @@ std::optional<double> stop_latency_ms(const Track& track, UtcTime begin) {
   return std::max(0.0, 1e3 * (at_rest_s - to_seconds(stopped->caused - begin)));
 }
 
+/// Robots that fill a drawing are home where its shape function is within the tolerance.
+bool fills_shape(const RecordedRun& run) {
+  return run.mission.control.method == "intermittent_diffusion";
+}
+
+bool is_home(const RecordedRun& run, std::size_t goal, const Vec2& position_m) {
+  if (fills_shape(run) && run.mission.goal_shape != nullptr) {
+    return run.mission.goal_shape->at(position_m).energy_m2 <=
+           run.mission.control.diffusion_tolerance_m2;
+  }
+  return run.goal().components()[goal].gaussian.contains_99(position_m);
+}
+
 RobotAudit audit_robot(const Track& track, const RecordedRun& run) {
   RobotAudit result{.robot = track.robot};
   result.lost = !track.ended_gracefully || track.points.empty();
@@ -75,8 +88,7 @@ RobotAudit audit_robot(const Track& track, const RecordedRun& run) {
   const TrackPoint& last = track.points.back();
   const auto& goals = run.goal().components();
   if (last.goal < goals.size()) result.goal = last.goal;
-  result.arrived =
-      !result.lost && result.goal && goals[*result.goal].gaussian.contains_99(last.position_m);
+  result.arrived = !result.lost && result.goal && is_home(run, *result.goal, last.position_m);
   result.arrived_at_s = stays_arrived_from(track);
   result.stop_ms = stop_latency_ms(track, run.begin);
   return result;
@@ -190,6 +202,7 @@ void judge(const AuditedRun& audited, Audit& audit) {
   if (audit.collisions_obstacle > 0) {
     audit.reasons.push_back(fmt::format("{} robots touched obstacles", audit.collisions_obstacle));
   }
+  if (fills_shape(audited.run)) return;  // whoever finds room stays: no counts are asked for
   const auto& goals = audited.run.goal().components();
   const double tolerance = std::max(2.0, 0.02 * audit.robots);
   for (std::size_t g = 0; g < goals.size(); ++g) {

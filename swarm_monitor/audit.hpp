@@ -26,7 +26,9 @@ struct StopLatency {
 struct RobotAudit {
   RobotId robot{};
   bool lost = false;     ///< no black box, or it ends without the note "exit"
-  bool arrived = false;  ///< not lost, and its last position lies in the 99 % ellipse of its goal
+  /// Not lost, and its last position lies in the 99 % ellipse of its goal, or, by intermittent
+  /// diffusion, where the drawing's shape function is within the tolerance.
+  bool arrived = false;
   std::optional<std::size_t> goal{};     ///< index into Mission::goal, of its last step
   std::optional<double> arrived_at_s{};  ///< time from which on it stayed arrived
   double path_m = 0.0;

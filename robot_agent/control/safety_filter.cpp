@@ -12,6 +12,8 @@ namespace {
 constexpr int kBisections = 8;          // of the least violation: to 1 % of the speed
 constexpr double kBlocked = 0.1;        // less than this share of the wish is left: blocked
 constexpr double kTurn_rad = 0.4;       // to the right, while blocked
+constexpr double kFollowMargin = 0.9;   // share of the margin that following may give up
+constexpr double kEvade = 1.0 / 3.0;    // of the margin: kept to who does not keep off
 constexpr double kLeastWish_mps = 0.1;  // slower wishes are not worth a detour
 
 }  // namespace
@@ -62,21 +64,25 @@ void SafetyFilter::collect_neighbours(const Vec2& position_m,
     const Vec2 towards = distance > 1e-9 ? Vec2(offset / distance) : Vec2(1.0, 0.0);
     const double gap = distance - sum_m;
     const double leaving = towards.dot(n.velocity_mps);
-    const double share = options_.gap_share * (gap - options_.neighbour_margin_m) / (2.0 * time_s) +
-                         options_.follow_share * std::max(0.0, leaving);
-    const double evade =
-        (gap - options_.evade_margin_m) / (2.0 * period_s) - std::max(0.0, -leaving);
+    const double margin_m = options_.neighbour_margin_m;
+    const double given_up_m = v_max * std::max(n.stale_s, period_s);  // if it stops at once
+    const double follow = std::min(options_.follow_share, kFollowMargin * margin_m / given_up_m);
+    const double share =
+        options_.gap_share * (gap - margin_m) / (2.0 * time_s) + follow * std::max(0.0, leaving);
+    const double evade = (gap - kEvade * margin_m) / (2.0 * period_s) - std::max(0.0, -leaving);
     const double bound = std::min(share, evade);
     if (bound < v_max) constraints_.push_back({towards, std::max(bound, -v_max)});
   }
 }
 
-/// All neighbours give in by the same speed, the least that leaves a common point.
+/// All who are too near give in by the same speed, the least that leaves a common point. Nobody
+/// comes nearer for it.
 Vec2 SafetyFilter::least_violation(const Vec2& wish_mps) {
   relaxed_ = constraints_;
   const auto relax = [&](double by_mps) {
     for (std::size_t i = obstacles_; i < constraints_.size(); ++i) {
-      relaxed_[i].bound_mps = constraints_[i].bound_mps + by_mps;
+      const double bound = constraints_[i].bound_mps;
+      if (bound < 0.0) relaxed_[i].bound_mps = std::min(0.0, bound + by_mps);
     }
     return nearest_velocity(wish_mps, relaxed_, options_.speed_max_mps);
   };

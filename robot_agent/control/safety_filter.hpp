@@ -18,7 +18,6 @@ struct SafetyOptions {
   double gap_share = 0.5;           ///< γ
   double stale_gain = 1.0;          ///< a
   double neighbour_margin_m = 0.3;  ///< m
-  double evade_margin_m = 0.1;      ///< m_e
   double obstacle_margin_m = 0.05;  ///< m_o
   double follow_share = 0.8;        ///< β
 };
@@ -27,7 +26,7 @@ struct SafetyOptions {
 /// promises.
 ///
 ///   neighbour j:  n·u ≤ γ (gap − m) / (2T) + β max(0, n·v_j),   T = Δt + a max(0, τ_j − Δt)
-///                 n·u ≤ (gap − m_e) / (2Δt) − max(0, −n·v_j)     n points to the neighbour, v_j is
+///                 n·u ≤ (gap − m/3) / (2Δt) − max(0, −n·v_j)     n points to the neighbour, v_j is
 ///                                                                what it said of its velocity
 ///   obstacle o:   n·u ≤ (s − m_o) / (2Δt) − max(0, −n·v_o)       n points into the obstacle
 ///   bounds:       the same with the four walls of the world
@@ -40,15 +39,15 @@ struct SafetyOptions {
 ///    (with β = 0), however late their ticks are: a command closes at most γ (gap − m) in its life
 ///    of 2Δt, half of what is left above m for each, γ ≤ ½. With knowledge that is τ old the pair
 ///    is the delayed system ẋ = −(γ/T) x(t − τ) for x = gap − m, which does not overshoot as long
-///    as γτ/T ≤ 1/e: that is what a ≥ eγ is for. β lets a robot follow one that moves away; what is
-///    given up when that one stops at once is β v_max τ, and m has room for it.
+///    as γτ/T ≤ 1/e: that is what a ≥ eγ is for. β lets a robot follow one that moves away, as far
+///    as what is given up when that one stops at once, β v_max τ, is below 0.9 m.
 /// 3. From a robot that obeys nobody, heard at every tick and no faster than v_max, a robot
 ///    withdraws before contact: the second line asks for u at least as fast as the other comes once
-///    the gap is down to m_e. It is met whenever there is room to go to.
-/// 4. Nobody freezes who may move: where the lines have no common point, obstacles stay as they are
-///    and all neighbours give in by the same least speed, so that the most endangered gap is served
-///    best. A robot whose wish is blocked by robots that face it turns its wish to its right, as
-///    everyone does, so that opposing streams part into lanes.
+///    the gap is down to a third of m. It is met whenever there is room to go to.
+/// 4. Nobody freezes who may move: where the lines have no common point, those that ask for a wider
+///    gap give in by the same least speed, down to not closing it, which u = 0 obeys. A robot whose
+///    wish is blocked by robots that face it turns its wish to its right, as everyone does, so that
+///    opposing streams part into lanes.
 class SafetyFilter {
  public:
   SafetyFilter(const World& world, const SafetyOptions& options);

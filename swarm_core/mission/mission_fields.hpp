@@ -109,10 +109,9 @@ inline constexpr std::array<Field<ControlSpec>, 20> kControl{{
     {"diffusion_time_s", &ControlSpec::diffusion_time_s, between(0, 3600)},
 }};
 
-inline constexpr std::array<Field<SafetySpec>, 6> kSafety{{
+inline constexpr std::array<Field<SafetySpec>, 5> kSafety{{
     {"gap_share", &SafetySpec::gap_share, positive(1)},
     {"stale_gain", &SafetySpec::stale_gain, between(0, 100)},
-    {"evade_margin_m", &SafetySpec::evade_margin_m, between(0, 100)},
     {"neighbour_margin_m", &SafetySpec::neighbour_margin_m, between(0, 100)},
     {"obstacle_margin_m", &SafetySpec::obstacle_margin_m, between(0, 100)},
     {"follow_share", &SafetySpec::follow_share, between(0, 1)},
