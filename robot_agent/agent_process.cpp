@@ -27,6 +27,9 @@
 namespace swarm::agent {
 namespace {
 
+// So that a body's noise is not its agent's chance.
+constexpr std::uint64_t kBodySeed = 0xB0D7;
+
 UtcTime utc_now() {
   return std::chrono::time_point_cast<Duration>(std::chrono::system_clock::now());
 }
@@ -146,9 +149,9 @@ Result<void> AgentProcess::Impl::make_robots(std::uint64_t seed) {
                                  .process_id = static_cast<std::uint32_t>(::getpid()),
                                  .radius_m = body_of(mission.robots, id).radius_m,
                                  .stamp = utc_now()});
-    robots.emplace_back(world, agent_options(mission, id, seed),
-                        std::make_unique<SimulatedRobot>(std::chrono::steady_clock::now(), *place),
-                        std::move(*box));
+    auto body = make_simulated_body(body_of(mission.robots, id), std::chrono::steady_clock::now(),
+                                    *place, mix_seed(mix_seed(seed, id.value()), kBodySeed));
+    robots.emplace_back(world, agent_options(mission, id, seed), std::move(body), std::move(*box));
   }
   return {};
 }

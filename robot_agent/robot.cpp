@@ -29,12 +29,13 @@ Robot::Robot(const World& world, const AgentOptions& options, std::unique_ptr<Dr
 void Robot::step(const Tick& tick, const Inbox& inbox, const NewPlan* new_plan) {
   const Measurement body = driver_->measure(tick.now);
   position_m_ = body.position_m;
+  const Vec2 true_position_m = body.true_position_m.value_or(body.position_m);
   const std::uint8_t goal =
       agent_.has_route() ? static_cast<std::uint8_t>(std::min(agent_.goal(position_m_), 254U))
                          : blackbox::Step::kNoGoal;
   if (body.command_expired) {  // the body stopped between two ticks: the path has a point there
     box_.append(blackbox::Step{.stamp = tick.utc_now - (tick.now - body.expired_at),
-                               .position_m = position_m_,
+                               .position_m = body.expired_position_m,
                                .mode = static_cast<std::uint8_t>(output_.mode),
                                .goal = goal});
   }
@@ -62,7 +63,7 @@ void Robot::step(const Tick& tick, const Inbox& inbox, const NewPlan* new_plan) 
   if (tick.lateness > kLate) ++late_ticks_;
   box_.append(blackbox::Step{
       .stamp = tick.utc_now,
-      .position_m = position_m_,
+      .position_m = true_position_m,
       .velocity_mps = output_.velocity_mps,
       .lateness_us =
           static_cast<std::int32_t>(std::min<std::int64_t>(to_us(tick.lateness), INT32_MAX)),

@@ -2,16 +2,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
+
 #include "swarm_core/base/linalg.hpp"
 #include "swarm_core/base/time.hpp"
 
 namespace swarm::agent {
 
 struct Measurement {
-  Vec2 position_m = Vec2::Zero();
-  /// When the robot came to rest because its last command ran out, if it did: a late control loop.
+  Vec2 position_m = Vec2::Zero();  ///< as sensed: all that the agent knows
+  /// Where it truly is, if anybody knows (simulations do): for the black box, not for the agent.
+  std::optional<Vec2> true_position_m;
+  /// Whether the last command ran out before now, so that the body stops: a late control loop.
   bool command_expired = false;
   SteadyTime expired_at;
+  Vec2 expired_position_m = Vec2::Zero();  ///< where that was, as in the black box
 };
 
 /// A robot's body: what a simulated robot and a real one's driver have in common.

@@ -2,42 +2,55 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <algorithm>
+#include <cstdint>
+#include <memory>
 
 #include "robot_agent/drivers/driver.hpp"
+#include "robot_agent/drivers/motion_model.hpp"
+#include "swarm_core/base/random.hpp"
+#include "swarm_core/mission/mission.hpp"
 
 namespace swarm::agent {
 
-/// A single integrator ẋ = u [SwarmPRM, eq. 15] with perfect position sensing, moved by the clock
-/// it is shown; stops when its command runs out.
+/// Both zero-mean, Gaussian and independent per axis.
+struct SimulatedNoise {
+  double motion_m = 0.0;    ///< σ of w(k), once a control step while a command is in force
+  double position_m = 0.0;  ///< σ of what is measured
+};
+
+/// A body that is moved by the clock it is shown:
+///
+///   x(k+1) = f(x(k), u(k)) + w(k)  [ROVER, eq. 9],  y(k) = x(k) + n(k)
+///
+/// f is a motion model, a step k ends with each measurement. When its command runs out it is told
+/// to stand, which one with inertia does as fast as it can. Deterministic in its seed.
 class SimulatedRobot final : public Driver {
  public:
-  SimulatedRobot(SteadyTime now, const Vec2& position_m) : position_m_(position_m), at_(now) {}
+  SimulatedRobot(SteadyTime now, std::unique_ptr<MotionModel> model, const SimulatedNoise& noise,
+                 std::uint64_t seed);
+  /// A single integrator that knows where it is.
+  SimulatedRobot(SteadyTime now, const Vec2& position_m);
 
-  Measurement measure(SteadyTime now) override {
-    Measurement m;
-    const SteadyTime until = std::min(now, valid_until_);
-    if (until > at_) position_m_ += to_seconds(until - at_) * velocity_mps_;
-    if (now > valid_until_ && velocity_mps_ != Vec2::Zero()) {
-      m.command_expired = true;
-      m.expired_at = valid_until_;
-      velocity_mps_ = Vec2::Zero();
-    }
-    at_ = std::max(at_, now);
-    m.position_m = position_m_;
-    return m;
-  }
-
-  void command(SteadyTime now, const Vec2& velocity_mps, Duration valid_for) override {
-    velocity_mps_ = velocity_mps;
-    valid_until_ = now + valid_for;
-  }
+  Measurement measure(SteadyTime now) override;
+  void command(SteadyTime now, const Vec2& velocity_mps, Duration valid_for) override;
 
  private:
-  Vec2 position_m_;
-  Vec2 velocity_mps_ = Vec2::Zero();
+  Vec2 draw(double sigma_m);
+
+  std::unique_ptr<MotionModel> model_;
+  SimulatedNoise noise_;
+  Rng rng_;
+  Vec2 command_mps_ = Vec2::Zero();
   SteadyTime at_;
   SteadyTime valid_until_;
 };
+
+/// The body a mission asks for, at rest; a unicycle has a random heading.
+std::unique_ptr<Driver> make_simulated_body(const BodySpec& body, SteadyTime now,
+                                            const Vec2& position_m, std::uint64_t seed);
+
+/// How long such a body takes, at most, to be at a velocity it is told [s]: what the safety filter
+/// has to allow for. Zero for a single integrator.
+double lag_s(const BodySpec& body);
 
 }  // namespace swarm::agent
