@@ -85,12 +85,14 @@ void Simulation::place(const std::vector<Vec2>& positions_m) {
   slots_.resize(options_.clocks_in_step ? 1 : kSlots);
   for (std::uint32_t i = 0; i < positions_m.size(); ++i) {
     const RobotId id(i);
-    robots_.push_back({.agent = {world_, agent::agent_options(mission_, id, options_.seed)},
-                       .body = std::make_unique<agent::SimulatedRobot>(kBegin, positions_m[i]),
-                       .hear_radius_m = hear_radius_m(mission_, id),
-                       .heard_until = kBegin,
-                       .output = {},
-                       .position_m = positions_m[i]});
+    robots_.push_back(
+        {.agent = {world_, agent::agent_options(mission_, id, options_.seed)},
+         .body = agent::make_simulated_body(body_of(mission_.robots, id), kBegin, positions_m[i],
+                                            mix_seed(mix_seed(options_.seed, 0xB0D), i)),
+         .hear_radius_m = hear_radius_m(mission_, id),
+         .heard_until = kBegin,
+         .output = {},
+         .position_m = positions_m[i]});
     // As processes do: multiples of the golden ratio spread any number of them evenly.
     const double turn = i * (std::numbers::phi - 1.0);
     const auto slot =
@@ -203,7 +205,7 @@ void Simulation::tick_robot(std::uint32_t id, SteadyTime now, Histogram* ages) {
     recording_.note(robot_id, stamp, "mode", std::string(to_string(out.mode)));
   recording_.step(robot_id,
                   {.stamp = stamp,
-                   .position_m = robot.position_m,
+                   .position_m = body.true_position_m.value_or(body.position_m),
                    .velocity_mps = out.velocity_mps,
                    .mode = static_cast<std::uint8_t>(out.mode),
                    .goal = robot.agent.has_route() ? static_cast<std::uint8_t>(std::min(

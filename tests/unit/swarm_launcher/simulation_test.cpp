@@ -1,0 +1,136 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "swarm_launcher/simulation/simulation.hpp"
+
+#include <gtest/gtest.h>
+
+#include "swarm_core/mission/mission_file.hpp"
+#include "swarm_monitor/audit.hpp"
+
+namespace swarm::launcher {
+namespace {
+
+Mission small_mission(std::uint32_t robots) {
+  auto mission =
+      load_mission(std::filesystem::path(SWARM_SOURCE_DIR) / "deploy/missions/small.yaml");
+  EXPECT_TRUE(mission.has_value());
+  mission->robots.count = robots;
+  return *std::move(mission);
+}
+
+struct Flight {
+  Outcome outcome;
+  monitor::Audit audit;
+  std::vector<monitor::Track> tracks;
+};
+
+Flight fly(const Mission& mission, const SimulationOptions& options) {
+  Recording recording(mission, Simulation::begin_utc(), true);
+  SimulationObserver nobody;
+  auto simulation = Simulation::make(mission, options, recording, nobody);
+  EXPECT_TRUE(simulation.has_value());
+  while ((*simulation)->step()) {
+  }
+  monitor::RecordedRun run{.mission = mission};
+  run.begin = Simulation::begin_utc();
+  run.tracks = recording.tracks();
+  std::vector<monitor::Track> tracks = run.tracks;
+  return {(*simulation)->outcome(), monitor::audit_recorded(std::move(run)).audit,
+          std::move(tracks)};
+}
+
+SimulationOptions bad_network(std::uint64_t seed, std::size_t threads) {
+  SimulationOptions options;
+  options.seed = seed;
+  options.threads = threads;
+  options.faults = {.loss = 0.2,
+                    .delay = std::chrono::milliseconds(150),
+                    .jitter = std::chrono::milliseconds(50)};
+  return options;
+}
+
+void expect_same(const std::vector<monitor::Track>& a, const std::vector<monitor::Track>& b) {
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    ASSERT_EQ(a[i].points.size(), b[i].points.size()) << i;
+    for (std::size_t k = 0; k < a[i].points.size(); ++k) {
+      ASSERT_EQ(a[i].points[k].position_m, b[i].points[k].position_m) << i << " at " << k;
+    }
+  }
+}
+
+TEST(Simulation, BringsEveryoneHomeWithoutContact) {
+  const Flight flight = fly(small_mission(12), {});
+
+  EXPECT_EQ(flight.outcome, Outcome::kCompleted);
+  EXPECT_EQ(flight.audit.arrived, 12U);
+  EXPECT_EQ(flight.audit.collisions_robot + flight.audit.collisions_obstacle, 0U);
+}
+
+TEST(Simulation, TakesABadNetworkAndClocksApart) {
+  SimulationOptions options = bad_network(1, 1);
+  options.clocks_in_step = false;
+
+  const Flight flight = fly(small_mission(12), options);
+
+  EXPECT_EQ(flight.audit.arrived, 12U);
+  EXPECT_EQ(flight.audit.collisions_robot + flight.audit.collisions_obstacle, 0U);
+}
+
+TEST(Simulation, IsTheSameToTheLastBitOnAnyNumberOfThreads) {
+  const Mission mission = small_mission(12);
+
+  const Flight one = fly(mission, bad_network(3, 1));
+  const Flight three = fly(mission, bad_network(3, 3));
+
+  expect_same(one.tracks, three.tracks);
+}
+
+TEST(Simulation, DiffersByItsSeed) {
+  const Mission mission = small_mission(12);
+
+  const Flight one = fly(mission, bad_network(1, 1));
+  const Flight two = fly(mission, bad_network(2, 1));
+
+  EXPECT_NE(one.tracks[0].points[0].position_m, two.tracks[0].points[0].position_m);
+}
+
+TEST(Simulation, PlaysTheScript) {
+  Mission mission = small_mission(6);
+  mission.script = {{.at_s = 2.0, .action = CommandKind::kStop}};
+
+  const Flight flight = fly(mission, {});
+
+  EXPECT_EQ(flight.outcome, Outcome::kStopped);
+  EXPECT_EQ(flight.tracks[0].points.back().mode, RobotMode::kStopped);
+}
+
+TEST(Air, LosesItsShareAndDeliversTheRestOnceAndInTime) {
+  const LinkFaults faults{.loss = 0.25,
+                          .delay = std::chrono::milliseconds(150),
+                          .jitter = std::chrono::milliseconds(50)};
+  Air air({{0, 0}, {10, 10}}, 4.0, faults, 7);
+  const SteadyTime begin{std::chrono::seconds(1)};
+  const Duration period = std::chrono::milliseconds(100);
+  constexpr std::uint32_t kSaid = 4000;
+  std::uint32_t heard = 0;
+  for (std::uint32_t k = 0; k < kSaid + 10; ++k) {
+    const SteadyTime now = begin + k * period;
+    air.hear(RobotId(0), {5, 5}, 4.0, now - period, now, [&](const auto& report) {
+      ++heard;
+      EXPECT_GE(now - report.as_of, std::chrono::milliseconds(100));
+      EXPECT_LE(now - report.as_of, std::chrono::milliseconds(300));
+    });
+    if (k < kSaid) {
+      const std::vector<agent::NeighbourReport> said = {
+          {.robot = RobotId(1), .sequence = k, .as_of = now, .position_m = {6, 5}},
+          {.robot = RobotId(2), .sequence = k, .as_of = now, .position_m = {9.5, 5}}};
+      air.post(now, said);
+    }
+    air.forget(now - period);
+  }
+  EXPECT_NEAR(heard, 0.75 * kSaid, 0.03 * kSaid);
+}
+
+}  // namespace
+}  // namespace swarm::launcher
