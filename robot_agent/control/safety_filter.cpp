@@ -3,18 +3,20 @@
 #include "robot_agent/control/safety_filter.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
 namespace swarm::agent {
 namespace {
 
-constexpr int kBisections = 8;          // of the least violation: to 1 % of the speed
-constexpr double kBlocked = 0.1;        // less than this share of the wish is left: blocked
-constexpr double kTurn_rad = 0.4;       // to the right, while blocked
-constexpr double kFollowMargin = 0.9;   // share of the margin that following may give up
-constexpr double kEvade = 1.0 / 3.0;    // of the margin: kept to who does not keep off
-constexpr double kLeastWish_mps = 0.1;  // slower wishes are not worth a detour
+constexpr int kBisections = 8;    // of the least violation: to 1 % of the speed
+constexpr double kBlocked = 0.1;  // less than this share of the wish is left: blocked
+constexpr std::array kTurns_rad{0.4, 0.9, 1.4};  // to the right, while blocked, until that is …
+constexpr double kFree = 0.3;                    // … faster than this share of the wish
+constexpr double kFollowMargin = 0.9;            // share of the margin that following may give up
+constexpr double kEvade = 1.0 / 3.0;             // of the margin: kept to who does not keep off
+constexpr double kLeastWish_mps = 0.1;           // slower wishes are not worth a detour
 
 }  // namespace
 
@@ -120,9 +122,14 @@ Vec2 SafetyFilter::filter(const Vec2& position_m, const Vec2& wish_mps,
   const double wished = wish_mps.norm();
   if (!gives_way || wished < kLeastWish_mps) return u;
   if (u.dot(wish_mps) > kBlocked * wished * wished) return u;
-  const double c = std::cos(kTurn_rad);
-  const double s = std::sin(kTurn_rad);
-  return nearest({c * wish_mps.x() + s * wish_mps.y(), c * wish_mps.y() - s * wish_mps.x()});
+  Vec2 turned = u;
+  for (const double turn_rad : kTurns_rad) {
+    const double c = std::cos(turn_rad);
+    const double s = std::sin(turn_rad);
+    turned = nearest({c * wish_mps.x() + s * wish_mps.y(), c * wish_mps.y() - s * wish_mps.x()});
+    if (turned.norm() > kFree * wished) break;
+  }
+  return turned;
 }
 
 }  // namespace swarm::agent

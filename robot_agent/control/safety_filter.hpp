@@ -14,12 +14,12 @@ namespace swarm::agent {
 struct SafetyOptions {
   double radius_m = 0.2;
   double speed_max_mps = 1.5;
-  Duration period{};                ///< Δt, of control
-  double gap_share = 0.5;           ///< γ
-  double stale_gain = 1.0;          ///< a
-  double neighbour_margin_m = 0.3;  ///< m
-  double obstacle_margin_m = 0.05;  ///< m_o
-  double follow_share = 0.8;        ///< β
+  Duration period{};                 ///< Δt, of control
+  double gap_share = 0.5;            ///< γ
+  double stale_gain = 1.0;           ///< a
+  double neighbour_margin_m = 0.25;  ///< m
+  double obstacle_margin_m = 0.05;   ///< m_o
+  double follow_share = 0.8;         ///< β
 };
 
 /// The layer under every control method: the velocity nearest to the wished one that keeps its

@@ -107,7 +107,7 @@ struct ControlSpec {
 struct SafetySpec {
   double gap_share = 0.5;            ///< γ: share of the gap a robot may close by one command
   double stale_gain = 1.0;           ///< a: how much slower by what is known late
-  double neighbour_margin_m = 0.3;   ///< m
+  double neighbour_margin_m = 0.25;  ///< m
   double obstacle_margin_m = 0.05;   ///< m_o
   double follow_share = 0.8;         ///< β: how much of a neighbour's retreat may be used
 };

@@ -34,6 +34,7 @@ Flight fly(const Mission& mission, const SimulationOptions& options) {
   monitor::RecordedRun run{.mission = mission};
   run.begin = Simulation::begin_utc();
   run.tracks = recording.tracks();
+  run.scenes.push_back(first_scene(mission.world.obstacles().size()));
   std::vector<monitor::Track> tracks = run.tracks;
   return {(*simulation)->outcome(), monitor::audit_recorded(std::move(run)).audit,
           std::move(tracks)};
