@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "robot_agent/drivers/lag.hpp"
 #include "swarm_core/mission/placement.hpp"
 
 namespace swarm::agent {
@@ -23,6 +24,7 @@ bool is_near_source(const FlowPlan& plan, std::uint32_t source, const Vec2& posi
 
 constexpr double kAtRest_mps = 0.05;
 constexpr double kSettling_m = 4.0;  // nearer to the end than this a turn aside would only stir
+constexpr double kMeanOver_s = 2.0;
 
 double nearest_gap_m(const ControlView& view, double radius_m) {
   double nearest_m = std::numeric_limits<double>::infinity();
@@ -31,6 +33,12 @@ double nearest_gap_m(const ControlView& view, double radius_m) {
         std::min(nearest_m, (n.position_m - view.position_m).norm() - radius_m - n.radius_m);
   }
   return nearest_m;
+}
+
+/// What the filter keeps off obstacles: a measured place may be off, and a step.
+double obstacle_margin_m(const Mission& mission, const BodySpec& body) {
+  return mission.safety.obstacle_margin_m +
+         2.0 * std::hypot(body.position_noise_m, body.motion_noise_m);
 }
 
 CropsOptions crops_options(const Mission& mission, const BodySpec& body) {
@@ -45,13 +53,14 @@ CropsOptions crops_options(const Mission& mission, const BodySpec& body) {
       .cruise_mps = cruise_mps,
       .approach_gain_hz = c.approach_gain_hz,
       .guide = {.radius_m = body.radius_m,
+                .passable_m = obstacle_margin_m(mission, body) + 0.01,
                 .goal_radius_m = mission.planner.crops_goal_radius_m,
                 .sight_m = c.look_ahead_s * cruise_mps},
       .place = {.radius_m = body.radius_m,
                 .room_gap_m = near_gap_m,
                 .approach_gain_hz = c.approach_gain_hz},
       .obstacle = {.radius_m = body.radius_m},
-      .give_way = {.radius_m = body.radius_m, .gap_m = near_gap_m},
+      .give_way = {.radius_m = body.radius_m, .gap_m = mission.safety.neighbour_margin_m + 0.1},
       .escape = {.window = ticks(c.stuck_after_s), .step = ticks(c.escape_s)},
   };
 }
@@ -115,10 +124,11 @@ AgentOptions agent_options(const Mission& mission, RobotId robot, std::uint64_t 
       .safety = {.radius_m = body.radius_m,
                  .speed_max_mps = body.speed_max_mps,
                  .period = period,
+                 .lag_s = lag_s(body),
                  .gap_share = mission.safety.gap_share,
                  .stale_gain = mission.safety.stale_gain,
                  .neighbour_margin_m = mission.safety.neighbour_margin_m,
-                 .obstacle_margin_m = mission.safety.obstacle_margin_m,
+                 .obstacle_margin_m = obstacle_margin_m(mission, body),
                  .follow_share = mission.safety.follow_share},
       .neighbours = {.radius_m = body.radius_m,
                      .fleet = Fleet(mission.robots),
@@ -187,10 +197,15 @@ AgentOutput Agent::tick(const AgentInput& input) {
     const bool gives_way = out.mode == RobotMode::kMoving && out.remaining_m > kSettling_m;
     out.velocity_mps = filter_.filter(input.position_m, wished, view.neighbours, gives_way);
   }
-  out.settled = out.mode == RobotMode::kArrived && out.velocity_mps.norm() < kAtRest_mps;
+  // With noise in what it measures a robot never stands; where it goes nowhere, it rests.
+  const double share = std::min(1.0, to_seconds(options_.safety.period) / kMeanOver_s);
+  mean_mps_ += share * (out.velocity_mps - mean_mps_);
+  out.settled = out.mode == RobotMode::kArrived &&
+                std::min(out.velocity_mps.norm(), mean_mps_.norm()) < kAtRest_mps;
 
-  out.say = say_.must_say(input.now, input.position_m, out.velocity_mps, out.nearest_gap_m);
-  if (out.say) say_.said(input.now, input.position_m, out.velocity_mps);
+  out.told_mps = input.velocity_mps.value_or(out.velocity_mps);
+  out.say = say_.must_say(input.now, input.position_m, out.told_mps, out.nearest_gap_m);
+  if (out.say) say_.said(input.now, input.position_m, out.told_mps);
   return out;
 }
 

@@ -48,10 +48,13 @@ struct AgentInput {
   Vec2 position_m = Vec2::Zero();  ///< measured
   MissionPhase phase = MissionPhase::kReady;
   bool planner_alive = false;
+  /// Measured, of a body that does not have the velocity it is told at once.
+  std::optional<Vec2> velocity_mps{};
 };
 
 struct AgentOutput {
   Vec2 velocity_mps = Vec2::Zero();  ///< to command; valid for two control periods
+  Vec2 told_mps = Vec2::Zero();      ///< the velocity to tell the neighbours
   RobotMode mode = RobotMode::kWaiting;
   bool say = false;          ///< tell the neighbours the new state now
   bool settled = false;      ///< arrived and at rest
@@ -104,6 +107,7 @@ class Agent {
   Vec2 way_begin_m_ = Vec2::Zero();
   bool arrived_ = false;
   bool moved_ = false;
+  Vec2 mean_mps_ = Vec2::Zero();  // of the commanded velocity
 };
 
 }  // namespace swarm::agent

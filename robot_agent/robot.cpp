@@ -54,7 +54,8 @@ void Robot::step(const Tick& tick, const Inbox& inbox, const NewPlan* new_plan) 
   output_ = agent_.tick({.now = tick.now,
                          .position_m = position_m_,
                          .phase = inbox.mission().phase(),
-                         .planner_alive = inbox.mission().planner_alive(tick.now)});
+                         .planner_alive = inbox.mission().planner_alive(tick.now),
+                         .velocity_mps = body.velocity_mps});
   mode_changed_ = !stepped_ || output_.mode != before;
   stepped_ = true;
   driver_->command(tick.now, output_.velocity_mps, 2 * tick.period);
@@ -84,8 +85,8 @@ void Robot::step(const Tick& tick, const Inbox& inbox, const NewPlan* new_plan) 
                                       .stamp_utc_ns = to_ns(tick.utc_now),
                                       .x_m = position_m_.x(),
                                       .y_m = position_m_.y(),
-                                      .vx_mps = output_.velocity_mps.x(),
-                                      .vy_mps = output_.velocity_mps.y(),
+                                      .vx_mps = output_.told_mps.x(),
+                                      .vy_mps = output_.told_mps.y(),
                                       .mode = output_.mode};
     echo_.said(*to_say_);
     ++said_;

@@ -41,16 +41,21 @@ Vec2 Crops::wish(const ControlView& view, bool arrived, Rng& rng) {
   remaining_m_ = at_end ? place_.left_m(x) : guide_.remaining_m(x);
   // There is no room in a full goal unless one presses; where even that is in vain, regardless of
   // who is nearer: those have arrived.
-  const bool is_blocked = at_end && place_.is_blocked();
-  const bool presses = is_blocked || (at_end && place_.is_beside(x));
+  const bool into_goal = at_end || place_.is_in_goal(point_m);
+  const bool is_blocked = into_goal && place_.is_blocked();
+  const bool presses = is_blocked || (into_goal && place_.is_beside(x));
+  const Vec2 escape = escape_.update(x, rng);
+  // A stuck robot dares to go where walls are near, as in the paper's code; the safety filter minds
+  // them.
+  const double wall_share = escape_.is_stuck() ? options_.stuck_wall_share : 1.0;
   const std::array<Vec2, 6> fields{
-      obstacle_field(x, view.world, options_.obstacle),
+      wall_share * obstacle_field(x, view.world, options_.obstacle),
       presses ? Vec2(Vec2::Zero()) : separation_field(x, view.neighbours, options_.separation),
       is_blocked ? Vec2(Vec2::Zero())
                  : give_way_field(x, aim_m, view.neighbours, options_.give_way),
       goal_field(x, aim_m, options_.goal),
       heading_field(x, view.neighbours, options_.heading),
-      escape_.update(x, rng)};
+      escape};
   const Vec2 sum = superposition(fields);
   const double strength = sum.norm();
   double speed_mps = options_.cruise_mps;

@@ -18,6 +18,7 @@ struct CropsOptions {
   double cruise_mps = 1.45;
   double approach_gain_hz = 0.8;  ///< slower near the end of the way
   double full_strength = 0.3;     ///< of all fields together from which on it goes at cruise speed
+  double stuck_wall_share = 0.1;  ///< of the obstacles' field while the robot is stuck
   GuidePointsOptions guide{};
   GoalPlaceOptions place{};
   ObstacleFieldOptions obstacle{};

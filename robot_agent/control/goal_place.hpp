@@ -46,6 +46,8 @@ class GoalPlace {
   /// Asked once a tick. Arrived: in the ellipse and within 1 m of its place.
   bool has_arrived(SteadyTime now, const Vec2& position_m);
 
+  bool is_in_goal(const Vec2& position_m) const { return goal_.contains_99(position_m); }
+
   /// Whether a position is in the goal or at most a third of its size beside it.
   bool is_beside(const Vec2& position_m) const {
     constexpr double kBeside = 16.0;  // squared Mahalanobis distance: 4/3 of the 99 % ellipse

@@ -9,7 +9,6 @@
 namespace swarm::agent {
 namespace {
 
-constexpr double kTouch_m = 0.02;   // surface clearance of a point that is not hidden
 constexpr double kReached_m = 0.3;  // reached, even if the next is not in sight
 
 }  // namespace
@@ -36,15 +35,21 @@ void GuidePoints::look(const Vec2& position_m, const World& world) {
   while (last + 1 < points_m_.size() && behind_m_[at_] - behind_m_[last + 1] < options_.sight_m) {
     ++last;
   }
+  const auto take_if_seen = [&](std::size_t point, double clearance_m) {
+    if (!sees(position_m, world, point, clearance_m)) return false;
+    at_ = point;
+    return true;
+  };
   for (std::size_t i = last; i > at_; --i) {
-    if (!sees(position_m, world, i, options_.clearance_m)) continue;
-    at_ = i;
-    return;
+    if (take_if_seen(i, options_.clearance_m)) return;
   }
-  for (std::size_t i = at_ + 1; i > 0; --i) {
-    if (!sees(position_m, world, i - 1, kTouch_m)) continue;
-    at_ = i - 1;
-    return;
+  if (sees(position_m, world, at_, options_.passable_m)) return;
+  // Through a narrow gap onwards rather than back: one in it would go to and fro.
+  for (std::size_t i = last; i > at_; --i) {
+    if (take_if_seen(i, options_.passable_m)) return;
+  }
+  for (std::size_t i = at_; i > 0; --i) {
+    if (take_if_seen(i - 1, options_.passable_m)) return;
   }
 }
 
@@ -55,7 +60,7 @@ const Vec2& GuidePoints::update(const Vec2& position_m, const World& world) {
   }
   const double distance_m = (points_m_[at_] - position_m).norm();
   if (!is_last() && distance_m < options_.goal_radius_m &&
-      (distance_m < kReached_m || sees(position_m, world, at_ + 1, kTouch_m))) {
+      (distance_m < kReached_m || sees(position_m, world, at_ + 1, options_.passable_m))) {
     ++at_;
   }
   return points_m_[at_];

@@ -12,6 +12,7 @@ namespace swarm::agent {
 
 struct GuidePointsOptions {
   double radius_m = 0.2;
+  double passable_m = 0.06;      ///< least surface clearance that the safety filter lets pass
   double goal_radius_m = 1.0;    ///< an intermediate goal this near is reached
   double clearance_m = 0.3;      ///< surface clearance of a line of sight to a later one
   double sight_m = 12.0;         ///< later ones are looked for this far ahead on the way
@@ -24,8 +25,8 @@ struct GuidePointsOptions {
 /// place in the goal.
 ///
 /// A robot goes on to the next one within goal_radius_m, and to the farthest one within sight_m
-/// that is in line of sight. Pushed off so far that its present one is hidden, it falls back to the
-/// last one that it sees.
+/// that is in line of sight. Pushed off so far that its present one is hidden, it goes on to one
+/// that it sees through any gap, and if there is none falls back to the last one that it sees.
 class GuidePoints {
  public:
   GuidePoints() = default;

@@ -27,7 +27,7 @@ SafetyFilter::SafetyFilter(const World& world, const SafetyOptions& options)
 }
 
 void SafetyFilter::collect_obstacles(const Vec2& position_m) {
-  const double horizon_s = 2.0 * to_seconds(options_.period);
+  const double horizon_s = 2.0 * to_seconds(options_.period) + options_.lag_s;
   const double reach_m = options_.speed_max_mps * horizon_s + options_.obstacle_margin_m;
   const auto keep_off = [&](const Vec2& towards, double surface_gap_m, double coming_mps = 0.0) {
     if (surface_gap_m > reach_m + coming_mps * horizon_s) return;
@@ -54,7 +54,8 @@ void SafetyFilter::collect_neighbours(const Vec2& position_m,
   const double period_s = to_seconds(options_.period);
   const double v_max = options_.speed_max_mps;
   for (const Neighbour& n : neighbours) {
-    const double time_s = period_s + options_.stale_gain * std::max(0.0, n.stale_s - period_s);
+    const double time_s = period_s + options_.gap_share * options_.lag_s +
+                          options_.stale_gain * std::max(0.0, n.stale_s - period_s);
     // From here on the robot may do what it likes: nobody comes faster than its own brake allows.
     const double sum_m = options_.radius_m + n.radius_m;
     const double brake_m = options_.neighbour_margin_m + 2.0 * v_max * time_s / options_.gap_share;
@@ -71,7 +72,8 @@ void SafetyFilter::collect_neighbours(const Vec2& position_m,
     const double follow = std::min(options_.follow_share, kFollowMargin * margin_m / given_up_m);
     const double share =
         options_.gap_share * (gap - margin_m) / (2.0 * time_s) + follow * std::max(0.0, leaving);
-    const double evade = (gap - kEvade * margin_m) / (2.0 * period_s) - std::max(0.0, -leaving);
+    const double evade =
+        (gap - kEvade * margin_m) / (2.0 * period_s + options_.lag_s) - std::max(0.0, -leaving);
     const double bound = std::min(share, evade);
     if (bound < v_max) constraints_.push_back({towards, std::max(bound, -v_max)});
   }

@@ -15,6 +15,7 @@ struct SafetyOptions {
   double radius_m = 0.2;
   double speed_max_mps = 1.5;
   Duration period{};                 ///< Δt, of control
+  double lag_s = 0.0;                ///< λ: until the body is at a velocity it is told
   double gap_share = 0.5;            ///< γ
   double stale_gain = 1.0;           ///< a
   double neighbour_margin_m = 0.25;  ///< m
@@ -25,10 +26,11 @@ struct SafetyOptions {
 /// The layer under every control method: the velocity nearest to the wished one that keeps its
 /// promises.
 ///
-///   neighbour j:  n·u ≤ γ (gap − m) / (2T) + β max(0, n·v_j),   T = Δt + a max(0, τ_j − Δt)
-///                 n·u ≤ (gap − m/3) / (2Δt) − max(0, −n·v_j)     n points to the neighbour, v_j is
+///   neighbour j:  n·u ≤ γ (gap − m) / (2T) + β max(0, n·v_j),   T = Δt + γλ + a max(0, τ_j − Δt)
+///                 n·u ≤ (gap − m/3) / (2Δt + λ) − max(0, −n·v_j)     n points to the neighbour,
+///                 v_j is
 ///                                                                what it said of its velocity
-///   obstacle o:   n·u ≤ (s − m_o) / (2Δt) − max(0, −n·v_o)       n points into the obstacle
+///   obstacle o:   n·u ≤ (s − m_o) / (2Δt + λ) − max(0, −n·v_o)       n points into the obstacle
 ///   bounds:       the same with the four walls of the world
 ///
 /// What is promised, given speeds of at most v_max and commands that run out after 2Δt:
@@ -48,6 +50,13 @@ struct SafetyOptions {
 ///    gap give in by the same least speed, down to not closing it, which u = 0 obeys. A robot whose
 ///    wish is blocked by robots that face it turns its wish to its right, as everyone does, so that
 ///    opposing streams part into lanes.
+///
+/// λ = 0 for a body that has the velocity it is told at once. One that takes until λ = v_max/a for
+/// it is asked for no deceleration above a: towards an obstacle v/(2Δt + λ) < v/λ ≤ a, and of two
+/// that close in on each other each 2γv/(2Δt + 2γλ) < a. Bodies that leave the commanded direction
+/// (a unicycle while it turns, any with motion noise) may come as much nearer as they leave it by,
+/// and the margins must hold that. What is told to others must then be the measured velocity: β
+/// trusts it.
 class SafetyFilter {
  public:
   SafetyFilter(const World& world, const SafetyOptions& options);

@@ -11,6 +11,9 @@ namespace swarm::agent {
 
 struct Measurement {
   Vec2 position_m = Vec2::Zero();  ///< as sensed: all that the agent knows
+  /// How it moves, of a body that does not have the velocity it is told at once: neighbours who
+  /// trusted its command would drive into it.
+  std::optional<Vec2> velocity_mps;
   /// Where it truly is, if anybody knows (simulations do): for the black box, not for the agent.
   std::optional<Vec2> true_position_m;
   /// Whether the last command ran out before now, so that the body stops: a late control loop.

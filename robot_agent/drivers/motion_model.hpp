@@ -20,6 +20,7 @@ class MotionModel {
 
   virtual Vec2 position_m() const = 0;
   virtual Vec2 velocity_mps() const = 0;
+  virtual bool has_lag() const = 0;  ///< whether it takes time to be at a velocity it is told
 };
 
 /// The part of a velocity that a body with this top speed can do.

@@ -44,6 +44,7 @@ Measurement SimulatedRobot::measure(SteadyTime now) {
     model_->advance(to_seconds(now - at_), Vec2::Zero());
     at_ = now;
   }
+  if (model_->has_lag()) m.velocity_mps = model_->velocity_mps();
   m.true_position_m = model_->position_m();
   m.position_m = *m.true_position_m + draw(noise_.position_m);
   return m;
@@ -71,15 +72,6 @@ std::unique_ptr<Driver> make_simulated_body(const BodySpec& body, SteadyTime now
   }
   const SimulatedNoise noise{body.motion_noise_m, body.position_noise_m};
   return std::make_unique<SimulatedRobot>(now, std::move(model), noise, mix_seed(seed, 2));
-}
-
-double lag_s(const BodySpec& body) {
-  const double stopping_s = body.speed_max_mps / body.acceleration_max_mps2;
-  if (body.model == "double_integrator") return 2.0 * stopping_s;  // from v to −v
-  // A quarter turn; what points behind it stops for.
-  if (body.model == "unicycle")
-    return stopping_s + 0.5 * std::numbers::pi / body.turn_rate_max_radps;
-  return 0.0;
 }
 
 }  // namespace swarm::agent

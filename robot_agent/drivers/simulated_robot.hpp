@@ -49,8 +49,4 @@ class SimulatedRobot final : public Driver {
 std::unique_ptr<Driver> make_simulated_body(const BodySpec& body, SteadyTime now,
                                             const Vec2& position_m, std::uint64_t seed);
 
-/// How long such a body takes, at most, to be at a velocity it is told [s]: what the safety filter
-/// has to allow for. Zero for a single integrator.
-double lag_s(const BodySpec& body);
-
 }  // namespace swarm::agent

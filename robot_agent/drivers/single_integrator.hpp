@@ -22,6 +22,7 @@ class SingleIntegrator final : public MotionModel {
   void displace(const Vec2& by_m) override { position_m_ += by_m; }
   Vec2 position_m() const override { return position_m_; }
   Vec2 velocity_mps() const override { return velocity_mps_; }
+  bool has_lag() const override { return false; }
 
  private:
   Vec2 position_m_;

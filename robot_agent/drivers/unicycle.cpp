@@ -10,6 +10,7 @@ namespace swarm::agent {
 namespace {
 
 constexpr double kStep_s = 0.005;
+constexpr double kDrivesWithin_rad = 0.5;
 
 Vec2 direction(double heading_rad) { return {std::cos(heading_rad), std::sin(heading_rad)}; }
 
@@ -34,7 +35,7 @@ void Unicycle::step(double time_s, const Vec2& wanted_mps) {
     const double off_rad = wrapped(std::atan2(wanted_mps.y(), wanted_mps.x()) - heading_rad_);
     const double most_rad = limits_.turn_rate_max_radps * time_s;
     turn_rad = std::clamp(off_rad, -most_rad, most_rad);
-    target_mps = wanted_speed_mps * std::max(0.0, std::cos(off_rad));
+    target_mps = wanted_speed_mps * std::max(0.0, 1.0 - std::abs(off_rad) / kDrivesWithin_rad);
   }
   const double most_mps = limits_.acceleration_max_mps2 * time_s;
   const double before_mps = speed_mps_;

@@ -193,8 +193,11 @@ void Simulation::tick_robot(std::uint32_t id, SteadyTime now, Histogram* ages) {
       });
   robot.heard_until = now;
   const RobotMode before = robot.output.mode;
-  robot.output = robot.agent.tick(
-      {.now = now, .position_m = robot.position_m, .phase = phase_, .planner_alive = true});
+  robot.output = robot.agent.tick({.now = now,
+                                   .position_m = robot.position_m,
+                                   .phase = phase_,
+                                   .planner_alive = true,
+                                   .velocity_mps = body.velocity_mps});
   const agent::AgentOutput& out = robot.output;
   robot.body->command(now, out.velocity_mps, 2 * period_);
 
@@ -235,7 +238,7 @@ void Simulation::tick_slot(std::size_t slot) {
                      .sequence = ++robot.sequence,
                      .as_of = now,
                      .position_m = robot.position_m,
-                     .velocity_mps = robot.output.velocity_mps});
+                     .velocity_mps = robot.output.told_mps});
   }
   air_.post(now, said_);
 }

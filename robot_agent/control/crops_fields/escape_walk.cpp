@@ -7,6 +7,11 @@
 #include <numbers>
 
 namespace swarm::agent {
+namespace {
+
+constexpr std::size_t kStrongest = 4;
+
+}  // namespace
 
 EscapeWalk::EscapeWalk(const EscapeWalkOptions& options)
     : options_(options), past_m_(std::max<std::size_t>(1, options.window), Vec2::Zero()) {}
@@ -28,7 +33,9 @@ Vec2 EscapeWalk::update(const Vec2& position_m, Rng& rng) {
     --step_left_;
   } else if (stuck_) {
     const double angle_rad = uniform(rng, -std::numbers::pi, std::numbers::pi);
-    direction_ = options_.strength * Vec2(std::cos(angle_rad), std::sin(angle_rad));
+    steps_ = was_stuck ? std::min(steps_ + 1, kStrongest) : 1;
+    direction_ = options_.strength * static_cast<double>(steps_) *
+                 Vec2(std::cos(angle_rad), std::sin(angle_rad));
     step_left_ = options_.step - 1;
     if (!was_stuck) ++escapes_;
   } else {

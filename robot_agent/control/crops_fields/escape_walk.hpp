@@ -14,17 +14,18 @@ struct EscapeWalkOptions {
   std::size_t window = 40;   ///< ℓ, in ticks
   double moved_min_m = 0.3;  ///< Δ_stuck
   std::size_t step = 15;     ///< ticks a random direction is kept
-  double strength = 1.0;     ///< of the walk
+  double strength = 1.0;     ///< of the walk's first step
 };
 
 /// The stuck test and the random walk out of a local minimum [CRoPS, escaping local minima].
 ///
 ///   stuck(b) = 1 if ‖x(t) − x(t − ℓ)‖ < Δ_stuck, else 0
-///   PF_escape = stuck(b) s (r_x, r_y)      (r_x, r_y) a random direction
+///   PF_escape = stuck(b) s min(n, 4) (r_x, r_y)      (r_x, r_y) the walk's n-th random direction
 ///
 /// The code's robots make 1.5 m a tick and draw at every tick; ours make 0.15 m, so a direction is
-/// kept for some ticks: steps of a walk as long as the code's. A walk ends with the first step
-/// after which the robot is not stuck.
+/// kept for some ticks: steps of a walk as long as the code's. Steps grow while they are in vain,
+/// so that what other fields hold in balance ends some time. A walk ends with the first step after
+/// which the robot is not stuck.
 class EscapeWalk {
  public:
   explicit EscapeWalk(const EscapeWalkOptions& options);
@@ -44,6 +45,7 @@ class EscapeWalk {
   std::size_t seen_ = 0;
   std::size_t next_ = 0;
   std::size_t step_left_ = 0;
+  std::size_t steps_ = 0;  // of this walk
   Vec2 direction_ = Vec2::Zero();
   bool stuck_ = false;
   std::uint32_t escapes_ = 0;

@@ -10,8 +10,8 @@ namespace swarm::agent {
 
 struct GiveWayFieldOptions {
   double radius_m = 0.2;
-  double gap_m = 0.4;     ///< g0; above the safety filter's margin
-  double strength = 4.0;  ///< k, at contact
+  double gap_m = 0.35;    ///< g0; above the safety filter's margin
+  double strength = 8.0;  ///< k, at contact
 };
 
 /// Who is nearer to the goal goes first: not in the paper, whose robots may overlap.

@@ -181,6 +181,18 @@ TEST(Agent, StaysWhereItArrivedWhenThePlanLeavesItThere) {
   EXPECT_LT((sut.positions[0] - Vec2(49.0, 9.0)).norm(), 0.1);
 }
 
+TEST(Agent, TellsHowItsBodyMovesIfThatDiffersFromItsCommand) {
+  Swarm sut(1);
+  sut.agents[0].accept_plan(plan_over_the_block(), sut.positions[0]);
+  AgentInput input{sut.now, sut.positions[0], MissionPhase::kRunning, true};
+  const AgentOutput obeys = sut.agents[0].tick(input);
+  input.velocity_mps = Vec2(0.1, -0.2);
+  const AgentOutput lags = sut.agents[0].tick(input);
+
+  EXPECT_EQ(obeys.told_mps, obeys.velocity_mps);
+  EXPECT_EQ(lags.told_mps, Vec2(0.1, -0.2));
+}
+
 TEST(Agent, WaitsUntilTheMissionStarts) {
   Swarm sut(1);
   sut.tick(MissionPhase::kRunning, true);

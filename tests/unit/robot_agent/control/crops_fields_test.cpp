@@ -130,8 +130,10 @@ TEST(EscapeWalk, BeginsWhenTheRobotHasHardlyMovedForTheWholeWindow) {
   EXPECT_NEAR(first.norm(), 1.0, 1e-12);
   EXPECT_EQ(sut.escapes(), 1U);
   for (int tick = 1; tick < 5; ++tick) EXPECT_EQ(sut.update({0, 0}, rng), first);
-  EXPECT_NE(sut.update({0, 0}, rng), first);  // another step of the same walk
+  EXPECT_NEAR(sut.update({0, 0}, rng).norm(), 2.0, 1e-12);  // the next step of the same walk
   EXPECT_EQ(sut.escapes(), 1U);
+  for (int tick = 1; tick < 50; ++tick) sut.update({0, 0}, rng);
+  EXPECT_NEAR(sut.update({0, 0}, rng).norm(), 4.0, 1e-12);
 }
 
 TEST(EscapeWalk, EndsWithItsStepOnceTheRobotMoves) {

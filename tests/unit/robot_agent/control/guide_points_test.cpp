@@ -45,6 +45,17 @@ TEST(GuidePoints, FallsBackToTheLastItSees) {
   EXPECT_EQ(sut.update({6, 8}, walled()), Vec2(6, 12));  // pushed back behind it
 }
 
+TEST(GuidePoints, GoesOnThroughAGapRatherThanBack) {
+  // Below a block, 0.6 m above the floor; its own point is behind the block, the next beyond it.
+  const World world = World::make({{0, 0}, {20, 20}},
+                                  {Polygon::make({{8, 0.6}, {12, 0.6}, {12, 10}, {8, 10}}).value()})
+                          .value();
+  GuidePoints sut(Polyline({{2, 0.3}, {9, 12}, {18, 0.3}}), {.sight_m = 30.0, .look_every = 1});
+  ASSERT_EQ(sut.update({2, 5}, world), Vec2(9, 12));
+
+  EXPECT_EQ(sut.update({10, 0.3}, world), Vec2(18, 0.3));
+}
+
 TEST(GuidePoints, KeepsItsPointWhenItSeesNone) {
   const World cell = World::make({{0, 0}, {20, 20}},
                                  {Polygon::make({{1, 1}, {4, 1}, {4, 1.5}, {1, 1.5}}).value(),
