@@ -23,6 +23,7 @@ bool is_near_source(const FlowPlan& plan, std::uint32_t source, const Vec2& posi
 }
 
 constexpr double kAtRest_mps = 0.05;
+constexpr double kKeep = 1.25;  // of the sensing range: robots that left it are still kept so far
 constexpr double kSettling_m = 4.0;  // nearer to the end than this a turn aside would only stir
 constexpr double kMeanOver_s = 2.0;
 
@@ -39,6 +40,17 @@ double nearest_gap_m(const ControlView& view, double radius_m) {
 double obstacle_margin_m(const Mission& mission, const BodySpec& body) {
   return mission.safety.obstacle_margin_m +
          2.0 * std::hypot(body.position_noise_m, body.motion_noise_m);
+}
+
+/// From where on another robot matters to none of the forces of APF and not to the filter.
+double reach_m(const Mission& mission, const BodySpec& body, double keep_m) {
+  if (mission.control.method != "apf") return keep_m;
+  const double braking_s = 1.0 / (mission.control.rate_hz * mission.safety.gap_share) + lag_s(body);
+  const double brake_m = mission.safety.neighbour_margin_m + 2.0 * body.speed_max_mps * braking_s;
+  const double bodies_m = body.radius_m + largest_radius_m(mission.robots);
+  return std::max(
+      bodies_m + std::max({brake_m, mission.control.neighbour_gap_m, mission.link.send_near_m}),
+      DensityAttractionOptions{}.kernel_m);
 }
 
 CropsOptions crops_options(const Mission& mission, const BodySpec& body) {
@@ -132,7 +144,10 @@ AgentOptions agent_options(const Mission& mission, RobotId robot, std::uint64_t 
                  .follow_share = mission.safety.follow_share},
       .neighbours = {.radius_m = body.radius_m,
                      .fleet = Fleet(mission.robots),
-                     .keep_radius_m = 1.5 * hear_m,
+                     .keep_radius_m = kKeep * hear_m,
+                     .reach_m = reach_m(mission, body, kKeep * hear_m),
+                     .reach_growth_mps = 2.0 * body.speed_max_mps * mission.safety.stale_gain /
+                                         mission.safety.gap_share,
                      .near_m = l.send_near_m,
                      .near_silence = 3 * period,
                      .expected_silence = from_seconds(l.send_interval_max_s) + 2 * period,
@@ -187,8 +202,7 @@ AgentOutput Agent::tick(const AgentInput& input) {
   out.mode = decide_mode(input);
   moved_ = moved_ || out.mode == RobotMode::kMoving;
   out.nearest_gap_m = nearest_gap_m(view, options_.safety.radius_m);
-  out.neighbours =
-      static_cast<std::uint16_t>(std::min<std::size_t>(view.neighbours.size(), 0xFFFF));
+  out.neighbours = static_cast<std::uint16_t>(std::min<std::size_t>(neighbours_.known(), 0xFFFF));
   out.remaining_m = has_route_ ? method_->remaining_m() : 0.0;
 
   if (out.mode != RobotMode::kStopped) {

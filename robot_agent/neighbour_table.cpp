@@ -80,7 +80,6 @@ NeighbourTable::Outcome NeighbourTable::take(const NeighbourReport& report,
 
 std::span<const Neighbour> NeighbourTable::at(SteadyTime now, const Vec2& own_position_m) {
   neighbours_.clear();
-  const double keep_squared = options_.keep_radius_m * options_.keep_radius_m;
   const double period_s = to_seconds(options_.near_silence) / 3.0;
   for (Known& r : known_) {
     const Duration age = std::max<Duration>(now - r.as_of, Duration::zero());
@@ -96,8 +95,11 @@ std::span<const Neighbour> NeighbourTable::at(SteadyTime now, const Vec2& own_po
       const Vec2 stood = r.position_m + to_seconds(options_.near_silence) * r.velocity_mps;
       position = nearest_on_segment(own_position_m, stood, position);
     }
-    if ((position - own_position_m).squaredNorm() > keep_squared) continue;
     const bool must_speak = near && r.velocity_mps.squaredNorm() > kStands_mps * kStands_mps;
+    const double stale_s =
+        must_speak ? age_s : std::min(age_s, static_cast<double>(r.late_s) + period_s);
+    const double reach_m = options_.reach_m + options_.reach_growth_mps * stale_s;
+    if ((position - own_position_m).squaredNorm() > reach_m * reach_m) continue;
     Neighbour& n = neighbours_.emplace_back();
     n.robot = r.robot;
     n.position_m = position;
@@ -107,7 +109,7 @@ std::span<const Neighbour> NeighbourTable::at(SteadyTime now, const Vec2& own_po
       n.radius_m +=
           options_.fleet.of(r.robot).speed_max_mps * to_seconds(age - options_.expected_silence);
     }
-    n.stale_s = must_speak ? age_s : std::min(age_s, static_cast<double>(r.late_s) + period_s);
+    n.stale_s = stale_s;
   }
   if (any_gone_) {
     std::erase_if(known_, [](const Known& known) { return known.gone; });

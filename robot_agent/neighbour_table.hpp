@@ -35,9 +35,13 @@ struct Neighbour {
 };
 
 struct NeighbourOptions {
-  double radius_m = 0.2;        ///< of the robot itself
-  Fleet fleet;                  ///< sizes and speeds of the others
-  double keep_radius_m = 6.0;   ///< robots farther than this are not kept
+  double radius_m = 0.2;       ///< of the robot itself
+  Fleet fleet;                 ///< sizes and speeds of the others
+  double keep_radius_m = 6.0;  ///< robots farther than this are not kept
+  /// Who is farther than this matters to nobody: not told by at(). Grows with how old the knowledge
+  /// of a robot is.
+  double reach_m = 6.0;
+  double reach_growth_mps = 0.0;
   double near_m = 1.0;          ///< robots whose surface is this near speak at every tick …
   Duration near_silence{};      ///< … so that one silent for longer, three ticks, has stalled
   Duration expected_silence{};  ///< a healthy robot speaks at least this often
@@ -62,8 +66,11 @@ class NeighbourTable {
   /// `forget_after` may start over (it was restarted).
   Outcome take(const NeighbourReport& report, const Vec2& own_position_m);
 
-  /// Neighbours as of `now`; valid until the next call.
+  /// Neighbours within reach as of `now`; valid until the next call.
   std::span<const Neighbour> at(SteadyTime now, const Vec2& own_position_m);
+
+  /// Robots known at the last at(), within reach or not.
+  std::size_t known() const { return known_.size(); }
 
  private:
   /// One cache line.
