@@ -84,6 +84,9 @@ class Agent {
 
   AgentOutput tick(const AgentInput& input);
 
+  /// See NeighbourTable::prefetch().
+  void prefetch() const { neighbours_.prefetch(); }
+
   bool has_route() const { return has_route_; }
   /// Index of the goal (sink of the plan) this robot is at or goes to. \pre has_route()
   std::uint32_t goal(const Vec2& position_m) const { return method_->goal(position_m); }

@@ -69,6 +69,14 @@ class NeighbourTable {
   /// Neighbours within reach as of `now`; valid until the next call.
   std::span<const Neighbour> at(SteadyTime now, const Vec2& own_position_m);
 
+  /// Brings what take() and at() will look at into the cache: for whoever ticks many robots in turn,
+  /// while it ticks the one before.
+  void prefetch() const {
+    for (const Known& known : known_) __builtin_prefetch(&known, 1);
+    constexpr std::size_t kPerLine = 64 / sizeof(Slot);
+    for (std::size_t i = 0; i < index_.size(); i += kPerLine) __builtin_prefetch(&index_[i]);
+  }
+
   /// Robots known at the last at(), within reach or not.
   std::size_t known() const { return known_.size(); }
 

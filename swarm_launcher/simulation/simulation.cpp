@@ -227,6 +227,7 @@ void Simulation::tick_slot(std::size_t slot) {
     const std::size_t last = members.size() * (part + 1) / parts;
     for (std::size_t i = first; i < last; ++i) {
       const std::uint32_t id = members[i];
+      if (i + 1 < last) robots_[members[i + 1]].agent.prefetch();
       tick_robot(id, now, (periods_ + id) % kAgesEvery == 0 ? &ages_[part] : nullptr);
     }
   });
