@@ -16,6 +16,8 @@ constexpr Duration kRespawnDelay = std::chrono::milliseconds(300);
 constexpr Duration kStopRepeat = std::chrono::milliseconds(100);
 constexpr std::uint32_t kStopRepeats = 15;
 constexpr Duration kStopPatience = std::chrono::seconds(5);
+/// At the rim of a crowded goal a robot may be pushed out again: everyone stays for as long as this.
+constexpr Duration kStay = std::chrono::seconds(2);
 /// Arrived robots may never come to rest in a dense crowd; then this long is enough.
 constexpr Duration kSettlePatience = std::chrono::seconds(10);
 
@@ -250,7 +252,8 @@ void Supervisor::run(SteadyTime now, std::vector<Action>& actions) {
   const bool arrived = c.arrived == living && !had_goals_left;
   if (arrived && !all_arrived_) all_arrived_at_ = now;
   all_arrived_ = arrived;
-  if ((arrived && c.settled == living) || (arrived && now - all_arrived_at_ > kSettlePatience)) {
+  const Duration stayed = arrived ? now - all_arrived_at_ : Duration::zero();
+  if ((c.settled == living && stayed >= kStay) || stayed > kSettlePatience) {
     begin_ending(Outcome::kCompleted, now);
   } else if (mission_time(now).count() > options_.launcher.time_limit_s) {
     begin_ending(Outcome::kTimeLimit, now);

@@ -38,7 +38,9 @@ bool GoalPlace::has_arrived(SteadyTime now, const Vec2& position_m) {
     }
     nearest_m_ = std::numeric_limits<double>::infinity();
   }
-  return arrived_ = inside && (place_m_ - position_m).norm() < kNear_m;
+  // At the very rim it could be pushed out again.
+  const bool well_inside = goal_.mahalanobis_squared(position_m) <= kRim;
+  return arrived_ = well_inside && (place_m_ - position_m).norm() < kNear_m;
 }
 
 Vec2 GoalPlace::room(const ControlView& view) const {
