@@ -16,6 +16,7 @@ constexpr std::array kTurns_rad{0.4, 0.9, 1.4};  // to the right, while blocked,
 constexpr double kFree = 0.3;                    // … faster than this share of the wish
 constexpr double kFollowMargin = 0.9;            // share of the margin that following may give up
 constexpr double kEvade = 1.0 / 3.0;             // of the margin: kept to who does not keep off
+constexpr double kWithdraw = 0.9;                // of the largest speed: out of an obstacle
 constexpr double kLeastWish_mps = 0.1;           // slower wishes are not worth a detour
 
 }  // namespace
@@ -31,8 +32,9 @@ void SafetyFilter::collect_obstacles(const Vec2& position_m) {
   const double reach_m = options_.speed_max_mps * horizon_s + options_.obstacle_margin_m;
   const auto keep_off = [&](const Vec2& towards, double surface_gap_m, double coming_mps = 0.0) {
     if (surface_gap_m > reach_m + coming_mps * horizon_s) return;
-    constraints_.push_back(
-        {towards, (surface_gap_m - options_.obstacle_margin_m) / horizon_s - coming_mps});
+    const double bound = (surface_gap_m - options_.obstacle_margin_m) / horizon_s - coming_mps;
+    // One inside withdraws as fast as it can; to ask for more would freeze it.
+    constraints_.push_back({towards, std::max(bound, -kWithdraw * options_.speed_max_mps)});
   };
   const double searched_m = options_.radius_m + reach_m + world_.fastest_mps() * horizon_s;
   world_.convex_boxes().for_each_within({position_m, position_m}, searched_m, [&](std::uint32_t i) {

@@ -63,8 +63,11 @@ double stratified_share(std::uint32_t robot, std::uint32_t robots) {
 
 Result<std::vector<Vec2>> place_robots(const Mission& mission, std::uint64_t seed) {
   const RobotsSpec& spec = mission.robots;
-  const Box& bounds = mission.world.bounds_m();
   const double radius_m = largest_radius_m(spec);
+  // Off the walls as far as the safety filter keeps robots.
+  const Vec2 wall_m = Vec2::Constant(radius_m + mission.safety.obstacle_margin_m);
+  const Box free_m{mission.world.bounds_m().min_m + wall_m,
+                   mission.world.bounds_m().max_m - wall_m};
   const double obstacle_clearance_m = radius_m + spec.placement_gap_m;
   PlacedRobots placed(2.0 * radius_m + spec.placement_gap_m);
   std::vector<Vec2> positions;
@@ -78,7 +81,7 @@ Result<std::vector<Vec2>> place_robots(const Mission& mission, std::uint64_t see
       const double z0 = standard_normal(rng);
       const double z1 = standard_normal(rng);
       const Vec2 p = gaussian.mean_m() + lower * Vec2(z0, z1);
-      if (!bounds.contains(p) || !gaussian.contains_99(p) || !placed.is_clear(p) ||
+      if (!free_m.contains(p) || !gaussian.contains_99(p) || !placed.is_clear(p) ||
           mission.world.distance_m(p) < obstacle_clearance_m) {
         return false;
       }

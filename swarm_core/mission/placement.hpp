@@ -16,8 +16,9 @@ namespace swarm {
 double stratified_share(std::uint32_t robot, std::uint32_t robots);
 
 /// Where the simulated robots stand at the start [m]: robot i in the start component its stratified
-/// share falls into, a sample of that Gaussian inside the bounds, the 99 % ellipse, and clear of
-/// obstacles and earlier robots by robots.placement_gap_m. Deterministic in (mission, seed).
+/// share falls into, a sample of that Gaussian inside the 99 % ellipse, off the bounds by
+/// safety.obstacle_margin_m and clear of obstacles and earlier robots by robots.placement_gap_m.
+/// Deterministic in (mission, seed).
 /// Fails when a component is too crowded to place its robots.
 Result<std::vector<Vec2>> place_robots(const Mission& mission, std::uint64_t seed);
 

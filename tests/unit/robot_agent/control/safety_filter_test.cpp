@@ -165,6 +165,19 @@ TEST(SafetyFilter, MovesApartWhatIsTooClose) {
   EXPECT_LT(u.x(), 0.0);
 }
 
+TEST(SafetyFilter, LeadsOutOfAWallOrAnObstacleAsFastAsItCan) {
+  const auto corner = Polygon::make({{0, 0}, {4, 0}, {4, 4}, {0, 4}});
+  const World world = *World::make({{-50, -50}, {50, 50}}, {*corner});
+  SafetyFilter sut(world, options());
+
+  const Vec2 from_wall = sut.filter({-49.9, 0}, {-1, 1}, {});
+  const Vec2 from_obstacle = sut.filter({-0.01, 2}, {1, 0}, {});
+
+  EXPECT_GT(from_wall.x(), 0.0);
+  EXPECT_LT(from_obstacle.x(), 0.0);
+  EXPECT_LE(from_wall.norm(), options().speed_max_mps + 1e-9);
+}
+
 TEST(SafetyFilter, StandsStillWhenSqueezedFromBothSides) {
   const World world = empty_world();
   SafetyFilter filter(world, options());

@@ -28,7 +28,7 @@ TEST(StratifiedShare, MeetsEveryCumulatedWeightWithinOneRobot) {
 }
 
 TEST(Placement, KeepsEveryRobotClearAndInItsComponent) {
-  for (const char* name : {"small.yaml", "swarmprm_standin.yaml"}) {
+  for (const char* name : {"small.yaml", "swarmprm_standin.yaml", "diffusion_jie.yaml"}) {
     const Mission mission = shipped(name);
     const auto positions = place_robots(mission, 5);
 
@@ -40,7 +40,10 @@ TEST(Placement, KeepsEveryRobotClearAndInItsComponent) {
       const std::size_t component =
           mission.start.component_at(stratified_share(i, mission.robots.count));
       EXPECT_TRUE(mission.start.components()[component].gaussian.contains_99(p));
-      EXPECT_TRUE(mission.world.bounds_m().contains(p));
+      const Vec2 wall_m =
+          Vec2::Constant(mission.robots.radius_m + mission.safety.obstacle_margin_m);
+      EXPECT_TRUE(mission.world.bounds_m().contains(p - wall_m));
+      EXPECT_TRUE(mission.world.bounds_m().contains(p + wall_m));
       EXPECT_GE(mission.world.distance_m(p), mission.robots.radius_m + gap);
       for (std::uint32_t j = 0; j < i; ++j) {
         EXPECT_GE(((*positions)[j] - p).norm(), 2 * mission.robots.radius_m + gap);
