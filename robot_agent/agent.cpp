@@ -23,7 +23,6 @@ bool is_near_source(const FlowPlan& plan, std::uint32_t source, const Vec2& posi
 }
 
 constexpr double kAtRest_mps = 0.05;
-constexpr double kKeep = 1.25;  // of the sensing range: robots that left it are still kept so far
 constexpr double kSettling_m = 4.0;  // nearer to the end than this a turn aside would only stir
 constexpr double kMeanOver_s = 2.0;
 
@@ -144,8 +143,8 @@ AgentOptions agent_options(const Mission& mission, RobotId robot, std::uint64_t 
                  .follow_share = mission.safety.follow_share},
       .neighbours = {.radius_m = body.radius_m,
                      .fleet = Fleet(mission.robots),
-                     .keep_radius_m = kKeep * hear_m,
-                     .reach_m = reach_m(mission, body, kKeep * hear_m),
+                     .keep_radius_m = hear_m,
+                     .reach_m = reach_m(mission, body, hear_m),
                      .reach_growth_mps = 2.0 * body.speed_max_mps * mission.safety.stale_gain /
                                          mission.safety.gap_share,
                      .near_m = l.send_near_m,

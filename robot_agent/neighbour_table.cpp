@@ -81,6 +81,7 @@ NeighbourTable::Outcome NeighbourTable::take(const NeighbourReport& report,
 std::span<const Neighbour> NeighbourTable::at(SteadyTime now, const Vec2& own_position_m) {
   neighbours_.clear();
   const double period_s = to_seconds(options_.near_silence) / 3.0;
+  const double keep_squared = options_.keep_radius_m * options_.keep_radius_m;
   for (Known& r : known_) {
     const Duration age = std::max<Duration>(now - r.as_of, Duration::zero());
     if (age > options_.forget_after) any_gone_ = r.gone = true;
@@ -98,8 +99,14 @@ std::span<const Neighbour> NeighbourTable::at(SteadyTime now, const Vec2& own_po
     const bool must_speak = near && r.velocity_mps.squaredNorm() > kStands_mps * kStands_mps;
     const double stale_s =
         must_speak ? age_s : std::min(age_s, static_cast<double>(r.late_s) + period_s);
+    const double away_squared = (position - own_position_m).squaredNorm();
+    // It is not silent but out of range. Should it come back it will be heard.
+    if (away_squared > keep_squared) {
+      any_gone_ = r.gone = true;
+      continue;
+    }
     const double reach_m = options_.reach_m + options_.reach_growth_mps * stale_s;
-    if ((position - own_position_m).squaredNorm() > reach_m * reach_m) continue;
+    if (away_squared > reach_m * reach_m) continue;
     Neighbour& n = neighbours_.emplace_back();
     n.robot = r.robot;
     n.position_m = position;

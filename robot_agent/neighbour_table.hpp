@@ -37,7 +37,7 @@ struct Neighbour {
 struct NeighbourOptions {
   double radius_m = 0.2;       ///< of the robot itself
   Fleet fleet;                 ///< sizes and speeds of the others
-  double keep_radius_m = 6.0;  ///< robots farther than this are not kept
+  double keep_radius_m = 6.0;  ///< robots farther than this, heard or extrapolated, are not kept
   /// Who is farther than this matters to nobody: not told by at(). Grows with how old the knowledge
   /// of a robot is.
   double reach_m = 6.0;
@@ -69,8 +69,8 @@ class NeighbourTable {
   /// Neighbours within reach as of `now`; valid until the next call.
   std::span<const Neighbour> at(SteadyTime now, const Vec2& own_position_m);
 
-  /// Brings what take() and at() will look at into the cache: for whoever ticks many robots in turn,
-  /// while it ticks the one before.
+  /// Brings what take() and at() will look at into the cache: for whoever ticks many robots in
+  /// turn, while it ticks the one before.
   void prefetch() const {
     for (const Known& known : known_) __builtin_prefetch(&known, 1);
     constexpr std::size_t kPerLine = 64 / sizeof(Slot);

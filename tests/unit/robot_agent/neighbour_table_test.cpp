@@ -71,6 +71,16 @@ TEST(NeighbourTable, ForgetsRobotsOlderThanTheHorizon) {
   EXPECT_TRUE(sut.at(at(1001), Vec2::Zero()).empty());
 }
 
+TEST(NeighbourTable, DropsWhoLeavesTheSensingRangeUnheard) {
+  auto sut = table();
+  sut.take(report(3, 1, 0, {5.9, 0}, {1, 0}), Vec2::Zero());
+  sut.take(report(4, 1, 0, {5.9, 0}), Vec2::Zero());
+
+  EXPECT_EQ(sut.at(at(200), Vec2::Zero()).size(), 1U);   // it went
+  EXPECT_EQ(sut.at(at(200), Vec2(-0.2, 0)).size(), 0U);  // I went
+  EXPECT_EQ(sut.at(at(200), Vec2::Zero()).size(), 0U);   // and must hear it again
+}
+
 TEST(NeighbourTable, RefusesOldAndRepeatedReports) {
   auto sut = table();
   sut.take(report(3, 5, 100, {1, 0}), Vec2::Zero());

@@ -87,6 +87,21 @@ TEST(Simulation, IsTheSameToTheLastBitOnAnyNumberOfThreads) {
   expect_same(one.tracks, three.tracks);
 }
 
+// At 3 m/s and with a sensing range of 1.2 m robots leave each other's range all the time.
+TEST(Simulation, FormsShapes) {
+  for (const char* name : {"diffusion_q.yaml", "diffusion_jie.yaml"}) {
+    const auto mission =
+        load_mission(std::filesystem::path(SWARM_SOURCE_DIR) / "deploy/missions" / name);
+    ASSERT_TRUE(mission.has_value());
+
+    const Flight flight = fly(*mission, {});
+
+    EXPECT_EQ(flight.outcome, Outcome::kCompleted) << name;
+    EXPECT_EQ(flight.audit.arrived, mission->robots.count) << name;
+    EXPECT_EQ(flight.audit.collisions_robot, 0U) << name;
+  }
+}
+
 TEST(Simulation, DiffersByItsSeed) {
   const Mission mission = small_mission(12);
 
