@@ -8,6 +8,7 @@ namespace swarm::agent {
 namespace {
 
 constexpr std::size_t kFirstSlots = 64;
+constexpr std::size_t kSweepAt = 8;   // so many who are gone are worth a new index
 constexpr double kStands_mps = 0.01;  // slower is standing: such a robot need not speak
 
 Vec2 nearest_on_segment(const Vec2& point, const Vec2& from, const Vec2& to) {
@@ -22,6 +23,7 @@ Vec2 nearest_on_segment(const Vec2& point, const Vec2& from, const Vec2& to) {
 NeighbourTable::NeighbourTable(const NeighbourOptions& options)
     : options_(options), index_(kFirstSlots) {
   known_.reserve(kFirstSlots / 2);
+  candidates_.reserve(kFirstSlots / 2);
   neighbours_.reserve(kFirstSlots / 2);
 }
 
@@ -63,7 +65,7 @@ NeighbourTable::Outcome NeighbourTable::take(const NeighbourReport& report,
   }
   const double keep_squared = options_.keep_radius_m * options_.keep_radius_m;
   if ((report.position_m - own_position_m).squaredNorm() > keep_squared) {
-    if (is_known) any_gone_ = known_[slot.known].gone = true;
+    if (is_known) known_[slot.known].gone = true;
     return Outcome::kFar;
   }
   const std::size_t at = is_known ? slot.known : known_.size();
@@ -78,50 +80,88 @@ NeighbourTable::Outcome NeighbourTable::take(const NeighbourReport& report,
   return Outcome::kTaken;
 }
 
+/// Who may be within reach, into candidates_. Most are not, and which ones is a coin toss: no
+/// branches. Those that are extrapolated out of the sensing range are gone; a silent one may have
+/// stalled within, and is a candidate.
+void NeighbourTable::sift(SteadyTime now, const Vec2& own_position_m) {
+  const double keep_squared = options_.keep_radius_m * options_.keep_radius_m;
+  const double reach_now_m = options_.reach_m;
+  const double growth_mps = options_.reach_growth_mps;
+  const Duration silence = options_.near_silence;
+  const Vec2 own_m = own_position_m;
+  if (candidates_.size() < known_.size()) candidates_.resize(known_.capacity());
+  Known* const known = known_.data();
+  std::uint32_t* const candidates = candidates_.data();
+  const auto count = static_cast<std::uint32_t>(known_.size());
+  std::size_t found = 0;
+  std::size_t gone = 0;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    Known& r = known[i];
+    const Duration age = now - r.as_of;
+    const double age_s = to_seconds(std::max<Duration>(age, Duration::zero()));
+    const bool silent = age > silence;
+    const Vec2 away_m = r.position_m + age_s * r.velocity_mps - own_m;
+    const double away_squared = away_m.squaredNorm();
+    const double reach_m = reach_now_m + growth_mps * age_s;
+    r.gone |= !silent & (away_squared > keep_squared);
+    candidates[found] = i;
+    found += static_cast<std::size_t>(silent | (away_squared <= reach_m * reach_m));
+    gone += r.gone;
+  }
+  candidates_found_ = found;
+  gone_ = gone;
+}
+
+/// What is believed of it, if it is within reach.
+void NeighbourTable::believe(Known& r, SteadyTime now, const Vec2& own_position_m) {
+  const Duration age = std::max<Duration>(now - r.as_of, Duration::zero());
+  const double age_s = to_seconds(age);
+  const double period_s = to_seconds(options_.near_silence) / 3.0;
+  const double speaks_within_m = options_.near_m + options_.radius_m + r.radius_m;
+  const bool near =
+      (r.position_m - own_position_m).squaredNorm() < speaks_within_m * speaks_within_m;
+  const bool silent = near && age > options_.near_silence;
+  Vec2 position = r.position_m + age_s * r.velocity_mps;
+  if (silent) {
+    const Vec2 stood = r.position_m + to_seconds(options_.near_silence) * r.velocity_mps;
+    position = nearest_on_segment(own_position_m, stood, position);
+  }
+  const bool must_speak = near && r.velocity_mps.squaredNorm() > kStands_mps * kStands_mps;
+  const double stale_s =
+      must_speak ? age_s : std::min(age_s, static_cast<double>(r.late_s) + period_s);
+  const double away_squared = (position - own_position_m).squaredNorm();
+  // One that left the sensing range is not silent. Should it come back it will be heard.
+  if (age > options_.forget_after ||
+      away_squared > options_.keep_radius_m * options_.keep_radius_m) {
+    r.gone = true;
+    ++gone_;
+    return;
+  }
+  const double reach_m = options_.reach_m + options_.reach_growth_mps * stale_s;
+  if (away_squared > reach_m * reach_m) return;
+  Neighbour& n = neighbours_.emplace_back();
+  n.robot = r.robot;
+  n.position_m = position;
+  if (!silent) n.velocity_mps = r.velocity_mps;
+  n.radius_m = r.radius_m;
+  if (age > options_.expected_silence) {
+    n.radius_m +=
+        options_.fleet.of(r.robot).speed_max_mps * to_seconds(age - options_.expected_silence);
+  }
+  n.stale_s = stale_s;
+}
+
 std::span<const Neighbour> NeighbourTable::at(SteadyTime now, const Vec2& own_position_m) {
   neighbours_.clear();
-  const double period_s = to_seconds(options_.near_silence) / 3.0;
-  const double keep_squared = options_.keep_radius_m * options_.keep_radius_m;
-  for (Known& r : known_) {
-    const Duration age = std::max<Duration>(now - r.as_of, Duration::zero());
-    if (age > options_.forget_after) any_gone_ = r.gone = true;
-    if (r.gone) continue;
-    const double age_s = to_seconds(age);
-    const double speaks_within_m = options_.near_m + options_.radius_m + r.radius_m;
-    const bool near =
-        (r.position_m - own_position_m).squaredNorm() < speaks_within_m * speaks_within_m;
-    const bool silent = near && age > options_.near_silence;
-    Vec2 position = r.position_m + age_s * r.velocity_mps;
-    if (silent) {
-      const Vec2 stood = r.position_m + to_seconds(options_.near_silence) * r.velocity_mps;
-      position = nearest_on_segment(own_position_m, stood, position);
-    }
-    const bool must_speak = near && r.velocity_mps.squaredNorm() > kStands_mps * kStands_mps;
-    const double stale_s =
-        must_speak ? age_s : std::min(age_s, static_cast<double>(r.late_s) + period_s);
-    const double away_squared = (position - own_position_m).squaredNorm();
-    // It is not silent but out of range. Should it come back it will be heard.
-    if (away_squared > keep_squared) {
-      any_gone_ = r.gone = true;
-      continue;
-    }
-    const double reach_m = options_.reach_m + options_.reach_growth_mps * stale_s;
-    if (away_squared > reach_m * reach_m) continue;
-    Neighbour& n = neighbours_.emplace_back();
-    n.robot = r.robot;
-    n.position_m = position;
-    if (!silent) n.velocity_mps = r.velocity_mps;
-    n.radius_m = r.radius_m;
-    if (age > options_.expected_silence) {
-      n.radius_m +=
-          options_.fleet.of(r.robot).speed_max_mps * to_seconds(age - options_.expected_silence);
-    }
-    n.stale_s = stale_s;
+  sift(now, own_position_m);
+  for (std::size_t i = 0; i < candidates_found_; ++i) {
+    Known& known = known_[candidates_[i]];
+    if (!known.gone) believe(known, now, own_position_m);
   }
-  if (any_gone_) {
+  if (gone_ >= kSweepAt) {
     std::erase_if(known_, [](const Known& known) { return known.gone; });
     rebuild_index();
-    any_gone_ = false;
+    gone_ = 0;
   }
   return neighbours_;
 }

@@ -78,7 +78,7 @@ class NeighbourTable {
   }
 
   /// Robots known at the last at(), within reach or not.
-  std::size_t known() const { return known_.size(); }
+  std::size_t known() const { return known_.size() - gone_; }
 
  private:
   /// One cache line.
@@ -90,7 +90,7 @@ class NeighbourTable {
     std::uint32_t sequence = 0;
     double radius_m = 0.0;
     float late_s = 0.0F;
-    bool gone = false;  // left the neighbourhood; dropped by the next at()
+    bool gone = false;  // left the neighbourhood
   };
   /// Of the hash table, with open addressing.
   struct Slot {
@@ -102,12 +102,16 @@ class NeighbourTable {
   Slot& slot_of(RobotId robot);
   void insert(const NeighbourReport& report, Slot& slot);
   void rebuild_index();
+  void sift(SteadyTime now, const Vec2& own_position_m);
+  void believe(Known& r, SteadyTime now, const Vec2& own_position_m);
 
   NeighbourOptions options_;
   std::vector<Known> known_;
+  std::vector<std::uint32_t> candidates_;  // indices into known_, the first candidates_found_
+  std::size_t candidates_found_ = 0;
   std::vector<Slot> index_;  // a power of two of them
-  bool any_gone_ = false;
   std::vector<Neighbour> neighbours_;
+  std::size_t gone_ = 0;  // of known_, as of the last at()
 };
 
 }  // namespace swarm::agent

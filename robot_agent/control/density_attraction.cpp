@@ -43,8 +43,8 @@ Vec2 DensityAttraction::pull(const Vec2& position_m, double progress_m,
   Vec2 gradient = Vec2::Zero();
   for (const Neighbour& n : neighbours) {
     const Vec2 offset = position_m - n.position_m;
-    const double left = 1.0 - offset.squaredNorm() / h2;
-    if (left <= 0.0) continue;
+    // Who is in reach is a coin toss: no branch.
+    const double left = std::max(0.0, 1.0 - offset.squaredNorm() / h2);
     density += left * left;
     gradient -= 4.0 / h2 * left * offset;
   }

@@ -13,9 +13,9 @@ Vec2 neighbour_repulsion(const Vec2& position_m, std::span<const Neighbour> neig
     const Vec2 away = position_m - n.position_m;
     const double distance = away.norm();
     const double gap = distance - options.radius_m - n.radius_m;
-    if (gap >= options.gap_m || distance < 1e-9) continue;
-    const double strength = std::min(1.0, 1.0 - gap / options.gap_m);
-    push += options.push_mps * strength / distance * away;
+    // Who is near is a coin toss: no branch.
+    const double strength = std::clamp(1.0 - gap / options.gap_m, 0.0, 1.0);
+    push += options.push_mps * strength / std::max(distance, 1e-9) * away;
   }
   return push;
 }

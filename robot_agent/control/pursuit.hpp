@@ -42,7 +42,7 @@ class Pursuit {
 
   double progress_m() const { return s_m_; }
   double remaining_m() const { return path_.length_m() - s_m_; }
-  Vec2 end_m() const { return path_.at(path_.length_m()); }
+  Vec2 end_m() const { return path_.vertices_m().back(); }
 
  private:
   void advance(const Vec2& position_m);

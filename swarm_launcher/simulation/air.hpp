@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <deque>
 #include <span>
@@ -52,17 +53,27 @@ class Air {
         const std::size_t row = static_cast<std::size_t>(y) * static_cast<std::size_t>(columns_);
         const std::size_t first = moment.begin[row + static_cast<std::size_t>(x0)];
         const std::size_t last = moment.begin[row + static_cast<std::size_t>(x1) + 1];
-        for (std::size_t i = first; i < last; ++i) {
-          const agent::NeighbourReport& report = moment.said[i];
-          if ((report.position_m - position_m).squaredNorm() > range_squared) continue;
-          if (report.robot == receiver) continue;
-          if (!faults_.any() || arrives(report, receiver, due, from, until)) take(report);
+        for (std::size_t i = first; i < last; i += kAtOnce) {
+          // Who is in range is a coin toss: found without a branch.
+          std::array<std::uint32_t, kAtOnce> near;
+          std::size_t found = 0;
+          for (std::size_t k = i; k < std::min(last, i + kAtOnce); ++k) {
+            near[found] = static_cast<std::uint32_t>(k);
+            found += (moment.said[k].position_m - position_m).squaredNorm() <= range_squared;
+          }
+          for (std::size_t k = 0; k < found; ++k) {
+            const agent::NeighbourReport& report = moment.said[near[k]];
+            if (report.robot == receiver) continue;
+            if (!faults_.any() || arrives(report, receiver, due, from, until)) take(report);
+          }
         }
       }
     }
   }
 
  private:
+  static constexpr std::size_t kAtOnce = 64;
+
   struct Moment {
     SteadyTime at;
     std::vector<std::uint32_t> begin;  // of each cell in `said`, row by row; one more at the end

@@ -25,7 +25,7 @@ constexpr std::uint64_t kAgesEvery = 10;
 
 // Of the sensing range: on the bus too words carry farther, so that who leaves the range is heard
 // to.
-constexpr double kCarries = 1.25;
+constexpr double kCarries = 1.1;
 
 double carries_m(const Mission& mission, RobotId robot) {
   const double own_m = body_of(mission.robots, robot).hear_radius_m;
