@@ -94,9 +94,9 @@ int main(int argc, char** argv) {
     launcher::TableOptions table;
     CLI::App* table_command = app.add_subcommand(
         "table", "Simulate a paper's experiment: its table, its peers and ours side by side");
-    table_command->add_option("which", table.which, "swarmprm, rover, crops or diffusion")
+    table_command->add_option("which", table.which, "swarmprm, rover, crops, diffusion or network")
         ->required()
-        ->check(CLI::IsMember({"swarmprm", "rover", "crops", "diffusion"}));
+        ->check(CLI::IsMember({"swarmprm", "rover", "crops", "diffusion", "network"}));
     table_command->add_flag("--quick", table.quick, "Fewer robots and seeds");
     table_command->add_option("--missions", table.missions, "Where the mission files are");
     table_command->add_option("--out", table.out, "Directory for Markdown, JSON and pictures");

@@ -2,11 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "swarm_launcher/table/flown.hpp"
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <limits>
 #include <optional>
 #include <thread>
 
+#include "robot_agent/control/cotangent_repulsion.hpp"
 #include "swarm_core/shell/stop_signal.hpp"
 #include "swarm_monitor/audit.hpp"
 #include "swarm_monitor/report.hpp"
@@ -39,6 +42,36 @@ double risk_share(const monitor::RecordedRun& run) {
     }
   }
   return looked == 0 ? 0.0 : static_cast<double>(inside) / static_cast<double>(looked);
+}
+
+/// All robots are recorded at the same times, from the first step on.
+std::vector<double> energy_m2(const monitor::RecordedRun& run) {
+  const ControlSpec& control = run.mission.control;
+  const double range_m = control.diffusion_range_m > 0.0 ? control.diffusion_range_m
+                                                         : 10.0 * run.mission.robots.radius_m;
+  const agent::CotangentOptions repulsion{control.diffusion_strength_m2, range_m};
+  const auto every =
+      static_cast<std::size_t>(std::max(1.0, Flown::kEnergyEvery_s * control.rate_hz));
+  std::vector<double> energy;
+  std::vector<agent::Neighbour> others;
+  std::size_t steps = std::numeric_limits<std::size_t>::max();
+  for (const monitor::Track& track : run.tracks) steps = std::min(steps, track.points.size());
+  for (std::size_t k = 0; k < steps; k += every) {
+    double most = 0.0;
+    for (const monitor::Track& self : run.tracks) {
+      const Vec2& at_m = self.points[k].position_m;
+      others.clear();
+      for (const monitor::Track& other : run.tracks) {
+        const Vec2& p = other.points[k].position_m;
+        if (&other == &self || (p - at_m).squaredNorm() >= range_m * range_m) continue;
+        others.push_back({.robot = other.robot, .position_m = p});
+      }
+      most = std::max(most, run.mission.goal_shape->at(at_m).energy_m2 +
+                                agent::cotangent_repulsion(at_m, others, repulsion).energy_m2);
+    }
+    energy.push_back(most);
+  }
+  return energy;
 }
 
 }  // namespace
@@ -77,18 +110,23 @@ Result<Flown> fly(const Mission& mission, const SimulationOptions& options, bool
     flown.clearance_m += gap_m / static_cast<double>(audited.obstacles.by_robot_m.size());
   }
   flown.risk_share = risk_share(audited.run);
-  if (draw) flown.paths_svg = monitor::paths_svg(audited);
+  if (mission.control.method == "intermittent_diffusion") flown.energy_m2 = energy_m2(audited.run);
+  if (!draw) return flown;
+  flown.paths_svg = monitor::paths_svg(audited);
+  flown.robot_gaps_m = audited.robots.by_robot_m;
+  flown.obstacle_gaps_m = audited.obstacles.by_robot_m;
   return flown;
 }
 
-Result<std::vector<Flown>> fly_seeds(const Mission& mission, std::uint32_t seeds) {
+Result<std::vector<Flown>> fly_seeds(const Mission& mission, std::uint32_t seeds,
+                                     const SimulationOptions& options) {
   std::vector<std::optional<Result<Flown>>> results(seeds);
   std::atomic<std::uint32_t> next = 0;
   const auto work = [&] {
     for (std::uint32_t i = next++; i < seeds && shell::stop_requests() == 0; i = next++) {
-      SimulationOptions options;
-      options.seed = i + 1;
-      results[i] = fly(mission, options, i == 0);
+      SimulationOptions own = options;
+      own.seed = i + 1;
+      results[i] = fly(mission, own, i == 0);
     }
   };
   {

@@ -31,7 +31,13 @@ struct Flown {
   double clearance_m = 0.0;
   /// Share of robot-time nearer to an obstacle than planner.risk_delta_m allows: −sdf > δ.
   double risk_share = 0.0;
-  std::string paths_svg{};  ///< if it was asked for
+  /// E = max (F + G) over the robots, of shapes that are filled.
+  std::vector<double> energy_m2{};
+  static constexpr double kEnergyEvery_s = 0.1;
+  // Of a drawn one alone:
+  std::string paths_svg{};
+  std::vector<double> robot_gaps_m{};     ///< least gap of each robot to others, at most 2 m
+  std::vector<double> obstacle_gaps_m{};  ///< and to obstacles
 
   double ratio() const { return bound_m > 0.0 ? path_m / bound_m : 0.0; }
 };
@@ -41,6 +47,7 @@ Result<Flown> fly(const Mission& mission, const SimulationOptions& options, bool
 
 /// The same for seeds 1 … `seeds`, as many at a time as there are cores; the first one is drawn.
 /// Fails if one of them cannot be planned.
-Result<std::vector<Flown>> fly_seeds(const Mission& mission, std::uint32_t seeds);
+Result<std::vector<Flown>> fly_seeds(const Mission& mission, std::uint32_t seeds,
+                                     const SimulationOptions& options = {});
 
 }  // namespace swarm::launcher

@@ -10,7 +10,7 @@
 namespace swarm::launcher {
 
 struct TableOptions {
-  std::string which;   ///< swarmprm, rover, crops or diffusion
+  std::string which;   ///< swarmprm, rover, crops, diffusion or network
   bool quick = false;  ///< fewer robots and seeds, to see that it works
   std::filesystem::path missions = "deploy/missions";
   std::filesystem::path

@@ -1,0 +1,110 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include <array>
+
+#include <fmt/format.h>
+
+#include "swarm_launcher/table/experiments.hpp"
+#include "swarm_launcher/table/figure.hpp"
+
+namespace swarm::launcher {
+namespace {
+
+/// A case of the official code; what else it scales with r is in scaled().
+struct Case {
+  const char* mission;
+  double radius_m;
+  std::uint32_t robots;
+  double tolerance_m2;
+};
+
+constexpr std::array<Case, 4> kCases{{{"diffusion_q", 0.1, 50, 0.045},
+                                      {"diffusion_q", 0.05, 150, 0.035},
+                                      {"diffusion_jie", 0.1, 200, 0.18},
+                                      {"diffusion_jie", 0.05, 400, 0.11}}};
+constexpr double kTimeLimit_s = 60.0;
+
+/// A mission made for another radius: lengths and speeds near a robot go with it, the shape stays.
+Mission scaled(Mission mission, const Case& c) {
+  const double factor = c.radius_m / mission.robots.radius_m;
+  RobotsSpec& robots = mission.robots;
+  robots.count = c.robots;
+  for (double* value : {&robots.radius_m, &robots.placement_gap_m, &robots.speed_max_mps,
+                        &mission.control.cruise_mps, &mission.control.obstacle_gap_m,
+                        &mission.safety.neighbour_margin_m, &mission.safety.obstacle_margin_m,
+                        &mission.link.hear_radius_m, &mission.link.send_error_m}) {
+    *value *= factor;
+  }
+  mission.control.rate_hz /= factor;
+  mission.control.diffusion_tolerance_m2 = c.tolerance_m2;
+  mission.launcher.time_limit_s = kTimeLimit_s;
+  return mission;
+}
+
+/// Seeds in which E came within the tolerance and nobody crashed.
+std::size_t formed(const Row& row, const Case& c) {
+  return static_cast<std::size_t>(
+      std::count_if(row.flown.begin(), row.flown.end(), [&](const Flown& f) {
+        return f.contacts == 0 && !f.energy_m2.empty() &&
+               *std::min_element(f.energy_m2.begin(), f.energy_m2.end()) <= c.tolerance_m2;
+      }));
+}
+
+Line energy_line(const std::string& name, const Flown& flown) {
+  Line line{.name = name, .points = {}};
+  for (std::size_t i = 0; i < flown.energy_m2.size(); ++i) {
+    line.points.emplace_back(static_cast<double>(i) * Flown::kEnergyEvery_s, flown.energy_m2[i]);
+  }
+  return line;
+}
+
+void draw_energy(Rows& rows, std::size_t index, const Case& c) {
+  const Flown& ours = rows.all()[rows.all().size() - 2].flown.front();
+  const Flown& plain = rows.newest().flown.front();
+  if (ours.energy_m2.empty() || plain.energy_m2.empty()) return;
+  std::vector<Line> lines{energy_line("intermittent diffusion", ours),
+                          energy_line("gradient descent", plain)};
+  const double end_s = std::max(lines[0].points.back().x(), lines[1].points.back().x());
+  lines.push_back({"tolerance", {{0.0, c.tolerance_m2}, {end_s, c.tolerance_m2}}});
+  rows.draw(fmt::format("energy-{}", index),
+            figure({.title = fmt::format("{}, {} robots of {} m", c.mission, c.robots, c.radius_m),
+                    .x = "time, s",
+                    .y = "E = max (F + G), m²",
+                    .log_y = true},
+                   lines));
+}
+
+}  // namespace
+
+Result<void> diffusion_experiment(Rows& rows) {
+  std::string lines;
+  for (std::size_t i = 0; i < (rows.quick() ? 1 : kCases.size()); ++i) {
+    const Case& c = kCases[i];
+    auto mission = rows.load(c.mission);
+    if (!mission) return tl::unexpected(mission.error());
+    *mission = scaled(*std::move(mission), c);
+    const std::uint32_t seeds = rows.quick() ? 1 : 20;
+    const std::string cells = fmt::format("{} | {} | {}", c.robots, c.radius_m, c.tolerance_m2);
+    if (auto added = rows.add(c.mission, cells, *mission, seeds); !added) return added;
+    const std::size_t ours = formed(rows.newest(), c);
+
+    mission->control.diffusion_time_s = 0.0;
+    const std::string plain = fmt::format("{}, gradient descent", c.mission);
+    if (auto added = rows.add(plain, cells, *mission, seeds); !added) return added;
+    rows.is_baseline();
+    lines += fmt::format("| {} | {} | {} of {} | {} of {} | {:.4g} |\n", c.mission, cells, ours,
+                         seeds, formed(rows.newest(), c), seeds, rows.newest().mean([](auto& f) {
+                           return f.energy_m2.empty() ? 0.0 : f.energy_m2.back();
+                         }));
+    draw_energy(rows, i, c);
+  }
+  rows.say_rows("shape", "N | r m | tolerance m²");
+  rows.say(
+      "\n| shape | N | r m | tolerance m² | formed | by gradient descent | E it ends at, mean, m² "
+      "|\n"
+      "|---|---|---|---|---|---|---|\n" +
+      lines);
+  return {};
+}
+
+}  // namespace swarm::launcher

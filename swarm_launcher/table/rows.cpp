@@ -1,0 +1,109 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "swarm_launcher/table/rows.hpp"
+
+#include <cstdio>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "swarm_core/mission/mission_file.hpp"
+#include "swarm_core/shell/run_directory.hpp"
+
+namespace swarm::launcher {
+namespace {
+
+constexpr std::string_view kOurs =
+    "wall s | mean path m (std) | / bound | mission s | arrived % | contacts | least gap robot / "
+    "obstacle m";
+
+std::string cells(const Row& row) {
+  const auto mean = [&](auto of) { return row.mean(of); };
+  return fmt::format(
+      "{:.2f} | {:.1f} ({:.2f}) | {:.3f} | {:.0f} | {:.4g} | {:.3g} | {:.2f} / {:.2f}",
+      mean([](const Flown& f) { return f.wall_s; }), mean([](const Flown& f) { return f.path_m; }),
+      row.deviation([](const Flown& f) { return f.path_m; }),
+      mean([](const Flown& f) { return f.ratio(); }),
+      mean([](const Flown& f) { return f.mission_s; }),
+      100.0 * mean([](const Flown& f) { return 1.0 * f.arrived / f.robots; }),
+      mean([](const Flown& f) { return 1.0 * f.contacts; }),
+      row.least([](const Flown& f) { return f.robot_gap_m; }),
+      row.least([](const Flown& f) { return f.obstacle_gap_m; }));
+}
+
+nlohmann::ordered_json to_json(const Row& row) {
+  nlohmann::ordered_json seeds = nlohmann::ordered_json::array();
+  for (const Flown& f : row.flown) {
+    seeds.push_back({{"seed", f.seed},
+                     {"outcome", to_string(f.outcome)},
+                     {"robots", f.robots},
+                     {"arrived", f.arrived},
+                     {"contacts", f.contacts},
+                     {"wall_s", f.wall_s},
+                     {"plan_ms", f.plan_ms},
+                     {"ns_per_agent_step", f.ns_per_agent_step},
+                     {"mission_s", f.mission_s},
+                     {"mean_path_m", f.path_m},
+                     {"path_ratio", f.ratio()},
+                     {"min_robot_gap_m", f.robot_gap_m},
+                     {"min_obstacle_gap_m", f.obstacle_gap_m},
+                     {"clearance_m", f.clearance_m},
+                     {"risk_share", f.risk_share}});
+  }
+  return {{"name", row.name}, {"seeds", std::move(seeds)}};
+}
+
+}  // namespace
+
+Result<Mission> Rows::load(const std::string& name) const {
+  return load_mission(options_.missions / (name + ".yaml"));
+}
+
+Result<void> Rows::add(const std::string& name, const std::string& published,
+                       const Mission& mission, std::uint32_t seeds,
+                       const SimulationOptions& options) {
+  std::fprintf(stderr, "%s: %u robots, %u seed(s)\n", name.c_str(), mission.robots.count, seeds);
+  auto flown = fly_seeds(mission, seeds, options);
+  if (!flown) return tl::unexpected(flown.error());
+  rows_.push_back({name, published, *std::move(flown)});
+  return {};
+}
+
+void Rows::say_rows(std::string_view head, std::string_view published_head) {
+  const std::string columns = fmt::format("{} | {} | {}", head, published_head, kOurs);
+  say("| " + columns + " |");
+  std::string rule = "|";
+  for (auto i = std::count(columns.begin(), columns.end(), '|'); i >= 0; --i) rule += "---|";
+  say(rule);
+  for (const Row& row : rows_) {
+    say(fmt::format("| {} | {} | {} |", row.name, row.published, cells(row)));
+  }
+}
+
+Result<ExitCode> Rows::finish() const {
+  std::fputs(text_.c_str(), stdout);
+  const bool good = std::all_of(rows_.begin(), rows_.end(), [](const Row& r) { return r.good(); });
+  const ExitCode code = good ? ExitCode::kOk : ExitCode::kCriteriaNotMet;
+  if (options_.out.empty()) return code;
+
+  std::error_code error;
+  std::filesystem::create_directories(options_.out, error);
+  const auto write = [&](const std::string& suffix, const std::string& content) {
+    return shell::write_file(options_.out / (options_.which + suffix), content);
+  };
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    json.push_back(to_json(rows_[i]));
+    if (auto w = write(fmt::format("-{:02}.svg", i), rows_[i].flown.front().paths_svg); !w) {
+      return tl::unexpected(w.error());
+    }
+  }
+  for (const auto& [name, svg] : pictures_) {
+    if (auto w = write("-" + name + ".svg", svg); !w) return tl::unexpected(w.error());
+  }
+  if (auto w = write(".md", text_); !w) return tl::unexpected(w.error());
+  if (auto w = write(".json", json.dump(2) + "\n"); !w) return tl::unexpected(w.error());
+  return code;
+}
+
+}  // namespace swarm::launcher
