@@ -41,15 +41,25 @@ double obstacle_margin_m(const Mission& mission, const BodySpec& body) {
          2.0 * std::hypot(body.position_noise_m, body.motion_noise_m);
 }
 
-/// From where on another robot matters to none of the forces of APF and not to the filter.
+/// From where on another robot matters to none of the method's forces.
+double force_reach_m(const ControlSpec& control, double bodies_m) {
+  if (control.method == "apf") {
+    return std::max(bodies_m + control.neighbour_gap_m, DensityAttractionOptions{}.kernel_m);
+  }
+  const HeadingFieldOptions heading;
+  constexpr double kSigmas = 3.0;  // farther headings weigh less than 1 %
+  return std::max(SeparationFieldOptions{}.reach_m, heading.mean_m + kSigmas * heading.sigma_m);
+}
+
+/// From where on it matters neither to those nor to the filter.
 double reach_m(const Mission& mission, const BodySpec& body, double keep_m) {
-  if (mission.control.method != "apf") return keep_m;
+  // Its range is the sensing range.
+  if (mission.control.method == "intermittent_diffusion") return keep_m;
   const double braking_s = 1.0 / (mission.control.rate_hz * mission.safety.gap_share) + lag_s(body);
   const double brake_m = mission.safety.neighbour_margin_m + 2.0 * body.speed_max_mps * braking_s;
   const double bodies_m = body.radius_m + largest_radius_m(mission.robots);
-  return std::max(
-      bodies_m + std::max({brake_m, mission.control.neighbour_gap_m, mission.link.send_near_m}),
-      DensityAttractionOptions{}.kernel_m);
+  return std::max(bodies_m + std::max(brake_m, mission.link.send_near_m),
+                  force_reach_m(mission.control, bodies_m));
 }
 
 CropsOptions crops_options(const Mission& mission, const BodySpec& body) {

@@ -42,6 +42,7 @@ Result<void> sweep(Rows& rows, const Mission& mission) {
           !added) {
         return added;
       }
+      rows.may_fail();
       const Row& row = rows.newest();
       const double percent = 100.0 * loss;
       path.back().points.emplace_back(percent, row.mean([](auto& f) { return f.ratio(); }));
