@@ -75,6 +75,8 @@ class NeighbourTable {
     for (const Known& known : known_) __builtin_prefetch(&known, 1);
     constexpr std::size_t kPerLine = 64 / sizeof(Slot);
     for (std::size_t i = 0; i < index_.size(); i += kPerLine) __builtin_prefetch(&index_[i]);
+    // Without an effect that g++ knows, it takes the whole function for pure and drops its calls.
+    asm volatile("");
   }
 
   /// Robots known at the last at(), within reach or not.
