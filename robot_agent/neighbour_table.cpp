@@ -7,9 +7,10 @@
 namespace swarm::agent {
 namespace {
 
-constexpr std::size_t kFirstSlots = 64;
-constexpr std::size_t kSweepAt = 8;   // so many who are gone are worth a new index
-constexpr double kStands_mps = 0.01;  // slower is standing: such a robot need not speak
+constexpr std::size_t kFirstSlots = 128;
+constexpr std::size_t kSlotsEach = 4;  // of the index, for every robot known
+constexpr std::size_t kSweepAt = 8;    // so many who are gone are worth a new index
+constexpr double kStands_mps = 0.01;   // slower is standing: such a robot need not speak
 
 Vec2 nearest_on_segment(const Vec2& point, const Vec2& from, const Vec2& to) {
   const Vec2 along = to - from;
@@ -21,42 +22,42 @@ Vec2 nearest_on_segment(const Vec2& point, const Vec2& from, const Vec2& to) {
 }  // namespace
 
 NeighbourTable::NeighbourTable(const NeighbourOptions& options)
-    : options_(options), index_(kFirstSlots) {
-  known_.reserve(kFirstSlots / 2);
-  candidates_.reserve(kFirstSlots / 2);
-  neighbours_.reserve(kFirstSlots / 2);
+    : options_(options), index_(kFirstSlots, kFree) {
+  known_.reserve(kFirstSlots / kSlotsEach);
+  candidates_.reserve(kFirstSlots / kSlotsEach);
+  neighbours_.reserve(kFirstSlots / kSlotsEach);
 }
 
 /// The slot of a robot, or the free one where it belongs.
 NeighbourTable::Slot& NeighbourTable::slot_of(RobotId robot) {
   const std::size_t mask = index_.size() - 1;
   std::size_t at = (robot.value() * 0x9E37'79B1U >> 16U) & mask;
-  while (index_[at].known != kFree && index_[at].robot != robot) at = (at + 1) & mask;
+  while (index_[at] != kFree && known_[index_[at]].robot != robot) at = (at + 1) & mask;
   return index_[at];
 }
 
 void NeighbourTable::rebuild_index() {
-  if (index_.size() < 2 * known_.size()) index_.resize(2 * index_.size());
-  std::fill(index_.begin(), index_.end(), Slot{});
-  for (std::uint32_t i = 0; i < known_.size(); ++i) {
-    slot_of(known_[i].robot) = {known_[i].robot, i};
+  if (index_.size() < kSlotsEach * known_.size()) index_.resize(2 * index_.size());
+  std::fill(index_.begin(), index_.end(), kFree);
+  for (std::size_t i = 0; i < known_.size(); ++i) {
+    slot_of(known_[i].robot) = static_cast<Slot>(i);
   }
 }
 
-void NeighbourTable::insert(const NeighbourReport& report, Slot& slot) {
-  slot = {report.robot, static_cast<std::uint32_t>(known_.size())};
+void NeighbourTable::insert(RobotId robot, Slot& slot) {
+  slot = static_cast<Slot>(known_.size());
   Known& known = known_.emplace_back();
-  known.robot = report.robot;
-  known.radius_m = options_.fleet.of(report.robot).radius_m;
-  if (index_.size() < 2 * known_.size()) rebuild_index();
+  known.robot = robot;
+  known.radius_m = options_.fleet.of(robot).radius_m;
+  if (index_.size() < kSlotsEach * known_.size()) rebuild_index();
 }
 
 NeighbourTable::Outcome NeighbourTable::take(const NeighbourReport& report,
                                              const Vec2& own_position_m) {
   Slot& slot = slot_of(report.robot);
-  const bool is_known = slot.known != kFree;
+  const bool is_known = slot != kFree;
   if (is_known) {
-    const Known& known = known_[slot.known];
+    const Known& known = known_[slot];
     if (report.as_of - known.as_of < options_.forget_after) {
       if (report.sequence == known.sequence) return Outcome::kDuplicate;
       // Sequence numbers wrap: what lies in the half circle behind is older.
@@ -65,11 +66,12 @@ NeighbourTable::Outcome NeighbourTable::take(const NeighbourReport& report,
   }
   const double keep_squared = options_.keep_radius_m * options_.keep_radius_m;
   if ((report.position_m - own_position_m).squaredNorm() > keep_squared) {
-    if (is_known) known_[slot.known].gone = true;
+    if (is_known) known_[slot].gone = true;
     return Outcome::kFar;
   }
-  const std::size_t at = is_known ? slot.known : known_.size();
-  if (!is_known) insert(report, slot);
+  if (!is_known && known_.size() >= kFree) return Outcome::kFar;
+  const std::size_t at = is_known ? slot : known_.size();
+  if (!is_known) insert(report.robot, slot);
   Known& known = known_[at];
   known.position_m = report.position_m;
   known.velocity_mps = report.velocity_mps;
@@ -88,6 +90,7 @@ void NeighbourTable::sift(SteadyTime now, const Vec2& own_position_m) {
   const double reach_now_m = options_.reach_m;
   const double growth_mps = options_.reach_growth_mps;
   const Duration silence = options_.near_silence;
+  const double period_s = to_seconds(silence) / 3.0;
   const Vec2 own_m = own_position_m;
   if (candidates_.size() < known_.size()) candidates_.resize(known_.capacity());
   Known* const known = known_.data();
@@ -102,7 +105,7 @@ void NeighbourTable::sift(SteadyTime now, const Vec2& own_position_m) {
     const bool silent = age > silence;
     const Vec2 away_m = r.position_m + age_s * r.velocity_mps - own_m;
     const double away_squared = away_m.squaredNorm();
-    const double reach_m = reach_now_m + growth_mps * age_s;
+    const double reach_m = reach_now_m + growth_mps * std::max(0.0, age_s - period_s);
     r.gone |= !silent & (away_squared > keep_squared);
     candidates[found] = i;
     found += static_cast<std::size_t>(silent | (away_squared <= reach_m * reach_m));
@@ -137,17 +140,19 @@ void NeighbourTable::believe(Known& r, SteadyTime now, const Vec2& own_position_
     ++gone_;
     return;
   }
-  const double reach_m = options_.reach_m + options_.reach_growth_mps * stale_s;
+  double grown_m = 0.0;
+  if (age > options_.expected_silence) {
+    grown_m =
+        options_.fleet.of(r.robot).speed_max_mps * to_seconds(age - options_.expected_silence);
+  }
+  const double reach_m =
+      options_.reach_m + grown_m + options_.reach_growth_mps * std::max(0.0, stale_s - period_s);
   if (away_squared > reach_m * reach_m) return;
   Neighbour& n = neighbours_.emplace_back();
   n.robot = r.robot;
   n.position_m = position;
   if (!silent) n.velocity_mps = r.velocity_mps;
-  n.radius_m = r.radius_m;
-  if (age > options_.expected_silence) {
-    n.radius_m +=
-        options_.fleet.of(r.robot).speed_max_mps * to_seconds(age - options_.expected_silence);
-  }
+  n.radius_m = r.radius_m + grown_m;
   n.stale_s = stale_s;
 }
 

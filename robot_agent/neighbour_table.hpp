@@ -38,8 +38,8 @@ struct NeighbourOptions {
   double radius_m = 0.2;       ///< of the robot itself
   Fleet fleet;                 ///< sizes and speeds of the others
   double keep_radius_m = 6.0;  ///< robots farther than this, heard or extrapolated, are not kept
-  /// Who is farther than this matters to nobody: not told by at(). Grows with how old the knowledge
-  /// of a robot is.
+  /// Who is farther than this matters to nobody: not told by at(). Grows with what the knowledge of
+  /// a robot is older than a control period.
   double reach_m = 6.0;
   double reach_growth_mps = 0.0;
   double near_m = 1.0;          ///< robots whose surface is this near speak at every tick …
@@ -94,15 +94,13 @@ class NeighbourTable {
     float late_s = 0.0F;
     bool gone = false;  // left the neighbourhood
   };
-  /// Of the hash table, with open addressing.
-  struct Slot {
-    RobotId robot;
-    std::uint32_t known = kFree;
-  };
-  static constexpr std::uint32_t kFree = 0xFFFF'FFFF;
+  /// Index into known_. Small, so that three of four slots can be free and still few lines are
+  /// used.
+  using Slot = std::uint16_t;
+  static constexpr Slot kFree = 0xFFFF;
 
   Slot& slot_of(RobotId robot);
-  void insert(const NeighbourReport& report, Slot& slot);
+  void insert(RobotId robot, Slot& slot);
   void rebuild_index();
   void sift(SteadyTime now, const Vec2& own_position_m);
   void believe(Known& r, SteadyTime now, const Vec2& own_position_m);
@@ -111,7 +109,7 @@ class NeighbourTable {
   std::vector<Known> known_;
   std::vector<std::uint32_t> candidates_;  // indices into known_, the first candidates_found_
   std::size_t candidates_found_ = 0;
-  std::vector<Slot> index_;  // a power of two of them
+  std::vector<Slot> index_;  // hash table with open addressing, a power of two of them
   std::vector<Neighbour> neighbours_;
   std::size_t gone_ = 0;  // of known_, as of the last at()
 };
