@@ -15,9 +15,9 @@ struct HostilePeers : testing::Test {
   // Sends until it arrives: as a message, which is returned, or as one more that did not decode.
   template <class M, class Send>
   std::vector<M> provoke(const ReaderPtr<M>& reader, Send send) {
+    const auto before = reader->undecodable();
     EXPECT_TRUE(bus->eventually(send));
     std::vector<M> heard;
-    const auto before = reader->undecodable();
     EXPECT_TRUE(
         bus->eventually([&] { return reader->take(heard) > 0 || reader->undecodable() > before; }));
     return heard;
