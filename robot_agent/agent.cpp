@@ -170,11 +170,11 @@ AgentOptions agent_options(const Mission& mission, RobotId robot, std::uint64_t 
 Agent::Agent(const World& world, const AgentOptions& options)
     : world_(&world),
       options_(options),
-      rng_(options.seed),
       neighbours_(options.neighbours),
       filter_(world, options.safety),
       say_(options.say),
-      method_(make_method(options)) {}
+      method_(make_method(options)),
+      rng_(options.seed) {}
 
 void Agent::accept_plan(const FlowPlan& plan, const Vec2& position_m,
                         std::optional<PlanEntry> entry) {

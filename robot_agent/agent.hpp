@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <string>
@@ -84,8 +85,14 @@ class Agent {
 
   AgentOutput tick(const AgentInput& input);
 
-  /// See NeighbourTable::prefetch().
-  void prefetch() const { neighbours_.prefetch(); }
+  /// For whoever ticks many robots in turn: bring what a tick looks at into the cache, first the
+  /// agent itself, then what it points to.
+  void prefetch() const { swarm::prefetch(this, sizeof(*this) - sizeof(rng_)); }
+  void prefetch_owned() const {
+    neighbours_.prefetch();
+    swarm::prefetch(method_.get(),
+                    std::max({sizeof(Apf), sizeof(Crops), sizeof(IntermittentDiffusion)}));
+  }
 
   bool has_route() const { return has_route_; }
   /// Index of the goal (sink of the plan) this robot is at or goes to. \pre has_route()
@@ -100,7 +107,6 @@ class Agent {
 
   const World* world_;
   AgentOptions options_;
-  Rng rng_;
   NeighbourTable neighbours_;
   SafetyFilter filter_;
   SayPolicy say_;
@@ -111,6 +117,7 @@ class Agent {
   bool arrived_ = false;
   bool moved_ = false;
   Vec2 mean_mps_ = Vec2::Zero();  // of the commanded velocity
+  Rng rng_;                       // large and rarely used: last
 };
 
 }  // namespace swarm::agent

@@ -8,6 +8,7 @@
 
 #include "swarm_core/base/ids.hpp"
 #include "swarm_core/base/linalg.hpp"
+#include "swarm_core/base/prefetch.hpp"
 #include "swarm_core/base/time.hpp"
 #include "swarm_core/mission/fleet.hpp"
 
@@ -72,11 +73,8 @@ class NeighbourTable {
   /// Brings what take() and at() will look at into the cache: for whoever ticks many robots in
   /// turn, while it ticks the one before.
   void prefetch() const {
-    for (const Known& known : known_) __builtin_prefetch(&known, 1);
-    constexpr std::size_t kPerLine = 64 / sizeof(Slot);
-    for (std::size_t i = 0; i < index_.size(); i += kPerLine) __builtin_prefetch(&index_[i]);
-    // Without an effect that g++ knows, it takes the whole function for pure and drops its calls.
-    asm volatile("");
+    swarm::prefetch(known_.data(), known_.size() * sizeof(Known));
+    swarm::prefetch(index_.data(), index_.size() * sizeof(Slot));
   }
 
   /// Robots known at the last at(), within reach or not.

@@ -14,7 +14,7 @@ namespace swarm::agent {
 
 SimulatedRobot::SimulatedRobot(SteadyTime now, std::unique_ptr<MotionModel> model,
                                const SimulatedNoise& noise, std::uint64_t seed)
-    : model_(std::move(model)), noise_(noise), rng_(seed), at_(now) {}
+    : model_(std::move(model)), noise_(noise), at_(now), rng_(seed) {}
 
 SimulatedRobot::SimulatedRobot(SteadyTime now, const Vec2& position_m)
     : SimulatedRobot(now, std::make_unique<SingleIntegrator>(position_m), {}, 0) {}

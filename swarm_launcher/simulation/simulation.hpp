@@ -97,6 +97,8 @@ class Simulation {
   void change_scene(const SceneChange& change);
   void report_status();
   void tick_slot(std::size_t slot);
+  void prefetch(const Robot& robot) const;
+  void prefetch_owned(const Robot& robot) const;
   void tick_robot(std::uint32_t id, SteadyTime now, Histogram* ages);
 
   const Mission& mission_;
