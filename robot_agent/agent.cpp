@@ -180,17 +180,31 @@ void Agent::accept_plan(const FlowPlan& plan, const Vec2& position_m,
                         std::optional<PlanEntry> entry) {
   if (has_route_ && plan.digest() == plan_digest_) return;
   const RouteOptions& o = options_.route;
-  const Route route =
-      entry && is_near_source(plan, entry->source, position_m)
-          ? route_from_source(plan, entry->source, entry->share, position_m, *world_, o)
-      : moved_ || entry ? route_from_here(plan, options_.share, position_m, *world_, o)
-                        : route_from_start(plan, options_.share, position_m, *world_, o);
+  Route route = entry && is_near_source(plan, entry->source, position_m)
+                    ? route_from_source(plan, entry->source, entry->share, position_m, *world_, o)
+                : moved_ || entry ? route_from_here(plan, options_.share, position_m, *world_, o)
+                                  : route_from_start(plan, options_.share, position_m, *world_, o);
+  keep_place(route, position_m);
   method_->see_goals(plan);
   method_->begin(route, *world_);
+  goal_ = route.goal;
+  way_end_m_ = route.path.vertices_m().back();
   has_route_ = true;
   plan_digest_ = plan.digest();
   way_begin_m_ = route.path.at(0.0);
   arrived_ = false;
+}
+
+/// A robot that is in its goal already keeps the place it was going to there: new plans would
+/// stir those who wait for the last ones.
+void Agent::keep_place(Route& route, const Vec2& position_m) const {
+  constexpr double kSame_m = 1e-6;
+  const bool same_goal = has_route_ && (route.goal.mean_m() - goal_.mean_m()).norm() < kSame_m;
+  if (!same_goal || !route.goal.contains_99(position_m)) return;
+  if (!world_->segment_is_free(position_m, way_end_m_, options_.route.radius_m)) return;
+  route.path = Polyline({position_m, way_end_m_});
+  route.stations = {route.stations.back()};
+  route.stations.back().at_m = route.path.length_m();
 }
 
 RobotMode Agent::decide_mode(const AgentInput& input) const {

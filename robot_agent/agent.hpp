@@ -103,6 +103,7 @@ class Agent {
   std::uint32_t escapes() const { return method_->escapes(); }
 
  private:
+  void keep_place(Route& route, const Vec2& position_m) const;
   RobotMode decide_mode(const AgentInput& input) const;
 
   const World* world_;
@@ -114,6 +115,8 @@ class Agent {
   bool has_route_ = false;
   std::uint64_t plan_digest_ = 0;
   Vec2 way_begin_m_ = Vec2::Zero();
+  Vec2 way_end_m_ = Vec2::Zero();
+  Gaussian goal_;
   bool arrived_ = false;
   bool moved_ = false;
   Vec2 mean_mps_ = Vec2::Zero();  // of the commanded velocity

@@ -167,6 +167,28 @@ TEST(Agent, DoesNotGoBackToWhereItsGroupWasWhenItComesBackLate) {
   EXPECT_GT(least_x_m, 44.0);
 }
 
+TEST(Agent, KeepsItsPlaceInTheGoalWhenItIsPlannedFromAnotherGroup) {
+  Swarm sut(1);
+  sut.positions[0] = {46.0, 10.0};
+  const Gaussian goal = Gaussian::from_parameters({50, 8}, 2, 2, 0);
+  const auto from = [&](const Vec2& mean_m, double sigma_m) {
+    const Gaussian group = Gaussian::from_parameters(mean_m, sigma_m, sigma_m, 0);
+    return *FlowPlan::make({{group, MissionTime(0), 1.0}, {goal, MissionTime(5), 1.0}},
+                           {{0, 1, 1.0}});
+  };
+  sut.agents[0].accept_plan(from({46, 10}, 1), sut.positions[0], PlanEntry{0, 0.5});
+  for (int step = 0; step < 100; ++step) sut.tick(MissionPhase::kRunning, true);
+  ASSERT_EQ(sut.outputs[0].mode, RobotMode::kArrived);
+  const Vec2 place_m = sut.positions[0];
+
+  // By this plan alone it would go to the other side of the goal.
+  sut.agents[0].accept_plan(from(place_m + Vec2(2, 2), 1), place_m, PlanEntry{0, 0.5});
+  for (int step = 0; step < 100; ++step) sut.tick(MissionPhase::kRunning, true);
+
+  EXPECT_EQ(sut.outputs[0].mode, RobotMode::kArrived);
+  EXPECT_LT((sut.positions[0] - place_m).norm(), 0.2);
+}
+
 TEST(Agent, StaysWhereItArrivedWhenThePlanLeavesItThere) {
   Swarm sut(1);
   sut.positions[0] = {49.0, 9.0};
