@@ -52,7 +52,7 @@ Mission mission_of(std::uint32_t robots) {
   return mission;
 }
 
-// Time per iteration: of one control period of all robots. `ns_per_agent` is that for one robot.
+// Time per iteration: of one control period of all robots. `per_agent` is that for one robot.
 void BM_Swarm(benchmark::State& state) {
   const auto robots = static_cast<std::uint32_t>(state.range(0));
   const Mission mission = mission_of(robots);
@@ -68,8 +68,8 @@ void BM_Swarm(benchmark::State& state) {
   for (auto _ : state) {
     if (!(*simulation)->step()) state.SkipWithError("the mission is over");
   }
-  state.counters["ns_per_agent"] =
-      benchmark::Counter(static_cast<double>(state.iterations()) * robots * 1e-9,
+  state.counters["per_agent"] =
+      benchmark::Counter(static_cast<double>(state.iterations()) * robots,
                          benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
   state.SetComplexityN(robots);
 }
