@@ -16,7 +16,8 @@ constexpr Duration kRespawnDelay = std::chrono::milliseconds(300);
 constexpr Duration kStopRepeat = std::chrono::milliseconds(100);
 constexpr std::uint32_t kStopRepeats = 15;
 constexpr Duration kStopPatience = std::chrono::seconds(5);
-/// At the rim of a crowded goal a robot may be pushed out again: everyone stays for as long as this.
+/// At the rim of a crowded goal a robot may be pushed out again: everyone stays for as long as
+/// this.
 constexpr Duration kStay = std::chrono::seconds(2);
 /// Arrived robots may never come to rest in a dense crowd; then this long is enough.
 constexpr Duration kSettlePatience = std::chrono::seconds(10);

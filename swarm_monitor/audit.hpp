@@ -25,7 +25,7 @@ struct StopLatency {
 /// One robot's part in an audit.
 struct RobotAudit {
   RobotId robot{};
-  bool lost = false;     ///< no black box, or it ends without the note "exit"
+  bool lost = false;  ///< no black box, or it ends without the note "exit"
   /// Not lost, and its last position lies in the 99 % ellipse of its goal, or, by intermittent
   /// diffusion, where the drawing's shape function is within the tolerance.
   bool arrived = false;

@@ -56,9 +56,9 @@ TEST_P(EveryTable, IsMadeQuickly) {
   const std::string which = GetParam();
   TemporaryFolder folder;
 
-  Program table("swarm_launcher", {"table", which, "--quick", "--missions",
-                                   SWARM_SOURCE_DIR "/deploy/missions", "--out",
-                                   folder.path().string()});
+  Program table("swarm_launcher",
+                {"table", which, "--quick", "--missions", SWARM_SOURCE_DIR "/deploy/missions",
+                 "--out", folder.path().string()});
   ASSERT_EQ(table.wait(), 0) << table.err();
 
   EXPECT_EQ(read_text(folder.path() / (which + ".md")), table.out());
