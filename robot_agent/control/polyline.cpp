@@ -16,6 +16,7 @@ Polyline::Polyline(const std::vector<Vec2>& vertices_m) {
     arc_.push_back(vertices_.empty() ? 0.0 : arc_.back() + step);
     vertices_.push_back(v);
   }
+  length_m_ = arc_.back();
 }
 
 std::size_t Polyline::segment_of(double s_m) const {
@@ -23,18 +24,14 @@ std::size_t Polyline::segment_of(double s_m) const {
   return static_cast<std::size_t>(after - arc_.begin()) - 1;
 }
 
-Vec2 Polyline::at(double s_m) const {
-  if (vertices_.size() == 1) return vertices_.front();
+Polyline::Place Polyline::place(double s_m) const {
+  if (vertices_.size() == 1) return {vertices_.front(), Vec2::Zero()};
   const double s = std::clamp(s_m, 0.0, length_m());
   const std::size_t i = segment_of(s);
-  const double t = (s - arc_[i]) / (arc_[i + 1] - arc_[i]);
-  return (1.0 - t) * vertices_[i] + t * vertices_[i + 1];
-}
-
-Vec2 Polyline::tangent_at(double s_m) const {
-  if (vertices_.size() == 1) return Vec2::Zero();
-  const std::size_t i = segment_of(std::clamp(s_m, 0.0, length_m()));
-  return (vertices_[i + 1] - vertices_[i]) / (arc_[i + 1] - arc_[i]);
+  const double piece_m = arc_[i + 1] - arc_[i];
+  const double t = (s - arc_[i]) / piece_m;
+  return {(1.0 - t) * vertices_[i] + t * vertices_[i + 1],
+          (vertices_[i + 1] - vertices_[i]) / piece_m};
 }
 
 }  // namespace swarm::agent

@@ -16,16 +16,21 @@ class Polyline {
   explicit Polyline(const std::vector<Vec2>& vertices_m);
 
   bool empty() const { return vertices_.empty(); }
-  double length_m() const { return arc_.empty() ? 0.0 : arc_.back(); }
+  double length_m() const { return length_m_; }
   const std::vector<Vec2>& vertices_m() const { return vertices_; }
 
-  Vec2 at(double s_m) const;
-  Vec2 tangent_at(double s_m) const;  ///< unit; zero for a path of one point
+  struct Place {
+    Vec2 point_m = Vec2::Zero();
+    Vec2 tangent = Vec2::Zero();  ///< unit; zero for a path of one point
+  };
+  Place place(double s_m) const;
+  Vec2 at(double s_m) const { return place(s_m).point_m; }
 
  private:
   std::size_t segment_of(double s_m) const;
   std::vector<Vec2> vertices_;
   std::vector<double> arc_;  // arc length at each vertex
+  double length_m_ = 0.0;    // its last: asked at every tick
 };
 
 }  // namespace swarm::agent

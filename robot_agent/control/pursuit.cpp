@@ -13,12 +13,13 @@ constexpr double kReached_m = 0.5;  // an aim this near counts as reached
 constexpr double kBackTrack_m = 30.0;
 constexpr double kSample_m = 0.5;   // of the planned clearance
 constexpr double kLeast_m = 0.05;   // surface clearance of any line of sight
+constexpr double kTouch_m = 1e-3;   // a line of sight begins where the robot is
 constexpr double kKeepAim_m = 1.5;  // an aim this far ahead is kept between two looks
 
 }  // namespace
 
 Pursuit::Pursuit(Polyline path, const World& world, const PursuitOptions& options)
-    : path_(std::move(path)), options_(options) {
+    : path_(std::move(path)), options_(options), here_(path_.place(0.0)) {
   const double most_m = options_.radius_m + options_.keep_clearance_m;
   const auto pieces = static_cast<std::size_t>(path_.length_m() / kSample_m) + 1;
   clearance_m_.reserve(pieces);
@@ -34,24 +35,35 @@ double Pursuit::planned_clearance_m(double from_s_m, double to_s_m) const {
   const auto piece = [&](double s) {
     return std::min(clearance_m_.size() - 1, static_cast<std::size_t>(s / kSample_m));
   };
-  const auto first = clearance_m_.begin() + static_cast<std::ptrdiff_t>(piece(from_s_m));
-  const auto last = clearance_m_.begin() + static_cast<std::ptrdiff_t>(piece(to_s_m));
-  return static_cast<double>(*std::min_element(first, last + 1));
+  const std::size_t last = piece(to_s_m);
+  float least_m = clearance_m_[piece(from_s_m)];
+  for (std::size_t i = piece(from_s_m) + 1; i <= last; ++i) {
+    least_m = std::min(least_m, clearance_m_[i]);
+  }
+  return static_cast<double>(least_m);
+}
+
+void Pursuit::move_to(double s_m) {
+  s_m_ = s_m;
+  here_ = path_.place(s_m);
 }
 
 void Pursuit::advance(const Vec2& position_m) {
-  if (aim_s_m_ > s_m_ && (path_.at(aim_s_m_) - position_m).norm() < kReached_m) s_m_ = aim_s_m_;
+  if (aim_s_m_ > s_m_ && (aim_m_ - position_m).norm() < kReached_m) move_to(aim_s_m_);
   const double length = path_.length_m();
   while (s_m_ < length) {
-    const Vec2 offset = position_m - path_.at(s_m_);
+    const Vec2 offset = position_m - here_.point_m;
     const bool near = offset.norm() < options_.passed_m;
     // Only beside the way does "ahead of s" mean passed: a way that doubles back has points far off
     // whose tangents say the same.
-    const bool beside =
-        offset.norm() < options_.look_ahead_m && offset.dot(path_.tangent_at(s_m_)) > 0.0;
+    const bool beside = offset.norm() < options_.look_ahead_m && offset.dot(here_.tangent) > 0.0;
     if (!near && !beside) break;
-    s_m_ = std::min(length, s_m_ + kStep_m);
+    move_to(std::min(length, s_m_ + kStep_m));
   }
+}
+
+Pursuit::Aim Pursuit::aim(const Vec2& position_m) const {
+  return {aim_m_, (aim_m_ - position_m).norm() + path_.length_m() - aim_s_m_, true};
 }
 
 Pursuit::Aim Pursuit::update(const Vec2& position_m, const World& world) {
@@ -59,8 +71,7 @@ Pursuit::Aim Pursuit::update(const Vec2& position_m, const World& world) {
   // Between two looks the aim is the one that was seen, while it is well ahead.
   if (looks_in_ > 0 && aim_s_m_ - s_m_ > kKeepAim_m) {
     --looks_in_;
-    const Vec2 point = path_.at(aim_s_m_);
-    return {point, (point - position_m).norm() + path_.length_m() - aim_s_m_, true};
+    return aim(position_m);
   }
   looks_in_ = options_.look_every;
   return look(position_m, world);
@@ -68,7 +79,9 @@ Pursuit::Aim Pursuit::update(const Vec2& position_m, const World& world) {
 
 Pursuit::Aim Pursuit::look(const Vec2& position_m, const World& world) {
   const double length = path_.length_m();
-  const double own_clearance = std::max(0.0, world.distance_m(position_m) - 1e-3);
+  const double most_m = options_.radius_m + std::max(kLeast_m, options_.keep_clearance_m);
+  const double own_clearance =
+      std::max(0.0, world.distance_up_to_m(position_m, most_m + kTouch_m) - kTouch_m);
   const auto visible = [&](double s) {
     const double planned = planned_clearance_m(std::min(s_m_, s), std::max(s_m_, s));
     const double wanted = std::max(options_.radius_m + kLeast_m, planned);
@@ -76,8 +89,8 @@ Pursuit::Aim Pursuit::look(const Vec2& position_m, const World& world) {
   };
   const auto aim_at = [&](double s) {
     aim_s_m_ = s;
-    const Vec2 point = path_.at(s);
-    return Aim{point, (point - position_m).norm() + length - s, true};
+    aim_m_ = path_.at(s);
+    return aim(position_m);
   };
   for (double ahead = options_.look_ahead_m; ahead > 0.1; ahead *= 0.5) {
     const double s = std::min(length, s_m_ + ahead);
@@ -85,12 +98,12 @@ Pursuit::Aim Pursuit::look(const Vec2& position_m, const World& world) {
   }
   for (double back = 0.0; back <= std::min(kBackTrack_m, s_m_); back += 1.0) {
     if (visible(s_m_ - back)) {
-      s_m_ -= back;
+      move_to(s_m_ - back);
       return aim_at(s_m_);
     }
   }
   looks_in_ = 0;
-  return {path_.at(s_m_), length - s_m_, false};
+  return {here_.point_m, length - s_m_, false};
 }
 
 }  // namespace swarm::agent

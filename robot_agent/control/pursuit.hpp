@@ -45,14 +45,18 @@ class Pursuit {
   Vec2 end_m() const { return path_.vertices_m().back(); }
 
  private:
+  void move_to(double s_m);
   void advance(const Vec2& position_m);
+  Aim aim(const Vec2& position_m) const;
   Aim look(const Vec2& position_m, const World& world);
   double planned_clearance_m(double from_s_m, double to_s_m) const;
 
   Polyline path_;
   PursuitOptions options_;
   double s_m_ = 0.0;
-  double aim_s_m_ = 0.0;        // of the last visible aim
+  Polyline::Place here_;  // at s_m_
+  double aim_s_m_ = 0.0;  // of the last visible aim
+  Vec2 aim_m_ = Vec2::Zero();
   std::uint32_t looks_in_ = 0;  // ticks until the next look
   std::vector<float>
       clearance_m_;  // of the way's centre line, every kSample_m, least of each piece

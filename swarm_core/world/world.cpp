@@ -251,6 +251,14 @@ SignedDistance World::signed_distance(const Vec2& point_m) const {
   return best;
 }
 
+double World::distance_up_to_m(const Vec2& point_m, double most_m) const {
+  double least_m = most_m;
+  boxes_.for_each_within({point_m, point_m}, most_m, [&](std::uint32_t i) {
+    least_m = std::min(least_m, obstacle_distance(obstacles_[i], point_m).distance_m);
+  });
+  return least_m;
+}
+
 bool World::is_clear(const Vec2& point_m, double clearance_m) const {
   return !convex_boxes_.any_within({point_m, point_m}, clearance_m, [&](std::uint32_t i) {
     return convex_obstacles_[i].signed_distance(point_m).distance_m <= clearance_m;

@@ -95,8 +95,11 @@ class World {
   SignedDistance signed_distance(const Vec2& point_m) const;
   double distance_m(const Vec2& point_m) const { return signed_distance(point_m).distance_m; }
 
-  /// Whether the point is farther than `clearance_m` ≥ 0 from every obstacle; cheaper than its
-  /// distance, since nearly all obstacles are ruled out by their box.
+  /// The distance, or `most_m` ≥ 0 where it is larger: cheaper, since nearly all obstacles are
+  /// ruled out by their box.
+  double distance_up_to_m(const Vec2& point_m, double most_m) const;
+
+  /// Whether the point is farther than `clearance_m` ≥ 0 from every obstacle. Cheaper still.
   bool is_clear(const Vec2& point_m, double clearance_m) const;
 
   /// Whether every point of the segment is at least `clearance_m` ≥ 0 from every obstacle. Exact up

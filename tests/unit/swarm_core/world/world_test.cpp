@@ -164,6 +164,8 @@ TEST(World, ConvexPartsSeeTheSameSurfaceFromOutside) {
       }
       for (const double clearance_m : {0.0, 0.5, 3.0}) {
         EXPECT_EQ(world.is_clear(p, clearance_m), nearest > clearance_m);
+        EXPECT_EQ(world.distance_up_to_m(p, clearance_m),
+                  std::min(clearance_m, world.distance_m(p)));
       }
     }
   }
