@@ -23,21 +23,17 @@ constexpr std::size_t kSlots = 10;
 // A robot's states' ages are looked at in every so manieth period.
 constexpr std::uint64_t kAgesEvery = 10;
 
-// Of the sensing range: on the bus too words carry farther, so that who leaves the range is heard
-// to.
-constexpr double kCarries = 1.1;
-
-double carries_m(const Mission& mission, RobotId robot) {
+double hears_m(const Mission& mission, RobotId robot) {
   const double own_m = body_of(mission.robots, robot).hear_radius_m;
-  return kCarries * (own_m > 0.0 ? own_m : mission.link.hear_radius_m);
+  return own_m > 0.0 ? own_m : mission.link.hear_radius_m;
 }
 
-double carries_farthest_m(const Mission& mission) {
+double hears_farthest_m(const Mission& mission) {
   double largest_m = mission.robots.hear_radius_m;
   for (const RobotGroupSpec& group : mission.robots.groups) {
     largest_m = std::max(largest_m, group.hear_radius_m);
   }
-  return kCarries * std::max(largest_m, mission.link.hear_radius_m);
+  return std::max(largest_m, mission.link.hear_radius_m);
 }
 
 SupervisorOptions supervisor_options(const Mission& mission) {
@@ -60,7 +56,7 @@ Simulation::Simulation(const Mission& mission, const SimulationOptions& options,
       scene_(first_scene(mission.world.obstacles().size())),
       keeper_(mission, options.seed, &std::chrono::steady_clock::now),
       supervisor_(supervisor_options(mission), kBegin),
-      air_(mission.world.bounds_m(), carries_farthest_m(mission), options.faults,
+      air_(mission.world.bounds_m(), hears_farthest_m(mission), options.faults,
            mix_seed(options.seed, 0xA1B)),
       crew_(std::max<std::size_t>(options.threads, 1)),
       ages_(crew_.size()),
@@ -93,7 +89,7 @@ void Simulation::place(const std::vector<Vec2>& positions_m) {
         {.agent = {world_, agent::agent_options(mission_, id, options_.seed)},
          .body = agent::make_simulated_body(body_of(mission_.robots, id), kBegin, positions_m[i],
                                             mix_seed(mix_seed(options_.seed, 0xB0D), i)),
-         .carries_m = carries_m(mission_, id),
+         .hears_m = hears_m(mission_, id),
          .heard_until = kBegin,
          .output = {},
          .position_m = positions_m[i]});
@@ -187,7 +183,7 @@ void Simulation::tick_robot(std::uint32_t id, SteadyTime now, Histogram* ages) {
   const agent::Measurement body = robot.body->measure(now);
   robot.position_m = body.position_m;
   air_.hear(
-      RobotId(id), robot.position_m, robot.carries_m, robot.heard_until, now,
+      RobotId(id), robot.position_m, robot.hears_m, robot.heard_until, now,
       [&](const agent::NeighbourReport& report) {
         robot.agent.hear(report, robot.position_m);
         ++robot.received;

@@ -76,7 +76,7 @@ class Simulation {
   struct Robot {
     agent::Agent agent;
     std::unique_ptr<agent::Driver> body;
-    double carries_m = 0.0;  // how far a word may come from
+    double hears_m = 0.0;  // sensing range
     SteadyTime heard_until;
     agent::AgentOutput output;
     Vec2 position_m = Vec2::Zero();
