@@ -17,8 +17,6 @@ int main(int argc, char** argv) {
         "planner_service");
     swarm::planner::ProcessOptions options;
     app.add_option("--run", options.run_dir, "Run directory made by the launcher")->required();
-    app.add_option("--index", options.participant_index,
-                   "DDS participant index, unique in the run");
     app.add_option("--parent", options.parent_pid, "End when this process is no longer our parent");
     app.add_option("--strength", options.ownership_strength,
                    "Ownership of the plan topic: agents follow the strongest living planner");

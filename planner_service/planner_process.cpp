@@ -18,7 +18,7 @@
 #include "swarm_core/plan/plan_json.hpp"
 #include "swarm_core/shell/run_directory.hpp"
 #include "swarm_core/shell/stop_signal.hpp"
-#include "swarm_link/fastdds/fastdds_participant.hpp"
+#include "swarm_link/join.hpp"
 #include "swarm_link/topics.hpp"
 #include "swarm_link/validation.hpp"
 
@@ -94,14 +94,13 @@ Result<void> PlannerProcess::Impl::plan_first() {
 }
 
 Result<void> PlannerProcess::Impl::join(const shell::RunInfo& run) {
-  auto made = link::make_fastdds_participant({.name = "planner_service",
-                                              .domain = run.domain,
-                                              .index = options.participant_index,
-                                              .discovery = {run.discovery_host, run.discovery_port},
-                                              .ownership_strength = options.ownership_strength});
+  auto made =
+      link::join_as_planner(link::Meeting{.domain = run.domain,
+                                          .server = {run.discovery_host, run.discovery_port},
+                                          .hubs = run.hubs},
+                            options.ownership_strength);
   if (!made) return tl::unexpected(made.error());
   participant = std::move(*made);
-  if (auto hears = participant->self_check(); !hears) return hears;
   auto plans = participant->make_writer(link::plan_topic());
   auto heartbeats = participant->make_writer(link::heartbeat_topic());
   auto events = participant->make_writer(link::event_topic());

@@ -12,7 +12,6 @@ namespace swarm::planner {
 
 struct ProcessOptions {
   std::filesystem::path run_dir;
-  std::uint32_t participant_index = 1;
   std::uint32_t parent_pid = 0;            ///< end when this process is gone; 0 = do not watch
   std::uint32_t ownership_strength = 100;  ///< a stand-by planner has less
 };

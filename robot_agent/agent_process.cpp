@@ -20,8 +20,8 @@
 #include "swarm_core/mission/placement.hpp"
 #include "swarm_core/shell/run_directory.hpp"
 #include "swarm_core/shell/stop_signal.hpp"
-#include "swarm_link/fastdds/fastdds_participant.hpp"
 #include "swarm_link/groups/group_channel.hpp"
+#include "swarm_link/join.hpp"
 #include "swarm_link/topics.hpp"
 
 namespace swarm::agent {
@@ -89,13 +89,12 @@ struct AgentProcess::Impl {
 
 Result<void> AgentProcess::Impl::join(const shell::RunInfo& run) {
   auto made =
-      link::make_fastdds_participant({.name = fmt::format("robot_agent_{}", options.first.value()),
-                                      .domain = run.domain,
-                                      .index = options.participant_index,
-                                      .discovery = {run.discovery_host, run.discovery_port}});
+      link::join_as_agent(link::Meeting{.domain = run.domain,
+                                        .server = {run.discovery_host, run.discovery_port},
+                                        .hubs = run.hubs},
+                          options.number, fmt::format("robot_agent_{}", options.first.value()));
   if (!made) return tl::unexpected(made.error());
   participant = std::move(*made);
-  if (auto hears = participant->self_check(); !hears) return hears;
 
   auto plan_reader = participant->make_reader(link::plan_topic());
   auto scene_reader = participant->make_reader(link::scene_topic());

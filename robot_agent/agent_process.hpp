@@ -16,7 +16,7 @@ struct ProcessOptions {
   std::filesystem::path run_dir;
   RobotId first;  ///< the robots first … first + count − 1 live in this process
   std::uint32_t count = 1;
-  std::uint32_t participant_index = 0;
+  std::uint32_t number = 0;      ///< of this process among the agents of the run
   std::uint32_t parent_pid = 0;  ///< end when this process is gone; 0 = do not watch
 };
 

@@ -20,8 +20,7 @@ int main(int argc, char** argv) {
     app.add_option("--run", options.run_dir, "Run directory made by the launcher")->required();
     app.add_option("--ids", first, "First robot of this process")->required();
     app.add_option("--count", options.count, "Number of robots in this process");
-    app.add_option("--index", options.participant_index,
-                   "DDS participant index, unique in the run");
+    app.add_option("--number", options.number, "Of this agent process in the run, from 0");
     app.add_option("--parent", options.parent_pid, "End when this process is no longer our parent");
     swarm::shell::add_common_options(app);
     const auto done = swarm::shell::parse(app, argc, argv);

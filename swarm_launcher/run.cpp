@@ -28,7 +28,7 @@
 #include "swarm_launcher/summary.hpp"
 #include "swarm_launcher/supervisor.hpp"
 #include "swarm_launcher/swarm_view.hpp"
-#include "swarm_link/fastdds/fastdds_participant.hpp"
+#include "swarm_link/join.hpp"
 #include "swarm_link/udp_socket.hpp"
 #include "swarm_link/validation.hpp"
 
@@ -37,7 +37,6 @@ namespace {
 
 constexpr Duration kStep = std::chrono::milliseconds(20);
 constexpr std::uint32_t kPlannerStrength = 100;
-constexpr std::uint32_t kFirstAgentIndex = 2;  // DDS participants 0 and 1: launcher and planner
 
 UtcTime utc_now() {
   return std::chrono::time_point_cast<Duration>(std::chrono::system_clock::now());
@@ -66,9 +65,10 @@ class Run {
 
  private:
   Run(const RunOptions& options, Mission mission, std::filesystem::path dir, DomainLock lock,
-      ChannelChoice channel)
+      ChannelChoice channel, std::uint32_t hubs)
       : options_(options),
         channel_(std::move(channel)),
+        hubs_(hubs),
         mission_(std::move(mission)),
         dir_(std::move(dir)),
         lock_(std::move(lock)),
@@ -87,12 +87,13 @@ class Run {
 
   RunOptions options_;
   ChannelChoice channel_;
+  std::uint32_t hubs_;
   Mission mission_;
   std::filesystem::path dir_;
   DomainLock lock_;
   EventLog events_;
   Progress progress_;
-  std::unique_ptr<link::DiscoveryServer> server_;
+  std::unique_ptr<link::DiscoveryServer> server_;  // none where hubs are the meeting place
   std::unique_ptr<link::Participant> participant_;
   link::ReaderPtr<link::StatusMessage> status_reader_;
   link::ReaderPtr<link::EventMessage> event_reader_;
@@ -127,7 +128,8 @@ Result<std::unique_ptr<Run>> Run::make(const RunOptions& options) {
                                  .robots_per_process = options.per_process,
                                  .multicast = link::loopback_carries_multicast()});
   if (!channel) return tl::unexpected(channel.error());
-  auto lock = DomainLock::take(options.domain, agents + kFirstAgentIndex);
+  const std::uint32_t hubs = channel->channel == Channel::kGroups ? link::hubs_for(agents) : 0;
+  auto lock = DomainLock::take(options.domain, link::participants_for({.hubs = hubs}, agents));
   if (!lock) return tl::unexpected(lock.error());
   const auto made = make_run_dir(options.out, mission->name);
   if (!made) return tl::unexpected(made.error());
@@ -136,7 +138,7 @@ Result<std::unique_ptr<Run>> Run::make(const RunOptions& options) {
     return tl::unexpected(written.error());
   }
   auto run = std::unique_ptr<Run>(
-      new Run(options, std::move(*mission), dir, std::move(*lock), std::move(*channel)));
+      new Run(options, std::move(*mission), dir, std::move(*lock), std::move(*channel), hubs));
   if (const auto joined = run->join(); !joined) return tl::unexpected(joined.error());
   return run;
 }
@@ -146,23 +148,25 @@ Run::~Run() {
 }
 
 Result<void> Run::join() {
-  auto server = link::make_discovery_server(lock_.domain(), 0);
-  if (!server) return tl::unexpected(server.error());
-  server_ = std::move(*server);
-  const link::DiscoveryAddress address = server_->address();
-  if (auto written = shell::write_run_info(dir_, {.domain = lock_.domain(),
-                                                  .discovery_host = address.host,
-                                                  .discovery_port = address.port,
+  link::Meeting meeting{.domain = lock_.domain(), .hubs = hubs_};
+  if (hubs_ == 0) {
+    auto server = link::make_discovery_server(lock_.domain(), 0);
+    if (!server) return tl::unexpected(server.error());
+    server_ = std::move(*server);
+    meeting.server = server_->address();
+  }
+  if (auto written = shell::write_run_info(dir_, {.domain = meeting.domain,
+                                                  .discovery_host = meeting.server.host,
+                                                  .discovery_port = meeting.server.port,
+                                                  .hubs = meeting.hubs,
                                                   .channel = channel_.channel,
                                                   .seed = options_.seed});
       !written) {
     return written;
   }
-  auto participant = link::make_fastdds_participant(
-      {.name = "swarm_launcher", .domain = lock_.domain(), .index = 0, .discovery = address});
+  auto participant = link::join_as_launcher(meeting);
   if (!participant) return tl::unexpected(participant.error());
   participant_ = std::move(*participant);
-  if (const auto hears = participant_->self_check(); !hears) return hears;
   auto status = participant_->make_reader(link::status_topic());
   auto event = participant_->make_reader(link::event_topic());
   auto command = participant_->make_writer(link::command_topic());
@@ -197,7 +201,7 @@ Result<void> Run::start(ProcessIndex process) {
   std::vector<std::string> command_line;
   std::string log;
   if (process == kPlanner) {
-    command_line = {sibling_program("planner_service"), "--run", dir_.string(), "--index", "1",
+    command_line = {sibling_program("planner_service"), "--run", dir_.string(),
                     // A killed planner keeps the plan topic until its lease ends, unless its
                     // successor is stronger.
                     "--strength", fmt::format("{}", kPlannerStrength + planner_starts_++)};
@@ -211,8 +215,8 @@ Result<void> Run::start(ProcessIndex process) {
                     fmt::format("{}", first.value()),
                     "--count",
                     fmt::format("{}", count),
-                    "--index",
-                    fmt::format("{}", kFirstAgentIndex + process.value() - 1)};
+                    "--number",
+                    fmt::format("{}", process.value() - 1)};
     log = fmt::format("agent-{:05}.log", first.value());
   }
   command_line.insert(command_line.end(), {"--parent", fmt::format("{}", ::getpid())});

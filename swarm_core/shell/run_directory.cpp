@@ -55,6 +55,7 @@ Result<void> write_run_info(const std::filesystem::path& run_dir, const RunInfo&
   const nlohmann::json json = {{"domain", info.domain},
                                {"discovery_host", info.discovery_host},
                                {"discovery_port", info.discovery_port},
+                               {"hubs", info.hubs},
                                {"channel", to_string(info.channel)},
                                {"seed", info.seed}};
   return write_file(run_dir / kRunFile, json.dump(2) + "\n");
@@ -68,6 +69,7 @@ Result<RunInfo> read_run_info(const std::filesystem::path& run_dir) {
     return RunInfo{.domain = json.at("domain").get<std::uint32_t>(),
                    .discovery_host = json.at("discovery_host").get<std::string>(),
                    .discovery_port = json.at("discovery_port").get<std::uint16_t>(),
+                   .hubs = json.at("hubs").get<std::uint32_t>(),
                    .channel = json.at("channel").get<std::string>() == to_string(Channel::kGroups)
                                   ? Channel::kGroups
                                   : Channel::kTopics,

@@ -29,6 +29,7 @@ struct RunInfo {
   std::uint32_t domain = 0;
   std::string discovery_host = "127.0.0.1";
   std::uint16_t discovery_port = 0;
+  std::uint32_t hubs = 0;  ///< of launcher and planner each; 0: everyone meets at the server
   Channel channel = Channel::kTopics;
   std::uint64_t seed = 0;
 };

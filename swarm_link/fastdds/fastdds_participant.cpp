@@ -106,6 +106,12 @@ class FastDdsParticipant final : public Participant {
                               options_.domain, options_.index,
                               sockets_->hears_metatraffic() ? "data" : "discovery"));
     }
+    if (options_.star && options_.star->is_hub && !sockets_->hears(ports_.metatraffic)) {
+      return fail(ErrorCode::kEnvironment,
+                  fmt::format("hub '{}': UDP port 127.0.0.1:{} (domain {}, index {}) is taken; end "
+                              "old processes or use another domain",
+                              options_.name, ports_.metatraffic, options_.domain, options_.index));
+    }
     const int granted = granted_receive_buffer_bytes(options_.receive_buffer_bytes);
     if (granted < options_.receive_buffer_bytes / 2) {
       return fail(ErrorCode::kEnvironment,
@@ -189,7 +195,7 @@ Result<std::unique_ptr<Participant>> make_fastdds_participant(const FastDdsOptio
   using namespace fastdds;
   const auto ports = first_ports(options.domain, options.index);
   if (!ports) return tl::unexpected(ports.error());
-  if (options.discovery.host != "127.0.0.1" || options.discovery.port == 0) {
+  if (!options.star && (options.discovery.host != "127.0.0.1" || options.discovery.port == 0)) {
     return fail(ErrorCode::kBadInput,
                 fmt::format("discovery server '{}:{}' is not a port on 127.0.0.1",
                             options.discovery.host, options.discovery.port));
@@ -198,6 +204,9 @@ Result<std::unique_ptr<Participant>> make_fastdds_participant(const FastDdsOptio
     set_up_library();
     auto sockets = std::make_shared<ReceiveSockets>(ports->data, options.receive_at_tick,
                                                     options.receive_buffer_bytes);
+    // The vendor announces a participant before it hands it what its sockets receive: a hub that
+    // answers at once would go unheard, and does not repeat itself.
+    sockets->set_silent(options.star.has_value());
     auto* participant = dds::DomainParticipantFactory::get_instance()->create_participant(
         options.domain, client_qos(options, *ports, sockets), nullptr, dds::StatusMask::none());
     if (participant == nullptr) {
@@ -206,6 +215,7 @@ Result<std::unique_ptr<Participant>> make_fastdds_participant(const FastDdsOptio
           fmt::format("DDS refused participant '{}' in domain {}: see its message on stderr",
                       options.name, options.domain));
     }
+    sockets->set_silent(false);
     auto made =
         std::make_unique<FastDdsParticipant>(options, *ports, std::move(sockets), participant);
     if (!made->usable()) {

@@ -4,7 +4,9 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "swarm_core/base/result.hpp"
 #include "swarm_link/port.hpp"
@@ -18,11 +20,19 @@ struct DiscoveryAddress {
   std::uint16_t port = 0;
 };
 
+/// Discovery without a server: a participant announces itself to a few others, who answer, and to
+/// nobody else.
+struct Star {
+  bool is_hub = false;  ///< others know its port: it listens at that of its index, or is of no use
+  std::vector<std::uint32_t> peers{};  ///< indices of the hubs to announce itself to
+};
+
 struct FastDdsOptions {
   std::string name;  ///< participant name, seen in DDS tools
   std::uint32_t domain = 0;
-  std::uint32_t index = 0;     ///< unique per domain; decides the first ports tried
-  DiscoveryAddress discovery;  ///< the server this participant is a client of
+  std::uint32_t index = 0;       ///< unique per domain; decides the first ports tried
+  DiscoveryAddress discovery{};  ///< the server this participant is a client of, unless in a …
+  std::optional<Star> star{};
   /// Of exclusive writers. A stand-by planner that waits in the background has less; one that
   /// replaces another must have more: a killed writer keeps its topic until its lease ends, and an
   /// equal or weaker one goes unheard that long (measured with a lease of 15 s: 14 s, against 0.9
@@ -44,7 +54,7 @@ class DiscoveryServer {
 Result<std::unique_ptr<DiscoveryServer>> make_discovery_server(std::uint32_t domain,
                                                                std::uint16_t port);
 
-/// Joins a run as a client of its discovery server; UDP on loopback only, no shared memory.
+/// Joins a run, by its discovery server or in a star; UDP on loopback only, no shared memory.
 Result<std::unique_ptr<Participant>> make_fastdds_participant(const FastDdsOptions& options);
 
 }  // namespace swarm::link

@@ -75,17 +75,15 @@ class LoopbackTransport final : public rtps::ChainingTransport {
     return low_level_transport_->CloseInputChannel(locator);
   }
 
-  bool OpenOutputChannel(rtps::SendResourceList& senders, const rtps::Locator& locator) override {
-    return low_level_transport_->OpenOutputChannel(senders, locator);
+  bool send(eprosima::fastrtps::rtps::SenderResource* socket, const octet* bytes,
+            std::uint32_t size, eprosima::fastrtps::rtps::LocatorsIterator* begin,
+            eprosima::fastrtps::rtps::LocatorsIterator* end,
+            const std::chrono::steady_clock::time_point& deadline) override {
+    if (sockets().silent()) return true;
+    return socket->send(bytes, size, begin, end, deadline);
   }
 
-  // Never called: neither direction is wrapped (see OpenInputChannel and OpenOutputChannel).
-  bool send(eprosima::fastrtps::rtps::SenderResource*, const octet*, std::uint32_t,
-            eprosima::fastrtps::rtps::LocatorsIterator*,
-            eprosima::fastrtps::rtps::LocatorsIterator*,
-            const std::chrono::steady_clock::time_point&) override {
-    return false;
-  }
+  // Never called: that direction is not wrapped (see OpenInputChannel).
   void receive(rtps::TransportReceiverInterface*, const octet*, std::uint32_t, const rtps::Locator&,
                const rtps::Locator&) override {}
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <mutex>
@@ -51,6 +52,10 @@ class ReceiveSockets {
   /// Hands waiting datagrams to the vendor.
   void drain();
 
+  /// What is sent while silent is lost.
+  void set_silent(bool silent) { silent_ = silent; }
+  bool silent() const { return silent_; }
+
   bool hears_data() const;
   bool hears_metatraffic() const;
   bool hears(std::uint32_t port) const;
@@ -71,6 +76,7 @@ class ReceiveSockets {
   std::vector<Socket> sockets_;
   std::vector<std::uint32_t> opened_;
   std::optional<DatagramDrain> drain_;  // of owned sockets
+  std::atomic<bool> silent_ = false;
 };
 
 /// The vendor's locator of a UDP address, and back.

@@ -20,6 +20,10 @@ namespace rtps = eprosima::fastrtps::rtps;
 
 namespace {
 
+std::uint16_t metatraffic_port(std::uint32_t domain, std::uint32_t index) {
+  return static_cast<std::uint16_t>(7410 + 250 * domain + 2 * index);
+}
+
 rtps::Locator_t loopback(std::uint16_t port) {
   rtps::Locator_t locator;
   locator.kind = LOCATOR_KIND_UDPv4;
@@ -47,6 +51,19 @@ dds::DomainParticipantQos common_qos(std::shared_ptr<ReceiveSockets> sockets, in
   discovery.leaseDuration = {40, 0};
   discovery.leaseDuration_announcementperiod = {8, 0};
   return qos;
+}
+
+/// Agents say often that they are there, since that is how they find a hub that was restarted.
+void announce_to(const Star& star, std::uint32_t domain, rtps::BuiltinAttributes& builtin) {
+  auto& discovery = builtin.discovery_config;
+  discovery.discoveryProtocol = rtps::DiscoveryProtocol_t::SIMPLE;
+  discovery.initial_announcements = {5, {0, 50'000'000}};  // the first is held back
+  discovery.leaseDuration_announcementperiod = star.is_hub
+                                                   ? eprosima::fastrtps::Duration_t{3, 0}
+                                                   : eprosima::fastrtps::Duration_t{1, 500'000'000};
+  for (const std::uint32_t peer : star.peers) {
+    builtin.initialPeersList.push_back(loopback(metatraffic_port(domain, peer)));
+  }
 }
 
 }  // namespace
@@ -83,11 +100,15 @@ dds::DomainParticipantQos client_qos(const FastDdsOptions& options, Ports ports,
   wire.default_unicast_locator_list.push_back(loopback(ports.data));
   wire.builtin.metatrafficUnicastLocatorList.push_back(loopback(ports.metatraffic));
   wire.builtin.mutation_tries = options.port_tries;
-  wire.builtin.discovery_config.discoveryProtocol = rtps::DiscoveryProtocol_t::CLIENT;
-  eprosima::fastdds::rtps::RemoteServerAttributes server;
-  server.guidPrefix = server_prefix(options.domain, options.discovery.port);
-  server.metatrafficUnicastLocatorList.push_back(loopback(options.discovery.port));
-  wire.builtin.discovery_config.m_DiscoveryServers.push_back(server);
+  if (options.star) {
+    announce_to(*options.star, options.domain, wire.builtin);
+  } else {
+    wire.builtin.discovery_config.discoveryProtocol = rtps::DiscoveryProtocol_t::CLIENT;
+    eprosima::fastdds::rtps::RemoteServerAttributes server;
+    server.guidPrefix = server_prefix(options.domain, options.discovery.port);
+    server.metatrafficUnicastLocatorList.push_back(loopback(options.discovery.port));
+    wire.builtin.discovery_config.m_DiscoveryServers.push_back(server);
+  }
   return qos;
 }
 

@@ -57,6 +57,24 @@ class TestFastDdsBus final : public Bus {
   std::uint32_t next_index_;
 };
 
+/// No server: everyone announces itself to those who were there before.
+class TestStarBus final : public Bus {
+ private:
+  std::unique_ptr<Participant> make(std::uint32_t ownership_strength) override {
+    Star star{.is_hub = true};
+    for (std::uint32_t peer = 0; peer < next_index_; ++peer) star.peers.push_back(peer);
+    auto made = make_fastdds_participant({.name = "conformance",
+                                          .domain = test_domain(),
+                                          .index = next_index_++,
+                                          .star = star,
+                                          .ownership_strength = ownership_strength});
+    SWARM_ASSERT(made.has_value());
+    return *std::move(made);
+  }
+
+  std::uint32_t next_index_ = 0;
+};
+
 /// Has no topics: nothing but groups.
 class TestGroupBus final : public Bus {
  public:
@@ -116,7 +134,8 @@ const std::vector<Back>& backs() {
   static const std::vector<Back> all = {
       {"inproc", [] { return make_inproc_bus(); }},
       {"fastdds_at_tick", [] { return make_fastdds_bus(true); }},
-      {"fastdds_threads", [] { return make_fastdds_bus(false); }}};
+      {"fastdds_threads", [] { return make_fastdds_bus(false); }},
+      {"fastdds_star", []() -> std::unique_ptr<Bus> { return std::make_unique<TestStarBus>(); }}};
   return all;
 }
 

@@ -1,0 +1,87 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "swarm_link/join.hpp"
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "swarm_link/hub.hpp"
+
+namespace swarm::link {
+namespace {
+
+constexpr std::uint32_t kAgentsPerHub = 25;
+
+// Participant indices: the launcher's, the planner's, then the agents'.
+std::uint32_t launcher_index(std::uint32_t hub) { return hub; }
+std::uint32_t planner_index(const Meeting& m, std::uint32_t hub) {
+  return std::max(1U, m.hubs) + hub;
+}
+std::uint32_t agent_index(const Meeting& m, std::uint32_t number) {
+  return 2 * std::max(1U, m.hubs) + number;
+}
+
+FastDdsOptions member(const Meeting& meeting, std::string name, std::uint32_t index) {
+  return {.name = std::move(name),
+          .domain = meeting.domain,
+          .index = index,
+          .discovery = meeting.server};
+}
+
+Result<std::unique_ptr<Participant>> make_checked(const FastDdsOptions& options) {
+  auto made = make_fastdds_participant(options);
+  if (!made) return made;
+  if (const auto hears = (*made)->self_check(); !hears) return tl::unexpected(hears.error());
+  return made;
+}
+
+}  // namespace
+
+std::uint32_t hubs_for(std::uint32_t agents) {
+  return std::max(1U, (agents + kAgentsPerHub - 1) / kAgentsPerHub);
+}
+
+std::uint32_t participants_for(const Meeting& meeting, std::uint32_t agents) {
+  return agent_index(meeting, agents);
+}
+
+Result<std::unique_ptr<Participant>> join_as_launcher(const Meeting& meeting) {
+  std::vector<std::unique_ptr<Participant>> hubs;
+  for (std::uint32_t hub = 0; hub < std::max(1U, meeting.hubs); ++hub) {
+    FastDdsOptions options = member(meeting, "swarm_launcher", launcher_index(hub));
+    if (meeting.hubs > 0) options.star = Star{.is_hub = true};
+    auto made = make_checked(options);
+    if (!made) return made;
+    hubs.push_back(std::move(*made));
+  }
+  return make_hub(std::move(hubs));
+}
+
+Result<std::unique_ptr<Participant>> join_as_planner(const Meeting& meeting,
+                                                     std::uint32_t ownership_strength) {
+  std::vector<std::unique_ptr<Participant>> hubs;
+  for (std::uint32_t hub = 0; hub < std::max(1U, meeting.hubs); ++hub) {
+    FastDdsOptions options = member(meeting, "planner_service", planner_index(meeting, hub));
+    options.ownership_strength = ownership_strength;
+    if (meeting.hubs > 0) options.star = Star{.is_hub = true};
+    // Of all its hubs one is enough for what launcher and planner have to tell each other.
+    if (meeting.hubs > 0 && hub == 0) options.star->peers = {launcher_index(0)};
+    auto made = make_checked(options);
+    if (!made) return made;
+    hubs.push_back(std::move(*made));
+  }
+  return make_hub(std::move(hubs));
+}
+
+Result<std::unique_ptr<Participant>> join_as_agent(const Meeting& meeting, std::uint32_t number,
+                                                   const std::string& name) {
+  FastDdsOptions options = member(meeting, name, agent_index(meeting, number));
+  if (meeting.hubs > 0) {
+    const std::uint32_t hub = number % meeting.hubs;
+    options.star = Star{.peers = {launcher_index(hub), planner_index(meeting, hub)}};
+  }
+  return make_checked(options);
+}
+
+}  // namespace swarm::link

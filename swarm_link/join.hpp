@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "swarm_link/fastdds/fastdds_participant.hpp"
+#include "swarm_link/port.hpp"
+
+/// How the processes of a run come to know each other.
+namespace swarm::link {
+
+/// The meeting place of a run. Either a discovery server, through which everyone finds everyone, or
+/// a star: launcher and planner have `hubs` participants each at known ports, every agent announces
+/// itself to one of either, and agents never learn of each other.
+struct Meeting {
+  std::uint32_t domain = 0;
+  DiscoveryAddress server{};  ///< used when `hubs` is 0
+  std::uint32_t hubs = 0;
+};
+
+/// Hubs for a number of agents: about 25 each; with 300 at one, it never gets done with discovery.
+std::uint32_t hubs_for(std::uint32_t agents);
+
+/// DDS participants of a run, so that all of them have ports of their own.
+std::uint32_t participants_for(const Meeting& meeting, std::uint32_t agents);
+
+Result<std::unique_ptr<Participant>> join_as_launcher(const Meeting& meeting);
+
+/// `ownership_strength`: see FastDdsOptions. In a star a planner takes the ports of the one before
+/// it, and agents, who announce themselves there for ever, find it.
+Result<std::unique_ptr<Participant>> join_as_planner(const Meeting& meeting,
+                                                     std::uint32_t ownership_strength);
+
+/// The `number`th agent process, counted from 0.
+Result<std::unique_ptr<Participant>> join_as_agent(const Meeting& meeting, std::uint32_t number,
+                                                   const std::string& name);
+
+}  // namespace swarm::link
