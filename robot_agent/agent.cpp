@@ -225,6 +225,7 @@ AgentOutput Agent::tick(const AgentInput& input) {
   out.mode = decide_mode(input);
   moved_ = moved_ || out.mode == RobotMode::kMoving;
   out.nearest_gap_m = nearest_gap_m(view, options_.safety.radius_m);
+  out.believed = view.neighbours;
   out.neighbours = static_cast<std::uint16_t>(std::min<std::size_t>(neighbours_.known(), 0xFFFF));
   out.remaining_m = has_route_ ? method_->remaining_m() : 0.0;
 

@@ -63,6 +63,7 @@ struct AgentOutput {
   double nearest_gap_m =
       0.0;  ///< to the nearest believed neighbour, surface to surface; +∞ if none
   std::uint16_t neighbours = 0;
+  std::span<const Neighbour> believed{};  ///< those within reach; valid until the next tick
 };
 
 /// One robot: turns the flow, the map and what it hears of its neighbours into its velocity, alone.

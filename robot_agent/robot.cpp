@@ -10,6 +10,7 @@ namespace swarm::agent {
 namespace {
 
 constexpr Duration kLate = std::chrono::milliseconds(20);
+constexpr std::uint32_t kTicksPerBelief = 5;
 
 std::int64_t to_us(Duration d) {
   return std::chrono::duration_cast<std::chrono::microseconds>(d).count();
@@ -73,6 +74,11 @@ void Robot::step(const Tick& tick, const Inbox& inbox, const NewPlan* new_plan) 
                   ? static_cast<std::uint8_t>(std::min(agent_.goal(position_m_), 254U))
                   : blackbox::Step::kNoGoal,
       .neighbours = output_.neighbours});
+  if (ticks_ % kTicksPerBelief == 0 && !output_.believed.empty()) {
+    const auto& one = output_.believed[ticks_ / kTicksPerBelief % output_.believed.size()];
+    box_.append(blackbox::Belief{
+        .stamp = tick.utc_now, .neighbour = one.robot, .position_m = one.position_m});
+  }
   if (mode_changed_) {
     note(tick.utc_now, "mode", std::string(to_string(output_.mode)),
          output_.mode == RobotMode::kStopped ? inbox.stop_stamp_utc_ns() : 0);

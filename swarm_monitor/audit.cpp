@@ -241,6 +241,7 @@ AuditedRun audit_recorded(RecordedRun recorded) {
   count_robots(run, audit);
   measure_paths(run, audit);
   audit.mission_s = mission_duration_s(run, audit);
+  audit.belief = belief_error(run.tracks);
   audit.collisions_robot = static_cast<std::uint32_t>(audited.robots.contacts.size());
   std::set<std::uint32_t> touching;
   for (const Approach& contact : audited.obstacles.contacts) touching.insert(contact.robot);

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "swarm_monitor/belief_error.hpp"
 #include "swarm_monitor/clearance.hpp"
 #include "swarm_monitor/recorded_run.hpp"
 
@@ -53,6 +54,7 @@ struct Audit {
   std::optional<double> path_ratio;
   std::optional<double> mission_s;  ///< first step in motion to the last arrival, else to the end
   std::optional<StateAge> state_age;
+  std::optional<BeliefError> belief;
   std::optional<StopLatency> stop;   ///< empty if nobody was stopped
   double deadline_miss_ratio = 0.0;  ///< share of control steps that began over 20 ms late
   std::uint64_t refused_messages = 0;

@@ -29,6 +29,13 @@ std::string to_json(const Audit& audit) {
            {"p999", audit.state_age->p999_ms},
            {"max", audit.state_age->max_ms}};
   }
+  Json belief = nullptr;
+  if (audit.belief) {
+    belief = {{"p50", audit.belief->p50_cm},
+              {"p99", audit.belief->p99_cm},
+              {"p999", audit.belief->p999_cm},
+              {"max", audit.belief->max_cm}};
+  }
   Json stop = nullptr;
   if (audit.stop) {
     stop = {{"p50", audit.stop->p50_ms}, {"p99", audit.stop->p99_ms}, {"max", audit.stop->max_ms}};
@@ -49,6 +56,7 @@ std::string to_json(const Audit& audit) {
                      {"path_ratio", number(audit.path_ratio)},
                      {"mission_s", number(audit.mission_s)},
                      {"state_age_ms", age},
+                     {"belief_error_cm", belief},
                      {"stop_latency_ms", stop},
                      {"deadline_miss_ratio", audit.deadline_miss_ratio},
                      {"refused_messages", audit.refused_messages},
@@ -88,6 +96,10 @@ std::string to_text(const Audit& audit) {
   if (audit.state_age) {
     text += fmt::format("  age of states    {:.1f} ms (p50), {:.1f} (p99), {:.1f} (max)\n",
                         audit.state_age->p50_ms, audit.state_age->p99_ms, audit.state_age->max_ms);
+  }
+  if (audit.belief) {
+    text += fmt::format("  belief error     {:.1f} cm (p50), {:.1f} (p99), {:.1f} (max)\n",
+                        audit.belief->p50_cm, audit.belief->p99_cm, audit.belief->max_cm);
   }
   text += fmt::format("  late steps       {:.3f} %, refused messages {}\n",
                       100.0 * audit.deadline_miss_ratio, audit.refused_messages);

@@ -79,6 +79,12 @@ void TrackMaker::take(const blackbox::Step& step) {
                            .goal = step.goal});
 }
 
+void TrackMaker::take(const blackbox::Belief& belief) {
+  track_.beliefs.push_back({.time_s = to_seconds(belief.stamp - origin_),
+                            .neighbour = belief.neighbour,
+                            .position_m = belief.position_m});
+}
+
 void TrackMaker::take(const blackbox::Note& note) {
   track_.notes.push_back(note);
   if (note.code == "exit") track_.ended_gracefully = true;
@@ -136,6 +142,7 @@ Result<RecordedRun> read_run(const std::filesystem::path& run_dir) {
   }
   for (Track& track : run.tracks) {
     for (TrackPoint& point : track.points) point.time_s -= begin_s;
+    for (BeliefPoint& belief : track.beliefs) belief.time_s -= begin_s;
   }
   run.begin = *origin + from_seconds(begin_s);
   if (const auto text = shell::read_file(run_dir / shell::kPlanFile, kMaxPlanBytes)) {

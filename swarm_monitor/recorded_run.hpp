@@ -22,12 +22,20 @@ struct TrackPoint {
   std::uint8_t goal = blackbox::Step::kNoGoal;
 };
 
+/// Where a robot took another to be.
+struct BeliefPoint {
+  double time_s = 0.0;  ///< since RecordedRun::begin
+  RobotId neighbour;
+  Vec2 position_m = Vec2::Zero();
+};
+
 /// Everything one robot's black box says. Between two points a robot moves in a straight line at
 /// constant speed, also from the end of one life of its process to the begin of the next.
 struct Track {
   RobotId robot{};
   double radius_m = 0.0;
-  std::vector<TrackPoint> points{};        ///< times strictly increasing
+  std::vector<TrackPoint> points{};  ///< times strictly increasing
+  std::vector<BeliefPoint> beliefs{};
   std::vector<std::uint32_t> processes{};  ///< one a life
   bool ended_gracefully = false;           ///< the last life noted "exit"
   std::string unreadable{};                ///< why there is no black box; empty if there is one
@@ -71,6 +79,7 @@ class TrackMaker {
   void add(const blackbox::Record& record);
   void take(const blackbox::Header& header);
   void take(const blackbox::Step& step);
+  void take(const blackbox::Belief& belief);
   void take(const blackbox::LinkStats& stats) { life_ = stats; }
   void take(const blackbox::Note& note);
   Track finish();

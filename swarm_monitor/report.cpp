@@ -85,6 +85,11 @@ void add_figures(Page& page, const Audit& audit) {
   };
   add_figure(page, number(age(&StateAge::p50_ms), 1, "ms"), "age of states, median");
   add_figure(page, number(age(&StateAge::p99_ms), 1, "ms"), "age of states, 99 %");
+  const auto belief = [&](double BeliefError::*p) {
+    return audit.belief ? std::optional(*audit.belief.*p) : std::nullopt;
+  };
+  add_figure(page, number(belief(&BeliefError::p99_cm), 1, "cm"),
+             "neighbours wrongly believed by, 99 %");
   add_figure(page, fmt::format("{:.3f} %", 100.0 * audit.deadline_miss_ratio),
              "control steps over 20 ms late");
   add_figure(page, fmt::format("{}", audit.refused_messages), "messages refused");

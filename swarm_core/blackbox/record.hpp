@@ -38,6 +38,13 @@ struct Step {
   static constexpr std::uint8_t kNoGoal = 255;
 };
 
+/// Where it took a neighbour to be at `stamp`: one of those near it, in turn.
+struct Belief {
+  UtcTime stamp{};
+  RobotId neighbour;
+  Vec2 position_m = Vec2::Zero();
+};
+
 /// Counters since the process started, once a second and at the end.
 struct LinkStats {
   UtcTime stamp{};
@@ -55,6 +62,6 @@ struct Note {
   std::string text{};
 };
 
-using Record = std::variant<Header, Step, LinkStats, Note>;
+using Record = std::variant<Header, Step, Belief, LinkStats, Note>;
 
 }  // namespace swarm::blackbox

@@ -11,10 +11,11 @@
 namespace swarm::blackbox {
 namespace {
 
-enum Kind : std::uint8_t { kHeader = 1, kStep = 2, kLinkStats = 3, kNote = 4 };
+enum Kind : std::uint8_t { kHeader = 1, kStep = 2, kLinkStats = 3, kNote = 4, kBelief = 5 };
 
 constexpr std::size_t kHeaderBytes = 4 + 4 + 4 + 8 + 8;
 constexpr std::size_t kStepBytes = 8 + 4 * 8 + 4 + 1 + 1 + 2;
+constexpr std::size_t kBeliefBytes = 8 + 4 + 2 * 8;
 constexpr std::size_t kLeastStatsBytes = 8 + 4 + 4 + 1 + 2;
 constexpr std::size_t kMostStatsBytes = kLeastStatsBytes + 4 * kMaxRefusals + 10 * Histogram::kBins;
 constexpr std::size_t kLeastNoteBytes = 8 + 8 + 2 + 2;
@@ -113,6 +114,13 @@ Kind put(Encoder& out, const Step& step) {
   return kStep;
 }
 
+Kind put(Encoder& out, const Belief& belief) {
+  out.put(belief.stamp);
+  out.put(belief.neighbour.value());
+  out.put(belief.position_m);
+  return kBelief;
+}
+
 Kind put(Encoder& out, const LinkStats& stats) {
   out.put(stats.stamp);
   out.put(stats.states_sent);
@@ -163,6 +171,14 @@ Step get_step(Decoder& in) {
   return step;
 }
 
+Belief get_belief(Decoder& in) {
+  Belief belief;
+  belief.stamp = in.get_time();
+  belief.neighbour = RobotId(in.get<std::uint32_t>());
+  belief.position_m = in.get_vec2();
+  return belief;
+}
+
 LinkStats get_link_stats(Decoder& in) {
   LinkStats stats;
   stats.stamp = in.get_time();
@@ -205,6 +221,8 @@ bool is_plausible(std::uint8_t kind, std::size_t size) {
       return size == kHeaderBytes;
     case kStep:
       return size == kStepBytes;
+    case kBelief:
+      return size == kBeliefBytes;
     case kLinkStats:
       return size >= kLeastStatsBytes && size <= kMostStatsBytes;
     case kNote:
@@ -223,6 +241,9 @@ std::optional<Record> decode(std::uint8_t kind, std::span<const unsigned char> p
       break;
     case kStep:
       record = get_step(in);
+      break;
+    case kBelief:
+      record = get_belief(in);
       break;
     case kLinkStats:
       record = get_link_stats(in);

@@ -220,10 +220,10 @@ TEST(Audit, IsADocumentWithEveryKey) {
   EXPECT_EQ(json["outcome"], "criteria_not_met");
   EXPECT_EQ(json["lost"], nlohmann::json::array({0}));
   for (const char* key : {"min_robot_gap_m", "mean_path_m", "geodesic_bound_m", "path_ratio",
-                          "stop_latency_ms", "state_age_ms", "plan_ms"}) {
+                          "stop_latency_ms", "state_age_ms", "belief_error_cm", "plan_ms"}) {
     EXPECT_TRUE(json.at(key).is_null()) << key;
   }
-  EXPECT_EQ(json.size(), 25U);
+  EXPECT_EQ(json.size(), 26U);
 }
 
 }  // namespace

@@ -103,14 +103,15 @@ TEST_F(BlackBox, IsNamedByItsRobot) {
 }
 
 TEST_F(BlackBox, ReadsBackEveryKindOfRecord) {
-  write({a_header(), step_number(1), some_stats(), a_note("exit"), step_number(4)});
+  write({a_header(), step_number(1), some_stats(), a_note("exit"), step_number(4),
+         Belief{.stamp = at_ms(3), .neighbour = RobotId(7), .position_m = {1.5, -2.5}}});
 
   const auto file = read_file(file_);
 
   ASSERT_TRUE(file.has_value()) << file.error().message;
   EXPECT_EQ(file->damaged, 0U);
   EXPECT_FALSE(file->truncated);
-  ASSERT_EQ(file->records.size(), 5U);
+  ASSERT_EQ(file->records.size(), 6U);
   const Header& header = std::get<Header>(file->records[0]);
   EXPECT_EQ(header.robot, RobotId(42));
   EXPECT_EQ(header.robots, 500U);
@@ -128,6 +129,10 @@ TEST_F(BlackBox, ReadsBackEveryKindOfRecord) {
   EXPECT_EQ(note.code, "exit");
   EXPECT_EQ(note.text, "why");
   EXPECT_EQ(note.caused, at_ms(8));
+  const Belief& belief = std::get<Belief>(file->records[5]);
+  EXPECT_EQ(belief.stamp, at_ms(3));
+  EXPECT_EQ(belief.neighbour, RobotId(7));
+  EXPECT_EQ(belief.position_m, Vec2(1.5, -2.5));
   expect_step(file->records[4], step_number(4));
 }
 
