@@ -13,6 +13,7 @@
 #include <unistd.h>
 
 #include "planner_service/plan_keeper.hpp"
+#include "swarm_core/base/clock.hpp"
 #include "swarm_core/mission/mission_file.hpp"
 #include "swarm_core/mission/phase.hpp"
 #include "swarm_core/plan/plan_json.hpp"
@@ -27,9 +28,7 @@ namespace {
 
 // A change of the scene must be a plan on the bus within 100 ms, most of which is not ours.
 constexpr Duration kStep = std::chrono::milliseconds(5);
-UtcTime utc_now() {
-  return std::chrono::time_point_cast<Duration>(std::chrono::system_clock::now());
-}
+constexpr std::uint64_t kFaultSeed = 0xFA17;  // not the planner's chance
 
 void sleep_for(Duration d) {
   const timespec t{.tv_sec = 0, .tv_nsec = static_cast<long>(d.count())};
@@ -94,11 +93,14 @@ Result<void> PlannerProcess::Impl::plan_first() {
 }
 
 Result<void> PlannerProcess::Impl::join(const shell::RunInfo& run) {
-  auto made =
-      link::join_as_planner(link::Meeting{.domain = run.domain,
-                                          .server = {run.discovery_host, run.discovery_port},
-                                          .hubs = run.hubs},
-                            options.ownership_strength);
+  auto made = link::join_as_planner(
+      link::Meeting{.domain = run.domain,
+                    .server = {run.discovery_host, run.discovery_port},
+                    .hubs = run.hubs,
+                    .faults = link::ReceptionFaults{.faults = options.faults,
+                                                    .seed = mix_seed(run.seed, kFaultSeed),
+                                                    .run_began = run.began}},
+      options.ownership_strength);
   if (!made) return tl::unexpected(made.error());
   participant = std::move(*made);
   auto plans = participant->make_writer(link::plan_topic());

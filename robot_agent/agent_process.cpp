@@ -16,6 +16,7 @@
 #include "robot_agent/drivers/simulated_robot.hpp"
 #include "robot_agent/inbox.hpp"
 #include "robot_agent/robot.hpp"
+#include "swarm_core/base/clock.hpp"
 #include "swarm_core/mission/mission_file.hpp"
 #include "swarm_core/mission/placement.hpp"
 #include "swarm_core/shell/run_directory.hpp"
@@ -27,12 +28,9 @@
 namespace swarm::agent {
 namespace {
 
-// So that a body's noise is not its agent's chance.
+// So that a body's noise and the network's faults are not the agent's chance.
 constexpr std::uint64_t kBodySeed = 0xB0D7;
-
-UtcTime utc_now() {
-  return std::chrono::time_point_cast<Duration>(std::chrono::system_clock::now());
-}
+constexpr std::uint64_t kFaultSeed = 0xFA17;
 
 /// Sleeps until `at`; false when a signal woke us early.
 bool sleep_until(SteadyTime at) {
@@ -88,10 +86,15 @@ struct AgentProcess::Impl {
 };
 
 Result<void> AgentProcess::Impl::join(const shell::RunInfo& run) {
+  const link::ReceptionFaults faults{
+      .faults = options.faults,
+      .seed = mix_seed(mix_seed(run.seed, kFaultSeed), options.number + 1),
+      .run_began = run.began};
   auto made =
       link::join_as_agent(link::Meeting{.domain = run.domain,
                                         .server = {run.discovery_host, run.discovery_port},
-                                        .hubs = run.hubs},
+                                        .hubs = run.hubs,
+                                        .faults = faults},
                           options.number, fmt::format("robot_agent_{}", options.first.value()));
   if (!made) return tl::unexpected(made.error());
   participant = std::move(*made);
@@ -113,7 +116,7 @@ Result<void> AgentProcess::Impl::join(const shell::RunInfo& run) {
 
   const LinkSpec& l = mission.link;
   if (run.channel == Channel::kGroups) {
-    link::GroupChannelOptions groups{.domain = run.domain};
+    link::GroupChannelOptions groups{.domain = run.domain, .faults = faults};
     groups.cells.cell_size_m = l.group_cell_size_m;
     groups.cells.hear_radius_m = l.hear_radius_m;
     auto channel = link::make_group_channel(groups);

@@ -9,6 +9,7 @@
 
 #include "swarm_core/base/ids.hpp"
 #include "swarm_core/base/result.hpp"
+#include "swarm_core/mission/link_faults.hpp"
 
 namespace swarm::agent {
 
@@ -16,7 +17,8 @@ struct ProcessOptions {
   std::filesystem::path run_dir;
   RobotId first;  ///< the robots first … first + count − 1 live in this process
   std::uint32_t count = 1;
-  std::uint32_t number = 0;      ///< of this process among the agents of the run
+  std::uint32_t number = 0;  ///< of this process among the agents of the run
+  LinkFaults faults{};
   std::uint32_t parent_pid = 0;  ///< end when this process is gone; 0 = do not watch
 };
 

@@ -17,15 +17,20 @@ int main(int argc, char** argv) {
         "robot_agent");
     swarm::agent::ProcessOptions options;
     std::uint32_t first = 0;
+    std::string fault;
     app.add_option("--run", options.run_dir, "Run directory made by the launcher")->required();
     app.add_option("--ids", first, "First robot of this process")->required();
     app.add_option("--count", options.count, "Number of robots in this process");
     app.add_option("--number", options.number, "Of this agent process in the run, from 0");
     app.add_option("--parent", options.parent_pid, "End when this process is no longer our parent");
+    app.add_option("--fault", fault, "A bad network for what this process receives");
     swarm::shell::add_common_options(app);
     const auto done = swarm::shell::parse(app, argc, argv);
     if (!done) return tl::unexpected(done.error());
     if (*done) return **done;
+    const auto faults = swarm::parse_link_faults(fault);
+    if (!faults) return tl::unexpected(faults.error());
+    options.faults = *faults;
     options.first = swarm::RobotId(first);
 
     swarm::shell::catch_stop_signals();

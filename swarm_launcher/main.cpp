@@ -47,6 +47,11 @@ int main(int argc, char** argv) {
         ->add_option("--channel", channel,
                      "What carries robot states: DDS topics, multicast groups, or auto")
         ->check(CLI::IsMember(channels));
+    run_command
+        ->add_option("--fault", run.fault,
+                     "A bad network for what planner and robots receive, like\n"
+                     "loss=0.2,delay-ms=150,jitter-ms=50,from=10,to=60")
+        ->type_name("FAULT");
     run_command->add_flag("--json", run.json, "Print the summary as JSON");
 
     launcher::PlanCommandOptions plan;
@@ -61,8 +66,7 @@ int main(int argc, char** argv) {
     plan_command->add_flag("--json", plan.json, "Print the result as JSON");
 
     launcher::SimulateOptions simulate;
-    double delay_ms = 0.0;
-    double jitter_ms = 0.0;
+    std::string simulated_fault;
     bool clocks_apart = false;
     bool no_record = false;
     CLI::App* simulate_command = app.add_subcommand(
@@ -75,12 +79,8 @@ int main(int argc, char** argv) {
         ->check(CLI::Range(1, 200000));
     simulate_command->add_option("--seed", simulate.seed,
                                  "Seed of placement, plan, robots, faults");
-    simulate_command->add_option("--loss", simulate.faults.loss, "Share of robot states lost")
-        ->check(CLI::Range(0.0, 1.0));
-    simulate_command->add_option("--delay-ms", delay_ms, "How late robot states arrive")
-        ->check(CLI::Range(0.0, 60000.0));
-    simulate_command->add_option("--jitter-ms", jitter_ms, "… and by how much earlier or later")
-        ->check(CLI::Range(0.0, 60000.0));
+    simulate_command->add_option("--fault", simulated_fault, "A bad network, as for run")
+        ->type_name("FAULT");
     simulate_command->add_flag("--clocks-apart", clocks_apart,
                                "Robots tick at different moments of the control period");
     simulate_command->add_option("--threads", simulate.threads, "0: as many as make it faster")
@@ -124,8 +124,9 @@ int main(int argc, char** argv) {
     run.channel = channels.at(channel);
     if (run_command->parsed()) return launcher::run_mission(run);
     if (plan_command->parsed()) return launcher::plan_mission(plan);
-    simulate.faults.delay = from_seconds(1e-3 * delay_ms);
-    simulate.faults.jitter = from_seconds(1e-3 * jitter_ms);
+    const auto faults = parse_link_faults(simulated_fault);
+    if (!faults) return tl::unexpected(faults.error());
+    simulate.faults = *faults;
     simulate.clocks_in_step = !clocks_apart;
     simulate.record = !no_record;
     if (simulate_command->parsed()) return launcher::simulate_mission(simulate);

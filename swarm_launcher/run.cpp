@@ -12,6 +12,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include "swarm_core/base/clock.hpp"
 #include "swarm_core/mission/mission_file.hpp"
 #include "swarm_core/mission/placement.hpp"
 #include "swarm_core/mission/scene_change_file.hpp"
@@ -37,10 +38,6 @@ namespace {
 
 constexpr Duration kStep = std::chrono::milliseconds(20);
 constexpr std::uint32_t kPlannerStrength = 100;
-
-UtcTime utc_now() {
-  return std::chrono::time_point_cast<Duration>(std::chrono::system_clock::now());
-}
 
 int number_of(EndSignal signal) {
   switch (signal) {
@@ -115,6 +112,9 @@ class Run {
 };
 
 Result<std::unique_ptr<Run>> Run::make(const RunOptions& options) {
+  if (const auto faults = parse_link_faults(options.fault); !faults) {
+    return tl::unexpected(faults.error());
+  }
   auto mission = load_mission(options.mission_file);
   if (!mission) return tl::unexpected(mission.error());
   if (options.robots) mission->robots.count = *options.robots;
@@ -160,7 +160,8 @@ Result<void> Run::join() {
                                                   .discovery_port = meeting.server.port,
                                                   .hubs = meeting.hubs,
                                                   .channel = channel_.channel,
-                                                  .seed = options_.seed});
+                                                  .seed = options_.seed,
+                                                  .began = utc_now()});
       !written) {
     return written;
   }
@@ -219,6 +220,7 @@ Result<void> Run::start(ProcessIndex process) {
                     fmt::format("{}", process.value() - 1)};
     log = fmt::format("agent-{:05}.log", first.value());
   }
+  if (!options_.fault.empty()) command_line.insert(command_line.end(), {"--fault", options_.fault});
   command_line.insert(command_line.end(), {"--parent", fmt::format("{}", ::getpid())});
   const auto pid = start_process(command_line, dir_ / shell::kLogsFolder / log);
   if (!pid) return tl::unexpected(pid.error());

@@ -16,6 +16,7 @@ struct RunOptions {
   std::optional<std::uint32_t> robots;  ///< instead of the mission's
   std::uint32_t per_process = 1;
   std::uint64_t seed = 1;
+  std::string fault;          ///< as parse_link_faults() reads it
   std::filesystem::path out;  ///< run directory; empty: runs/<mission>-<time>
   bool json = false;
   int domain = -1;                 ///< DDS domain; negative: a free one

@@ -26,7 +26,8 @@ FastDdsOptions member(const Meeting& meeting, std::string name, std::uint32_t in
   return {.name = std::move(name),
           .domain = meeting.domain,
           .index = index,
-          .discovery = meeting.server};
+          .discovery = meeting.server,
+          .faults = meeting.faults};
 }
 
 Result<std::unique_ptr<Participant>> make_checked(const FastDdsOptions& options) {

@@ -4,9 +4,13 @@
 
 #include <algorithm>
 #include <array>
+#include <cstring>
+#include <ctime>
 
 #include <sys/socket.h>
 #include <unistd.h>
+
+#include "swarm_core/base/clock.hpp"
 
 namespace swarm::link {
 
@@ -20,6 +24,18 @@ bool set_membership(int fd, int option, const in_addr& group) {
   request.imr_multiaddr = group;
   request.imr_address.s_addr = htonl(INADDR_LOOPBACK);
   return ::setsockopt(fd, IPPROTO_IP, option, &request, sizeof request) == 0;
+}
+
+/// When the kernel received a datagram, if it was asked to remember.
+UtcTime received_at(msghdr& message, UtcTime otherwise) {
+  for (cmsghdr* part = CMSG_FIRSTHDR(&message); part != nullptr;
+       part = CMSG_NXTHDR(&message, part)) {
+    if (part->cmsg_level != SOL_SOCKET || part->cmsg_type != SCM_TIMESTAMPNS) continue;
+    timespec stamp{};
+    std::memcpy(&stamp, CMSG_DATA(part), sizeof stamp);
+    return UtcTime(std::chrono::seconds(stamp.tv_sec) + Duration(stamp.tv_nsec));
+  }
+  return otherwise;
 }
 
 }  // namespace
@@ -96,30 +112,51 @@ int granted_receive_buffer_bytes(int asked_bytes) {
   return granted / 2;  // the kernel reports twice what was asked, for its own bookkeeping
 }
 
-DatagramDrain::DatagramDrain() : buffers_(new std::byte[kBatch * kDatagramBytes]) {}
+DatagramDrain::DatagramDrain(const ReceptionFaults& faults)
+    : buffers_(new std::byte[kBatch * kDatagramBytes]) {
+  if (faults.faults.any()) path_.emplace(faults);
+}
 
-void DatagramDrain::drain(int fd, Sink& sink) {
+void DatagramDrain::drain(int fd, DatagramSink& sink) {
+  if (path_) {
+    const int yes = 1;
+    ::setsockopt(fd, SOL_SOCKET, SO_TIMESTAMPNS, &yes, sizeof yes);
+  }
   for (int received = 0; received < kMaxDatagrams;) {
     const int batch = drain_batch(fd, sink);
     received += batch;
-    if (batch < static_cast<int>(kBatch)) return;
+    if (batch < static_cast<int>(kBatch)) break;
   }
+  if (path_) path_->hand_due(fd, utc_now(), sink);
 }
 
-int DatagramDrain::drain_batch(int fd, Sink& sink) {
+int DatagramDrain::drain_batch(int fd, DatagramSink& sink) {
   std::array<mmsghdr, kBatch> messages{};
   std::array<iovec, kBatch> vectors;
   std::array<sockaddr_in, kBatch> senders;
+  struct alignas(cmsghdr) Stamp {
+    std::array<std::byte, CMSG_SPACE(sizeof(timespec))> bytes;
+  };
+  std::array<Stamp, kBatch> stamps;
   for (std::size_t i = 0; i < kBatch; ++i) {
     vectors[i] = {buffers_.get() + i * kDatagramBytes, kDatagramBytes};
     messages[i].msg_hdr.msg_iov = &vectors[i];
     messages[i].msg_hdr.msg_iovlen = 1;
     messages[i].msg_hdr.msg_name = &senders[i];
     messages[i].msg_hdr.msg_namelen = sizeof(sockaddr_in);
+    if (path_) {
+      messages[i].msg_hdr.msg_control = stamps[i].bytes.data();
+      messages[i].msg_hdr.msg_controllen = stamps[i].bytes.size();
+    }
   }
   const int count = std::max(0, ::recvmmsg(fd, messages.data(), kBatch, MSG_DONTWAIT, nullptr));
   for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
-    sink.datagram({buffers_.get() + i * kDatagramBytes, messages[i].msg_len}, senders[i]);
+    const std::span<std::byte> bytes{buffers_.get() + i * kDatagramBytes, messages[i].msg_len};
+    if (path_) {
+      path_->receive(fd, bytes, senders[i], received_at(messages[i].msg_hdr, utc_now()));
+    } else {
+      sink.datagram(bytes, senders[i]);
+    }
   }
   return count;
 }

@@ -5,9 +5,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <span>
+#include <optional>
 
 #include <netinet/in.h>
+
+#include "swarm_link/faulty_path.hpp"
 
 /// UDP on the loopback interface: what the Fast DDS back and the groups share. No vendor's types.
 namespace swarm::link {
@@ -37,21 +39,15 @@ int granted_receive_buffer_bytes(int asked_bytes);
 /// Empties sockets without waiting.
 class DatagramDrain {
  public:
-  DatagramDrain();
-
-  /// Called once per datagram; the bytes are valid during the call.
-  class Sink {
-   public:
-    virtual ~Sink() = default;
-    virtual void datagram(std::span<std::byte> bytes, const sockaddr_in& sender) = 0;
-  };
+  explicit DatagramDrain(const ReceptionFaults& faults = {});
 
   /// At most kMaxDatagrams, so that a flood cannot hold the tick.
   static constexpr int kMaxDatagrams = 8192;
-  void drain(int fd, Sink& sink);
+  void drain(int fd, DatagramSink& sink);
 
  private:
-  int drain_batch(int fd, Sink& sink);
+  int drain_batch(int fd, DatagramSink& sink);
+  std::optional<FaultyPath> path_;
   std::unique_ptr<std::byte[]> buffers_;  // untouched pages cost nothing
 };
 

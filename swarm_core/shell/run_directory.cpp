@@ -57,7 +57,8 @@ Result<void> write_run_info(const std::filesystem::path& run_dir, const RunInfo&
                                {"discovery_port", info.discovery_port},
                                {"hubs", info.hubs},
                                {"channel", to_string(info.channel)},
-                               {"seed", info.seed}};
+                               {"seed", info.seed},
+                               {"began_utc_ns", info.began.time_since_epoch().count()}};
   return write_file(run_dir / kRunFile, json.dump(2) + "\n");
 }
 
@@ -73,7 +74,8 @@ Result<RunInfo> read_run_info(const std::filesystem::path& run_dir) {
                    .channel = json.at("channel").get<std::string>() == to_string(Channel::kGroups)
                                   ? Channel::kGroups
                                   : Channel::kTopics,
-                   .seed = json.at("seed").get<std::uint64_t>()};
+                   .seed = json.at("seed").get<std::uint64_t>(),
+                   .began = UtcTime(Duration(json.at("began_utc_ns").get<std::int64_t>()))};
   } catch (const nlohmann::json::exception& e) {
     return fail(ErrorCode::kBadInput, fmt::format("{}: not a run directory: {}",
                                                   (run_dir / kRunFile).string(), e.what()));

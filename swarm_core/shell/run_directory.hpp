@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "swarm_core/base/result.hpp"
+#include "swarm_core/base/time.hpp"
 #include "swarm_core/mission/channel.hpp"
 
 /// A run's directory: where the launcher, the planner, the agents and the monitor meet.
@@ -32,6 +33,7 @@ struct RunInfo {
   std::uint32_t hubs = 0;  ///< of launcher and planner each; 0: everyone meets at the server
   Channel channel = Channel::kTopics;
   std::uint64_t seed = 0;
+  UtcTime began{};
 };
 
 Result<void> write_run_info(const std::filesystem::path& run_dir, const RunInfo& info);

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "swarm_core/base/random.hpp"
+
 namespace swarm::launcher {
 namespace {
 
@@ -17,8 +19,10 @@ double cell_size_m(const Vec2& extent_m, double reach_m) {
 
 }  // namespace
 
-Air::Air(const Box& bounds_m, double reach_m, const LinkFaults& faults, std::uint64_t seed)
+Air::Air(const Box& bounds_m, double reach_m, const LinkFaults& faults, std::uint64_t seed,
+         SteadyTime begin)
     : faults_(faults),
+      begin_(begin),
       seed_(seed),
       origin_m_(bounds_m.min_m),
       cell_m_(cell_size_m(bounds_m.max_m - bounds_m.min_m, reach_m)),
@@ -56,17 +60,12 @@ void Air::forget(SteadyTime time) {
   }
 }
 
-bool Air::arrives(const agent::NeighbourReport& report, RobotId receiver, SteadyTime due,
+bool Air::arrives(const agent::NeighbourReport& report, RobotId receiver, SteadyTime said_at,
                   SteadyTime from, SteadyTime until) const {
   const std::uint64_t message =
       static_cast<std::uint64_t>(report.robot.value()) << 32U | report.sequence;
-  const std::uint64_t fate = mix_seed(mix_seed(seed_, message), receiver.value());
-  constexpr double kScale = 0x1.0p-32;
-  if (static_cast<double>(fate & 0xFFFFFFFFU) * kScale < faults_.loss) return false;
-  const double turn = 2.0 * (static_cast<double>(fate >> 32U) * kScale) - 1.0;
-  const SteadyTime arrival =
-      due + Duration(std::llround(turn * static_cast<double>(faults_.jitter.count())));
-  return arrival >= from && arrival < until;
+  const auto delay = fate(faults_, mix_seed(seed_, message), receiver.value());
+  return delay && said_at + *delay >= from && said_at + *delay < until;
 }
 
 }  // namespace swarm::launcher

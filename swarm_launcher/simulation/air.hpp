@@ -10,27 +10,19 @@
 #include <vector>
 
 #include "robot_agent/neighbour_table.hpp"
-#include "swarm_core/base/random.hpp"
+#include "swarm_core/mission/link_faults.hpp"
 #include "swarm_core/world/box.hpp"
 
 namespace swarm::launcher {
-
-/// What the network does to robot states, for each pair of sender and receiver independently.
-struct LinkFaults {
-  double loss = 0.0;  ///< share that never arrives
-  Duration delay{};
-  Duration jitter{};  ///< each message comes up to this much earlier or later than `delay`
-
-  bool any() const { return loss > 0.0 || delay > Duration::zero() || jitter > Duration::zero(); }
-};
 
 /// The bus of a simulation: carries robot states from those who say them to those near enough, late
 /// or never as the faults have it. What becomes of a message is a function of the seed, its sender,
 /// number and receiver, whoever asks and when: any number of threads may hear at a time.
 class Air {
  public:
-  /// `reach_m` is the largest sensing range of any robot.
-  Air(const Box& bounds_m, double reach_m, const LinkFaults& faults, std::uint64_t seed);
+  /// `reach_m` is the largest sensing range of any robot, `begin` the run's.
+  Air(const Box& bounds_m, double reach_m, const LinkFaults& faults, std::uint64_t seed,
+      SteadyTime begin);
 
   /// Puts what robots said at a moment on the air; moments ascend.
   void post(SteadyTime at, std::span<const agent::NeighbourReport> said);
@@ -47,8 +39,10 @@ class Air {
     const int y0 = row_of(position_m.y() - range_m), y1 = row_of(position_m.y() + range_m);
     const double range_squared = range_m * range_m;
     for (const Moment& moment : moments_) {
-      const SteadyTime due = moment.at + faults_.delay;
-      if (due + faults_.jitter < from || due - faults_.jitter >= until) continue;
+      const bool faulty = faults_.any() && faults_.at(moment.at - begin_);
+      const Duration delay = faulty ? faults_.delay : Duration::zero();
+      const Duration jitter = faulty ? faults_.jitter : Duration::zero();
+      if (moment.at + delay + jitter < from || moment.at + delay - jitter >= until) continue;
       for (int y = y0; y <= y1; ++y) {
         const std::size_t row = static_cast<std::size_t>(y) * static_cast<std::size_t>(columns_);
         const std::size_t first = moment.begin[row + static_cast<std::size_t>(x0)];
@@ -64,7 +58,7 @@ class Air {
           for (std::size_t k = 0; k < found; ++k) {
             const agent::NeighbourReport& report = moment.said[near[k]];
             if (report.robot == receiver) continue;
-            if (!faults_.any() || arrives(report, receiver, due, from, until)) take(report);
+            if (!faulty || arrives(report, receiver, moment.at, from, until)) take(report);
           }
         }
       }
@@ -86,10 +80,11 @@ class Air {
   int row_of(double y_m) const {
     return std::clamp(static_cast<int>((y_m - origin_m_.y()) / cell_m_), 0, rows_ - 1);
   }
-  bool arrives(const agent::NeighbourReport& report, RobotId receiver, SteadyTime due,
+  bool arrives(const agent::NeighbourReport& report, RobotId receiver, SteadyTime said_at,
                SteadyTime from, SteadyTime until) const;
 
   LinkFaults faults_;
+  SteadyTime begin_;
   std::uint64_t seed_;
   Vec2 origin_m_;
   double cell_m_;

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "swarm_core/base/result.hpp"
+#include "swarm_core/mission/link_faults.hpp"
 #include "swarm_launcher/simulation/air.hpp"
 
 namespace swarm::launcher {

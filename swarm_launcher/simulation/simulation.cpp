@@ -57,7 +57,7 @@ Simulation::Simulation(const Mission& mission, const SimulationOptions& options,
       keeper_(mission, options.seed, &std::chrono::steady_clock::now),
       supervisor_(supervisor_options(mission), kBegin),
       air_(mission.world.bounds_m(), hears_farthest_m(mission), options.faults,
-           mix_seed(options.seed, 0xA1B)),
+           mix_seed(options.seed, 0xA1B), kBegin),
       crew_(std::max<std::size_t>(options.threads, 1)),
       ages_(crew_.size()),
       now_(kBegin) {}

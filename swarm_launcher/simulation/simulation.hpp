@@ -12,6 +12,7 @@
 #include "robot_agent/agent.hpp"
 #include "robot_agent/drivers/driver.hpp"
 #include "swarm_core/base/result.hpp"
+#include "swarm_core/mission/link_faults.hpp"
 #include "swarm_core/mission/mission.hpp"
 #include "swarm_launcher/simulation/air.hpp"
 #include "swarm_launcher/simulation/crew.hpp"

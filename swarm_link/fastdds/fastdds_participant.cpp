@@ -203,7 +203,7 @@ Result<std::unique_ptr<Participant>> make_fastdds_participant(const FastDdsOptio
   try {
     set_up_library();
     auto sockets = std::make_shared<ReceiveSockets>(ports->data, options.receive_at_tick,
-                                                    options.receive_buffer_bytes);
+                                                    options.receive_buffer_bytes, options.faults);
     // The vendor announces a participant before it hands it what its sockets receive: a hub that
     // answers at once would go unheard, and does not repeat itself.
     sockets->set_silent(options.star.has_value());

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "swarm_core/base/result.hpp"
+#include "swarm_link/faulty_path.hpp"
 #include "swarm_link/port.hpp"
 
 /// The Fast DDS back. This header is vendor-free; the vendor's headers stay inside this folder.
@@ -40,6 +41,7 @@ struct FastDdsOptions {
   std::uint32_t ownership_strength = 0;
   bool receive_at_tick = true;  ///< no receive thread on data ports; see Participant::receive
   int receive_buffer_bytes = 4 << 20;
+  ReceptionFaults faults{};         ///< of data that is received at the tick
   std::uint32_t port_tries = 4000;  ///< occupied ports skipped before giving up (self_check tells)
 };
 

@@ -95,9 +95,10 @@ class LoopbackTransport final : public rtps::ChainingTransport {
 
 }  // namespace
 
-ReceiveSockets::ReceiveSockets(std::uint16_t first_data_port, bool at_tick, int buffer_bytes)
+ReceiveSockets::ReceiveSockets(std::uint16_t first_data_port, bool at_tick, int buffer_bytes,
+                               const ReceptionFaults& faults)
     : first_data_port_(first_data_port), at_tick_(at_tick), buffer_bytes_(buffer_bytes) {
-  if (at_tick_) drain_.emplace();
+  if (at_tick_) drain_.emplace(faults);
 }
 
 ReceiveSockets::~ReceiveSockets() {
@@ -171,7 +172,7 @@ void ReceiveSockets::note_opened(std::uint32_t port) {
 }
 
 void ReceiveSockets::drain() {
-  struct ToVendor final : DatagramDrain::Sink {
+  struct ToVendor final : DatagramSink {
     const Socket* socket = nullptr;
     void datagram(std::span<std::byte> bytes, const sockaddr_in& sender) override {
       try {

@@ -25,7 +25,8 @@ class ReceiveSockets {
  public:
   /// `first_data_port`: data ports are this one and every second one above it (the vendor's rule
   /// for finding a free port adds 2). Zero: every port stays with the vendor.
-  ReceiveSockets(std::uint16_t first_data_port, bool at_tick, int buffer_bytes);
+  ReceiveSockets(std::uint16_t first_data_port, bool at_tick, int buffer_bytes,
+                 const ReceptionFaults& faults = {});
   ~ReceiveSockets();
   ReceiveSockets(const ReceiveSockets&) = delete;
   ReceiveSockets& operator=(const ReceiveSockets&) = delete;

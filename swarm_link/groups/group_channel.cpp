@@ -58,14 +58,15 @@ class GroupSocket {
   bool joined_;
 };
 
-class GroupChannel final : public StateChannel, private DatagramDrain::Sink {
+class GroupChannel final : public StateChannel, private DatagramSink {
  public:
   explicit GroupChannel(const GroupChannelOptions& options)
       : options_(options),
         interest_(options.cells),
         batches_(options.cells.cell_size_m),
         prefix_(random_prefix()),
-        sender_(open_group_sender()) {}
+        sender_(open_group_sender()),
+        drain_(options.faults) {}
 
   ~GroupChannel() override {
     if (sender_ >= 0) ::close(sender_);

@@ -8,6 +8,7 @@
 
 #include "swarm_core/base/result.hpp"
 #include "swarm_link/cell.hpp"
+#include "swarm_link/faulty_path.hpp"
 #include "swarm_link/state_channel.hpp"
 
 namespace swarm::link {
@@ -24,6 +25,7 @@ struct GroupChannelOptions {
   std::uint32_t domain = 0;  ///< groups of different domains do not hear each other
   CellOptions cells{.cell_size_m = 5.0, .join_margin_m = 0.5, .leave_margin_m = 1.5};
   int receive_buffer_bytes = 1 << 20;  ///< per cell that is heard
+  ReceptionFaults faults{};
 };
 
 /// The `groups` channel: the samples of the cell topics as RTPS messages, but a cell is a multicast

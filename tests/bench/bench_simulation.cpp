@@ -97,9 +97,9 @@ void hear_all(benchmark::State& state, bool cells) {
   constexpr double kRange_m = 4.0, kArea_m2 = 2.0;
   const auto robots = static_cast<std::uint32_t>(state.range(0));
   const double side_m = std::sqrt(kArea_m2 * robots);
-  Air air({{0, 0}, {side_m, side_m}}, cells ? kRange_m : 2.0 * side_m, {}, 1);
-  const std::vector<agent::NeighbourReport> said = words_of(robots, side_m);
   const SteadyTime then;
+  Air air({{0, 0}, {side_m, side_m}}, cells ? kRange_m : 2.0 * side_m, {}, 1, then);
+  const std::vector<agent::NeighbourReport> said = words_of(robots, side_m);
   const SteadyTime now = then + std::chrono::milliseconds(100);
   air.post(then, said);
   for (auto _ : state) {

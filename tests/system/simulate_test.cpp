@@ -30,8 +30,8 @@ TEST(Simulate, GivesTheSameBytesOnAnyNumberOfThreads) {
   TemporaryFolder folder;
   const auto fly = [&](const std::string& threads) {
     const auto dir = folder.path() / threads;
-    Program simulate("swarm_launcher", {"simulate", kSmallMission, "--seed", "7", "--loss", "0.2",
-                                        "--threads", threads, "--out", dir.string()});
+    Program simulate("swarm_launcher", {"simulate", kSmallMission, "--seed", "7", "--fault",
+                                        "loss=0.2", "--threads", threads, "--out", dir.string()});
     EXPECT_EQ(simulate.wait(), 0) << simulate.err();
     return dir;
   };

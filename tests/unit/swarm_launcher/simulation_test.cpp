@@ -125,8 +125,8 @@ TEST(Air, LosesItsShareAndDeliversTheRestOnceAndInTime) {
   const LinkFaults faults{.loss = 0.25,
                           .delay = std::chrono::milliseconds(150),
                           .jitter = std::chrono::milliseconds(50)};
-  Air air({{0, 0}, {10, 10}}, 4.0, faults, 7);
   const SteadyTime begin{std::chrono::seconds(1)};
+  Air air({{0, 0}, {10, 10}}, 4.0, faults, 7, begin);
   const Duration period = std::chrono::milliseconds(100);
   constexpr std::uint32_t kSaid = 4000;
   std::uint32_t heard = 0;
@@ -146,6 +146,23 @@ TEST(Air, LosesItsShareAndDeliversTheRestOnceAndInTime) {
     air.forget(now - period);
   }
   EXPECT_NEAR(heard, 0.75 * kSaid, 0.03 * kSaid);
+}
+
+TEST(Air, IsBadOnlyWhenItIsToBe) {
+  const LinkFaults faults{
+      .loss = 1.0, .from = std::chrono::seconds(10), .until = std::chrono::seconds(20)};
+  const SteadyTime begin{std::chrono::seconds(1)};
+  Air air({{0, 0}, {10, 10}}, 4.0, faults, 7, begin);
+  std::vector<std::uint32_t> heard;
+  for (const std::uint32_t s : {9U, 10U, 19U, 20U}) {
+    const SteadyTime now = begin + std::chrono::seconds(s);
+    const std::vector<agent::NeighbourReport> said = {
+        {.robot = RobotId(1), .sequence = s, .as_of = now, .position_m = {6, 5}}};
+    air.post(now, said);
+    air.hear(RobotId(0), {5, 5}, 4.0, now, now + std::chrono::seconds(1),
+             [&](const auto& report) { heard.push_back(report.sequence); });
+  }
+  EXPECT_EQ(heard, std::vector({9U, 20U}));
 }
 
 }  // namespace

@@ -1,0 +1,14 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "swarm_core/base/time.hpp"
+
+namespace swarm {
+
+/// What the machine's clock says; for those at the edge alone, everyone else is told the time.
+inline UtcTime utc_now() {
+  return std::chrono::time_point_cast<Duration>(std::chrono::system_clock::now());
+}
+
+}  // namespace swarm

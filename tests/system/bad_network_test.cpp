@@ -1,0 +1,37 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+// Words are lost and late, and so is what a new planner has to say.
+#include <csignal>
+
+#include "flown_run.hpp"
+
+namespace swarm::test {
+namespace {
+
+TEST(BadNetwork, IsFlownThrough) {
+  FlownRun run({"--channel", "groups", "--fault", "loss=0.2,delay-ms=150,jitter-ms=50"});
+  ASSERT_TRUE(run.mission_started()) << run.launcher().err();
+  const auto planners = run.planners();
+  ASSERT_EQ(planners.size(), 1U);
+
+  ::kill(planners[0], SIGKILL);
+
+  EXPECT_EQ(run.launcher().wait(), 0) << run.launcher().err();
+  const auto summary = run.summary();
+  EXPECT_EQ(summary["arrived"], 12);
+  EXPECT_EQ(summary["collisions_robot"], 0);
+  EXPECT_EQ(summary["collisions_obstacle"], 0);
+  EXPECT_GE(summary["state_age_ms"]["p50"], 150.0);
+  EXPECT_GT(summary["belief_error_cm"]["max"], 0.0);
+}
+
+TEST(BadNetwork, IsToBeWellDescribed) {
+  FlownRun run({"--fault", "loss=2"});
+
+  EXPECT_EQ(run.launcher().wait(), 3);
+  EXPECT_NE(run.launcher().err().find("'loss=2' is not in 0 to 1"), std::string::npos)
+      << run.launcher().err();
+}
+
+}  // namespace
+}  // namespace swarm::test
