@@ -14,6 +14,7 @@
 #include "swarm_launcher/plan.hpp"
 #include "swarm_launcher/run.hpp"
 #include "swarm_launcher/simulation/simulate.hpp"
+#include "swarm_launcher/soak/soak.hpp"
 #include "swarm_launcher/table/table.hpp"
 
 int main(int argc, char** argv) {
@@ -53,6 +54,34 @@ int main(int argc, char** argv) {
                      "loss=0.2,delay-ms=150,jitter-ms=50,from=10,to=60")
         ->type_name("FAULT");
     run_command->add_flag("--json", run.json, "Print the summary as JSON");
+
+    launcher::SoakOptions soak;
+    std::string soak_channel = "auto";
+    CLI::App* soak_command = app.add_subcommand(
+        "soak", "Keep a swarm moving, and measure what its link and its processes do");
+    soak_command->add_option("--processes", soak.processes, "Number of agent processes")
+        ->check(CLI::Range(1, 20000));
+    soak_command->add_option("--per-process", soak.per_process, "Robots hosted by each")
+        ->check(CLI::Range(1, 20000));
+    soak_command->add_option("--rate-hz", soak.rate_hz, "Control rate")
+        ->check(CLI::Range(1.0, 100.0));
+    soak_command->add_option("--duration-s", soak.duration_s, "How long robots move")
+        ->check(CLI::Range(5.0, 1e6));
+    soak_command->add_option("--channel", soak_channel, "As for run")
+        ->check(CLI::IsMember(channels));
+    soak_command->add_option("--fault", soak.fault, "A bad network, as for run")
+        ->type_name("FAULT");
+    soak_command->add_option("--max-p99-ms", soak.criteria.max_p99_ms,
+                             "Fail if 1 % of states take longer to a listener");
+    soak_command->add_option("--max-loss", soak.criteria.max_loss,
+                             "Fail if a larger share of states is lost");
+    soak_command->add_option("--max-rss-growth-pct", soak.criteria.max_rss_growth_pct,
+                             "Fail if the agents' memory grows by more");
+    soak_command->add_option("--seed", soak.seed, "Seed of placement, plan and robots");
+    soak_command->add_option("--out", soak.out, "Run directory (default: runs/soak-<time>)");
+    soak_command->add_option("--domain", soak.domain, "DDS domain (default: a free one)")
+        ->check(CLI::Range(0, 229));
+    soak_command->add_flag("--json", soak.json, "Print the result as JSON");
 
     launcher::PlanCommandOptions plan;
     CLI::App* plan_command = app.add_subcommand("plan", "Plan a mission without flying it");
@@ -123,6 +152,8 @@ int main(int argc, char** argv) {
     shell::catch_stop_signals();
     run.channel = channels.at(channel);
     if (run_command->parsed()) return launcher::run_mission(run);
+    soak.channel = channels.at(soak_channel);
+    if (soak_command->parsed()) return launcher::soak(soak);
     if (plan_command->parsed()) return launcher::plan_mission(plan);
     const auto faults = parse_link_faults(simulated_fault);
     if (!faults) return tl::unexpected(faults.error());

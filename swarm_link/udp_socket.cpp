@@ -50,11 +50,11 @@ sockaddr_in multicast_group(std::uint32_t domain, std::uint32_t hash) {
   return address;
 }
 
-int open_receive_socket(const sockaddr_in& address, int buffer_bytes) {
+int open_receive_socket(const sockaddr_in& address, int buffer_bytes, bool shared) {
   const int fd = ::socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
   if (fd < 0) return -1;
   ::setsockopt(fd, SOL_SOCKET, SO_RCVBUF, &buffer_bytes, sizeof buffer_bytes);
-  if (const int yes = 1; is_multicast(address.sin_addr)) {
+  if (const int yes = 1; shared || is_multicast(address.sin_addr)) {
     ::setsockopt(fd, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
   }
   if (::bind(fd, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0) return fd;

@@ -21,8 +21,8 @@ sockaddr_in multicast_group(std::uint32_t domain, std::uint32_t hash);
 
 /// A non-blocking socket bound to an address; −1 if the kernel refuses. A multicast group's socket
 /// is bound to the group, so it hears nothing else, and shares its port with other processes; it
-/// hears nothing at all until join_group().
-int open_receive_socket(const sockaddr_in& address, int buffer_bytes);
+/// hears nothing at all until join_group(). Others share theirs if `shared`.
+int open_receive_socket(const sockaddr_in& address, int buffer_bytes, bool shared = false);
 
 bool join_group(int fd, const in_addr& group);
 bool leave_group(int fd, const in_addr& group);

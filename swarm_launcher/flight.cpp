@@ -1,0 +1,326 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "swarm_launcher/flight.hpp"
+
+#include <algorithm>
+#include <csignal>
+#include <cstdio>
+#include <thread>
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include "swarm_core/base/clock.hpp"
+#include "swarm_core/mission/mission_file.hpp"
+#include "swarm_core/mission/placement.hpp"
+#include "swarm_core/mission/scene_change_file.hpp"
+#include "swarm_core/shell/run_directory.hpp"
+#include "swarm_core/shell/stop_signal.hpp"
+#include "swarm_launcher/child_process.hpp"
+#include "swarm_launcher/run_dir.hpp"
+#include "swarm_link/udp_socket.hpp"
+
+namespace swarm::launcher {
+namespace {
+
+constexpr Duration kStep = std::chrono::milliseconds(20);
+constexpr std::uint32_t kPlannerStrength = 100;
+
+int number_of(EndSignal signal) {
+  switch (signal) {
+    case EndSignal::kInterrupt:
+      return SIGINT;
+    case EndSignal::kTerminate:
+      return SIGTERM;
+    case EndSignal::kKill:
+      return SIGKILL;
+  }
+  return SIGKILL;
+}
+
+}  // namespace
+
+Flight::Flight(FlightOptions options, FlightObserver* observer, std::filesystem::path dir,
+               DomainLock lock, ChannelChoice channel, std::uint32_t hubs)
+    : options_(std::move(options)),
+      observer_(observer),
+      channel_(std::move(channel)),
+      hubs_(hubs),
+      dir_(std::move(dir)),
+      lock_(std::move(lock)),
+      events_(dir_ / shell::kEventsFile) {}
+
+Result<std::unique_ptr<Flight>> Flight::make(FlightOptions options, FlightObserver* observer) {
+  if (const auto faults = parse_link_faults(options.fault); !faults) {
+    return tl::unexpected(faults.error());
+  }
+  if (const auto places = place_robots(options.mission, options.seed); !places) {
+    return tl::unexpected(places.error());
+  }
+  const std::uint32_t agents =
+      (options.mission.robots.count + options.per_process - 1) / options.per_process;
+  auto channel = choose_channel({.wanted = options.channel,
+                                 .agents = agents,
+                                 .robots_per_process = options.per_process,
+                                 .multicast = link::loopback_carries_multicast()});
+  if (!channel) return tl::unexpected(channel.error());
+  const std::uint32_t hubs = channel->channel == Channel::kGroups ? link::hubs_for(agents) : 0;
+  auto lock = DomainLock::take(options.domain, link::participants_for({.hubs = hubs}, agents));
+  if (!lock) return tl::unexpected(lock.error());
+  const auto dir = make_run_dir(options.out, options.mission.name);
+  if (!dir) return tl::unexpected(dir.error());
+  if (auto written = shell::write_file(*dir / shell::kMissionFile, to_yaml(options.mission));
+      !written) {
+    return tl::unexpected(written.error());
+  }
+  auto flight = std::unique_ptr<Flight>(
+      new Flight(std::move(options), observer, *dir, std::move(*lock), std::move(*channel), hubs));
+  if (const auto joined = flight->join(); !joined) return tl::unexpected(joined.error());
+  return flight;
+}
+
+Flight::~Flight() {
+  for (const auto& [pid, process] : children_) ::kill(pid, SIGKILL);
+}
+
+Result<void> Flight::join() {
+  link::Meeting meeting{.domain = lock_.domain(), .hubs = hubs_};
+  if (hubs_ == 0) {
+    auto server = link::make_discovery_server(lock_.domain(), 0);
+    if (!server) return tl::unexpected(server.error());
+    server_ = std::move(*server);
+    meeting.server = server_->address();
+  }
+  if (auto written = shell::write_run_info(dir_, {.domain = meeting.domain,
+                                                  .discovery_host = meeting.server.host,
+                                                  .discovery_port = meeting.server.port,
+                                                  .hubs = meeting.hubs,
+                                                  .channel = channel_.channel,
+                                                  .seed = options_.seed,
+                                                  .began = utc_now()});
+      !written) {
+    return written;
+  }
+  auto participant = link::join_as_launcher(meeting);
+  if (!participant) return tl::unexpected(participant.error());
+  participant_ = std::move(*participant);
+  auto status = participant_->make_reader(link::status_topic());
+  auto event = participant_->make_reader(link::event_topic());
+  auto command = participant_->make_writer(link::command_topic());
+  auto scene = participant_->make_writer(link::scene_topic());
+  if (!status) return tl::unexpected(status.error());
+  if (!event) return tl::unexpected(event.error());
+  if (!command) return tl::unexpected(command.error());
+  if (!scene) return tl::unexpected(scene.error());
+  status_reader_ = std::move(*status);
+  event_reader_ = std::move(*event);
+  command_writer_ = std::move(*command);
+  scene_.emplace(options_.mission.world, dir_, std::move(*scene));
+  auto control = ControlServer::listen(dir_);
+  if (!control) return tl::unexpected(control.error());
+  control_.emplace(std::move(*control));
+
+  limits_ = link::wire_limits(options_.mission);
+  supervisor_.emplace(SupervisorOptions{.robots = options_.mission.robots.count,
+                                        .per_process = options_.per_process,
+                                        .launcher = options_.mission.launcher,
+                                        .script = options_.mission.script},
+                      std::chrono::steady_clock::now());
+  const std::string told =
+      fmt::format("robot states go by {}: {}", to_string(channel_.channel), channel_.reason);
+  events_.write(utc_now(), "launcher", link::Severity::kInfo, "channel", told);
+  std::fprintf(stderr, "%s\n", told.c_str());
+  view_ = SwarmView(options_.mission.robots.count, options_.mission.link.hear_radius_m);
+  return {};
+}
+
+Result<void> Flight::start(ProcessIndex process) {
+  std::vector<std::string> command_line;
+  std::string log;
+  if (process == kPlanner) {
+    command_line = {sibling_program("planner_service"), "--run", dir_.string(),
+                    // A killed planner keeps the plan topic until its lease ends, unless its
+                    // successor is stronger.
+                    "--strength", fmt::format("{}", kPlannerStrength + planner_starts_++)};
+    log = "planner.log";
+  } else {
+    const auto [first, count] = supervisor_->robots_of(process);
+    command_line = {sibling_program("robot_agent"),
+                    "--run",
+                    dir_.string(),
+                    "--ids",
+                    fmt::format("{}", first.value()),
+                    "--count",
+                    fmt::format("{}", count),
+                    "--number",
+                    fmt::format("{}", process.value() - 1)};
+    log = fmt::format("agent-{:05}.log", first.value());
+  }
+  if (!options_.fault.empty()) command_line.insert(command_line.end(), {"--fault", options_.fault});
+  command_line.insert(command_line.end(), {"--parent", fmt::format("{}", ::getpid())});
+  const auto pid = start_process(command_line, dir_ / shell::kLogsFolder / log);
+  if (!pid) return tl::unexpected(pid.error());
+  children_.emplace(*pid, process);
+  return {};
+}
+
+void Flight::send(CommandKind kind) {
+  const std::int64_t stamp = utc_now().time_since_epoch().count();
+  command_writer_->write(
+      {.kind = kind, .command_id = static_cast<std::uint64_t>(stamp), .stamp_utc_ns = stamp});
+}
+
+Result<std::string> Flight::change(const SceneChange& change) {
+  const UtcTime now = utc_now();
+  const std::string what = fmt::format("{} {}", name_of(change), keys_of(change));
+  auto changed = scene_->change(change, now);
+  if (!changed) {
+    events_.write(now, "launcher", link::Severity::kWarning, "scene-refused",
+                  fmt::format("{}: {}", what, changed.error().message));
+    return changed;
+  }
+  if (std::holds_alternative<GoTo>(change)) supervisor_->on_new_goal(scene_->scene().version);
+  events_.write(now, "launcher", link::Severity::kInfo, "scene", what);
+  return changed;
+}
+
+Result<void> Flight::act(const Action& action) {
+  if (const auto* to_start = std::get_if<StartProcess>(&action)) return start(to_start->process);
+  if (const auto* command = std::get_if<SendCommand>(&action)) {
+    send(command->kind);
+  } else if (const auto* scene = std::get_if<ChangeScene>(&action)) {
+    if (const auto changed = change(scene->change); !changed) {
+      progress_.say("the script's change was refused: " + changed.error().message);
+    }
+  } else if (const auto* signal = std::get_if<SignalProcess>(&action)) {
+    for (const auto& [pid, process] : children_) {
+      if (process == signal->process) ::kill(pid, number_of(signal->signal));
+    }
+  } else if (const auto* event = std::get_if<LogEvent>(&action)) {
+    events_.write(utc_now(), "launcher",
+                  event->warning ? link::Severity::kWarning : link::Severity::kInfo, event->code,
+                  event->text);
+    if (event->warning) progress_.say(event->text);
+  }
+  return {};
+}
+
+void Flight::reap(SteadyTime now) {
+  while (const auto child = reap_child()) {
+    const auto known = children_.find(child->pid);
+    if (known == children_.end()) continue;
+    measurements_.cpu_s += child->cpu_s;
+    measurements_.max_rss_mb = std::max(measurements_.max_rss_mb, child->max_rss_mb);
+    supervisor_->on_exit(known->second, child->exit, now);
+    children_.erase(known);
+  }
+}
+
+void Flight::read_bus() {
+  participant_->receive();
+  statuses_.clear();
+  status_reader_->take(statuses_);
+  for (const link::StatusMessage& status : statuses_) {
+    if (const auto ok = link::check_status(status, limits_); !ok) {
+      refused_.count(ok.error());
+      continue;
+    }
+    view_.take(status);
+    if (observer_ != nullptr) observer_->on_status(status);
+    supervisor_->on_status(RobotId(status.robot_id),
+                           {.has_plan = status.plan_version > 0,
+                            .hears_neighbours = view_.hears_neighbours(status.robot_id),
+                            .mode = status.mode,
+                            .settled = status.settled,
+                            .scene_version = status.plan_scene_version});
+  }
+  heard_events_.clear();
+  event_reader_->take(heard_events_);
+  for (const link::EventMessage& event : heard_events_) {
+    if (const auto ok = link::check_event(event); !ok) {
+      refused_.count(ok.error());
+      continue;
+    }
+    events_.write(event);
+  }
+}
+
+void Flight::serve(const ControlServer::Request& request, SteadyTime now) {
+  const std::size_t space = std::min(request.line.find(' '), request.line.size());
+  const std::string word = request.line.substr(0, space);
+  for (const CommandKind kind :
+       {CommandKind::kStart, CommandKind::kPause, CommandKind::kResume, CommandKind::kStop}) {
+    if (word != to_string(kind)) continue;
+    supervisor_->on_command(kind, now);
+    if (kind == CommandKind::kStop) {
+      stopping_.push_back(request.client);
+    } else {
+      control_->answer(request.client,
+                       fmt::format("done: {} sent to {} robots", word, command_writer_->matched()));
+    }
+    return;
+  }
+  const auto wanted = parse_scene_change(word, request.line.substr(space), options_.mission.world);
+  const Result<std::string> changed = wanted ? change(*wanted) : tl::unexpected(wanted.error());
+  control_->answer(request.client, changed ? "done: " + *changed
+                                           : changed.error().message + "\nfailed: nothing changed");
+}
+
+void Flight::serve_control(SteadyTime now) {
+  for (const ControlServer::Request& request : control_->poll()) serve(request, now);
+  if (stopping_.empty() || supervisor_->phase() != MissionPhase::kStopped) return;
+  const auto unstopped = supervisor_->unstopped();
+  if (!unstopped.empty() && supervisor_->stage() != Supervisor::Stage::kEnding) return;
+  const std::string answer =
+      unstopped.empty()
+          ? fmt::format("done: {} robots confirmed the stop", supervisor_->counts().stopped)
+          : "failed: stop not confirmed by robots " + describe(unstopped);
+  for (const ControlServer::ClientId client : stopping_) control_->answer(client, answer);
+  stopping_.clear();
+}
+
+void Flight::show(SteadyTime now) {
+  if (now - shown_at_ < std::chrono::milliseconds(250)) return;
+  shown_at_ = now;
+  const Supervisor::Counts c = supervisor_->counts();
+  const std::uint32_t n = options_.mission.robots.count;
+  progress_.show(headline_of(*supervisor_),
+                 fmt::format("t {:.0f} s  ready {}/{}  arrived {}/{}  lost {}  {}",
+                             supervisor_->mission_time(now).count(), c.ready, n, c.arrived, n,
+                             c.lost, view_.describe(now)) +
+                     (observer_ != nullptr ? "  " + observer_->describe() : ""));
+}
+
+Result<Measurements> Flight::fly() {
+  while (supervisor_->stage() != Supervisor::Stage::kDone) {
+    const SteadyTime now = std::chrono::steady_clock::now();
+    for (; interrupts_seen_ < shell::stop_requests(); ++interrupts_seen_)
+      supervisor_->on_interrupt();
+    reap(now);
+    read_bus();
+    serve_control(now);
+    for (const Action& action : supervisor_->step(now)) {
+      if (auto done = act(action); !done) return tl::unexpected(done.error());
+    }
+    if (observer_ != nullptr) observer_->on_step(*this, now);
+    show(now);
+    std::this_thread::sleep_for(kStep);
+  }
+  rusage own = {};
+  ::getrusage(RUSAGE_SELF, &own);
+  measurements_.cpu_s += static_cast<double>(own.ru_utime.tv_sec + own.ru_stime.tv_sec) +
+                         1e-6 * static_cast<double>(own.ru_utime.tv_usec + own.ru_stime.tv_usec);
+  measurements_.discovery_s = supervisor_->discovery_s();
+  measurements_.hearing_s = supervisor_->hearing_s();
+  measurements_.refused_by_launcher = refused_.total();
+  measurements_.outcome = supervisor_->outcome();
+  measurements_.channel = channel_.channel;
+  return measurements_;
+}
+
+std::string Flight::planner_complaint() const {
+  return shell::read_file(dir_ / shell::kLogsFolder / "planner.log", 1U << 20U).value_or("");
+}
+
+}  // namespace swarm::launcher

@@ -1,0 +1,120 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <sys/types.h>
+
+#include "swarm_core/base/result.hpp"
+#include "swarm_core/mission/channel.hpp"
+#include "swarm_core/mission/mission.hpp"
+#include "swarm_launcher/channel_choice.hpp"
+#include "swarm_launcher/control_socket.hpp"
+#include "swarm_launcher/domain_lock.hpp"
+#include "swarm_launcher/event_log.hpp"
+#include "swarm_launcher/progress.hpp"
+#include "swarm_launcher/scene_keeper.hpp"
+#include "swarm_launcher/summary.hpp"
+#include "swarm_launcher/supervisor.hpp"
+#include "swarm_launcher/swarm_view.hpp"
+#include "swarm_link/join.hpp"
+#include "swarm_link/messages.hpp"
+#include "swarm_link/validation.hpp"
+
+namespace swarm::launcher {
+
+struct FlightOptions {
+  Mission mission;
+  std::uint32_t per_process = 1;
+  std::uint64_t seed = 1;
+  std::string fault{};               ///< as parse_link_faults() reads it
+  std::filesystem::path out{};       ///< run directory; empty: runs/<mission>-<time>
+  int domain = -1;                   ///< DDS domain; negative: a free one
+  std::optional<Channel> channel{};  ///< empty: choose_channel() decides
+};
+
+class Flight;
+
+/// Whoever wants to look on.
+class FlightObserver {
+ public:
+  virtual ~FlightObserver() = default;
+  virtual void on_status(const link::StatusMessage& status) = 0;
+  /// Every few milliseconds, in the thread that flies.
+  virtual void on_step(const Flight& flight, SteadyTime now) = 0;
+  /// For the live line.
+  virtual std::string describe() = 0;
+};
+
+/// The imperative shell around the Supervisor: processes, bus, files, terminal.
+class Flight {
+ public:
+  /// Joins the bus and makes the run directory. \pre the observer, if any, outlives the flight
+  static Result<std::unique_ptr<Flight>> make(FlightOptions options,
+                                              FlightObserver* observer = nullptr);
+  ~Flight();
+  Flight(const Flight&) = delete;
+  Flight& operator=(const Flight&) = delete;
+
+  /// The whole mission. Once.
+  Result<Measurements> fly();
+
+  const std::filesystem::path& dir() const { return dir_; }
+  Channel channel() const { return channel_.channel; }
+  std::uint32_t domain() const { return lock_.domain(); }
+  const Supervisor& supervisor() const { return *supervisor_; }
+  const std::map<pid_t, ProcessIndex>& children() const { return children_; }
+  std::string planner_complaint() const;
+
+ private:
+  Flight(FlightOptions options, FlightObserver* observer, std::filesystem::path dir,
+         DomainLock lock, ChannelChoice channel, std::uint32_t hubs);
+
+  Result<void> join();
+  Result<void> act(const Action& action);
+  Result<void> start(ProcessIndex process);
+  void send(CommandKind kind);
+  Result<std::string> change(const SceneChange& change);
+  void serve(const ControlServer::Request& request, SteadyTime now);
+  void reap(SteadyTime now);
+  void read_bus();
+  void serve_control(SteadyTime now);
+  void show(SteadyTime now);
+
+  FlightOptions options_;
+  FlightObserver* observer_;
+  ChannelChoice channel_;
+  std::uint32_t hubs_;
+  std::filesystem::path dir_;
+  DomainLock lock_;
+  EventLog events_;
+  Progress progress_;
+  std::unique_ptr<link::DiscoveryServer> server_;  // none where hubs are the meeting place
+  std::unique_ptr<link::Participant> participant_;
+  link::ReaderPtr<link::StatusMessage> status_reader_;
+  link::ReaderPtr<link::EventMessage> event_reader_;
+  link::WriterPtr<link::CommandMessage> command_writer_;
+  std::optional<ControlServer> control_;
+  std::vector<ControlServer::ClientId> stopping_;  // clients who wait for a stop to be confirmed
+  std::optional<SceneKeeper> scene_;
+  std::optional<Supervisor> supervisor_;
+  SwarmView view_;
+  link::WireLimits limits_;
+  link::RefusalCounters refused_;
+  std::map<pid_t, ProcessIndex> children_;
+  Measurements measurements_;
+  std::vector<link::StatusMessage> statuses_;
+  std::vector<link::EventMessage> heard_events_;
+  SteadyTime shown_at_;
+  int interrupts_seen_ = 0;
+  std::uint32_t planner_starts_ = 0;
+};
+
+}  // namespace swarm::launcher

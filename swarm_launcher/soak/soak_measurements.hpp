@@ -1,0 +1,40 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "swarm_core/metrics/histogram.hpp"
+#include "swarm_launcher/soak/stream_meter.hpp"
+
+namespace swarm::launcher {
+
+/// One look at a running swarm.
+struct SoakSample {
+  double time_s = 0.0;       ///< of the mission
+  double cpu_share = 0.0;    ///< cores used since the last sample, all processes of the run
+  double rss_mb = 0.0;       ///< of all agents together
+  double rss_max_mb = 0.0;   ///< of the largest agent
+  double threads = 0.0;      ///< of all agents
+  double open_files = 0.0;   ///< of all agents
+  double switches_hz = 0.0;  ///< context switches of all agents
+  double received_hz = 0.0;  ///< states at the listener
+  double p99_ms = 0.0;       ///< written → received, since the last sample
+};
+
+/// What a soak measured while its mission ran.
+struct SoakMeasurements {
+  std::vector<SoakSample> samples{};
+  std::optional<StreamMeter::Counts> heard{};  ///< empty: nobody can listen to this channel
+  Histogram latency{};                         ///< written → received by a waiting listener
+  StreamMeter::Worst worst{};
+  Histogram use_latency{};        ///< written → used by a neighbour's controller
+  std::uint64_t states_sent = 0;  ///< as the robots count
+  std::uint64_t states_used = 0;
+  std::uint64_t ticks = 0, late_ticks = 0;
+  std::uint64_t receive_drops = 0;  ///< by the kernel, all UDP sockets of the machine
+};
+
+}  // namespace swarm::launcher

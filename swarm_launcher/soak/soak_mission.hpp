@@ -1,0 +1,16 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+#include "swarm_core/base/result.hpp"
+#include "swarm_core/mission/mission.hpp"
+
+namespace swarm::launcher {
+
+/// A mission that keeps a swarm of any size moving at the same density, controllers on: an open
+/// square, crossed by everyone there and back again until the time is up.
+Result<Mission> soak_mission(std::uint32_t robots, double rate_hz, double duration_s);
+
+}  // namespace swarm::launcher

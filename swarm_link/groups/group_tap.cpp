@@ -1,0 +1,68 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "swarm_link/groups/group_tap.hpp"
+
+#include <fmt/format.h>
+#include <poll.h>
+#include <unistd.h>
+
+#include "swarm_link/fastdds/cell_states_cdr.hpp"
+#include "swarm_link/groups/rtps_datagram.hpp"
+#include "swarm_link/udp_socket.hpp"
+
+namespace swarm::link {
+namespace {
+
+constexpr int kBufferBytes = 8 << 20;
+
+class SocketTap final : public GroupTap, private DatagramSink {
+ public:
+  explicit SocketTap(int fd) : fd_(fd) {}
+  ~SocketTap() override { ::close(fd_); }
+  SocketTap(const SocketTap&) = delete;
+  SocketTap& operator=(const SocketTap&) = delete;
+
+  std::size_t take(Duration patience, std::vector<CellStatesMessage>& out) override {
+    pollfd waiting{.fd = fd_, .events = POLLIN, .revents = 0};
+    const auto ms = std::chrono::duration_cast<std::chrono::milliseconds>(patience).count();
+    if (::poll(&waiting, 1, static_cast<int>(ms)) <= 0) return 0;
+    taking_ = &out;
+    const std::size_t before = out.size();
+    drain_.drain(fd_, *this);
+    return out.size() - before;
+  }
+
+  std::uint64_t undecodable() const override { return undecodable_; }
+
+ private:
+  void datagram(std::span<std::byte> bytes, const sockaddr_in&) override {
+    const auto payload = decode_rtps(bytes);
+    if (payload && cdr_.decode(*payload, taking_->emplace_back())) return;
+    if (payload) taking_->pop_back();
+    ++undecodable_;
+  }
+
+  int fd_;
+  CellStatesCdr cdr_;
+  DatagramDrain drain_;
+  std::vector<CellStatesMessage>* taking_ = nullptr;
+  std::uint64_t undecodable_ = 0;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<GroupTap>> make_group_tap(std::uint32_t domain) {
+  sockaddr_in anywhere = multicast_group(domain, 0);
+  const int port = ntohs(anywhere.sin_port);
+  anywhere.sin_addr.s_addr = htonl(INADDR_ANY);
+  const int fd = open_receive_socket(anywhere, kBufferBytes, true);
+  if (fd < 0) {
+    return fail(ErrorCode::kEnvironment,
+                fmt::format("cannot listen at UDP port {} for the states of DDS domain {}; end who "
+                            "holds it, or use another domain",
+                            port, domain));
+  }
+  return std::make_unique<SocketTap>(fd);
+}
+
+}  // namespace swarm::link

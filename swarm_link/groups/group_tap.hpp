@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "swarm_core/base/result.hpp"
+#include "swarm_core/base/time.hpp"
+#include "swarm_link/messages.hpp"
+
+namespace swarm::link {
+
+/// Hears every state that any robot of a domain says by the `groups` channel, the moment it is
+/// said: for measuring. One socket, however many cells there are: the kernel hands it what is sent
+/// to any group that somebody on this machine has joined, and robots join their own.
+class GroupTap {
+ public:
+  virtual ~GroupTap() = default;
+
+  /// Waits up to `patience` for something to come and appends it. Returns how many batches came.
+  virtual std::size_t take(Duration patience, std::vector<CellStatesMessage>& out) = 0;
+
+  virtual std::uint64_t undecodable() const = 0;
+};
+
+Result<std::unique_ptr<GroupTap>> make_group_tap(std::uint32_t domain);
+
+}  // namespace swarm::link
