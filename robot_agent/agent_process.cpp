@@ -32,6 +32,13 @@ namespace {
 constexpr std::uint64_t kBodySeed = 0xB0D7;
 constexpr std::uint64_t kFaultSeed = 0xFA17;
 
+constexpr Duration kStatsEvery = std::chrono::seconds(1);
+
+/// A black box is written at every step, so that nothing is lost with a process that is killed. In
+/// one of many robots that would be most of its time: each of their boxes is written once a second.
+constexpr std::uint32_t kManyRobots = 20;
+constexpr std::uint32_t kRecordsAtOnce = 10;
+
 /// Sleeps until `at`; false when a signal woke us early.
 bool sleep_until(SteadyTime at) {
   const auto ns = at.time_since_epoch().count();
@@ -66,19 +73,22 @@ struct AgentProcess::Impl {
   link::WriterPtr<link::EventMessage> event_writer;
   std::optional<Inbox> inbox;
   std::vector<Robot> robots;
+  Histogram state_age;  // of what all of them used
   std::vector<link::RobotStateMessage> saying;
   std::vector<Vec2> positions;
   link::RefusalCounters reported;  // what was announced as an event already
   std::uint32_t skewed_reported = 0;
   std::uint32_t plan_told = 0;
   bool planner_was_alive = false;
-  SteadyTime status_at;
+  SteadyTime stats_at;
+  std::size_t ticks = 0;
 
   Result<void> join(const shell::RunInfo& run);
   Result<void> make_robots(std::uint64_t seed);
   void tick(const Robot::Tick& tick);
   void follow_scene(UtcTime now);
   void report_health(const Robot::Tick& tick);
+  bool status_is_due(std::size_t robot) const;
   void announce(UtcTime now, link::Severity severity, const std::string& code,
                 const std::string& text);
   link::StatusMessage full_status(const Robot& robot, UtcTime now);
@@ -131,7 +141,8 @@ Result<void> AgentProcess::Impl::join(const shell::RunInfo& run) {
   const link::WireLimits limits = link::wire_limits(mission);
   inbox.emplace(Readers{std::move(*plan_reader), std::move(*scene_reader),
                         std::move(*heartbeat_reader), std::move(*command_reader)},
-                *states, limits, from_seconds(mission.timing.planner_silence_s));
+                *states, limits, from_seconds(mission.timing.planner_silence_s),
+                hears_farthest_m(mission));
   return {};
 }
 
@@ -144,7 +155,9 @@ Result<void> AgentProcess::Impl::make_robots(std::uint64_t seed) {
     const auto box_file = blackbox::file_of(options.run_dir, id);
     const auto place = standing_place(box_file, (*places)[id.value()]);
     if (!place) return tl::unexpected(place.error());
-    auto box = blackbox::Writer::open(box_file);
+    auto box = options.count < kManyRobots
+                   ? blackbox::Writer::open(box_file)
+                   : blackbox::Writer::open(box_file, kRecordsAtOnce, id.value() % kRecordsAtOnce);
     if (!box) return tl::unexpected(box.error());
     box->append(blackbox::Header{.robot = id,
                                  .robots = mission.robots.count,
@@ -193,7 +206,7 @@ void AgentProcess::Impl::tick(const Robot::Tick& tick) {
   saying.clear();
   positions.clear();
   for (Robot& robot : robots) {
-    robot.step(tick, *inbox, new_plan ? &*new_plan : nullptr);
+    robot.step(tick, *inbox, new_plan ? &*new_plan : nullptr, state_age);
     if (robot.to_say()) saying.push_back(*robot.to_say());
     positions.push_back(robot.position_m());
   }
@@ -206,41 +219,54 @@ void AgentProcess::Impl::tick(const Robot::Tick& tick) {
   report_health(tick);
 }
 
+/// What the process heard and refused belongs to no single robot: its first one tells and keeps it.
 link::StatusMessage AgentProcess::Impl::full_status(const Robot& robot, UtcTime now) {
   link::StatusMessage status = robot.status(now);
   status.process_id = static_cast<std::uint32_t>(::getpid());
   status.plan_epoch = inbox->plan_epoch();
   status.plan_version = inbox->plan_version();
   status.plan_scene_version = inbox->plan_scene_version();
+  if (&robot != &robots.front()) return status;
   const auto& refused = inbox->refused().all();
   status.refused.assign(refused.begin(), refused.end());
+  for (std::size_t i = 0; i < Histogram::kBins; ++i) {
+    if (state_age.bin(i) == 0) continue;
+    status.state_age.push_back(
+        {static_cast<std::uint16_t>(i), static_cast<std::uint32_t>(state_age.bin(i))});
+  }
   return status;
 }
 
 void AgentProcess::Impl::record_link_stats(UtcTime now) {
   for (Robot& robot : robots) {
     const link::StatusMessage status = robot.status(now);
-    blackbox::LinkStats stats{.stamp = now,
-                              .states_sent = status.states_sent,
-                              .states_received = status.states_received,
-                              .state_age = robot.state_age()};
-    // What the process refused belongs to no single robot; it is kept once, in its first robot's
-    // box.
+    blackbox::LinkStats stats{
+        .stamp = now, .states_sent = status.states_sent, .states_received = status.states_received};
     if (&robot == &robots.front()) {
+      stats.state_age = state_age;
       stats.refused.assign(inbox->refused().all().begin(), inbox->refused().all().end());
     }
     robot.record(stats);
   }
 }
 
+/// Each robot in its turn, so that those of one process do not all speak at the same tick.
+bool AgentProcess::Impl::status_is_due(std::size_t robot) const {
+  const double ticks_per_status = mission.control.rate_hz / mission.link.status_hz;
+  const auto turns = static_cast<std::size_t>(std::max(1.0, std::round(ticks_per_status)));
+  return (ticks + robot) % turns == 0;
+}
+
 void AgentProcess::Impl::report_health(const Robot::Tick& tick) {
   // Everyone waits for everyone to have the plan: that is told at once.
   const bool news = inbox->plan_version() != plan_told;
   plan_told = inbox->plan_version();
-  const bool periodic = news || tick.now - status_at >= from_seconds(1.0 / mission.link.status_hz);
-  for (const Robot& robot : robots) {
-    if (periodic || robot.mode_changed()) status_writer->write(full_status(robot, tick.utc_now));
+  for (std::size_t i = 0; i < robots.size(); ++i) {
+    if (news || status_is_due(i) || robots[i].mode_changed()) {
+      status_writer->write(full_status(robots[i], tick.utc_now));
+    }
   }
+  ++ticks;
   const bool alive = inbox->mission().planner_alive(tick.now);
   if (alive != planner_was_alive) {
     announce(tick.utc_now, alive ? link::Severity::kInfo : link::Severity::kWarning,
@@ -248,8 +274,8 @@ void AgentProcess::Impl::report_health(const Robot::Tick& tick) {
              alive ? "hears the planner" : "planner silent: holds with avoidance on");
     planner_was_alive = alive;
   }
-  if (!periodic) return;
-  status_at = tick.now;
+  if (tick.now - stats_at < kStatsEvery) return;
+  stats_at = tick.now;
   record_link_stats(tick.utc_now);
   if (const std::uint32_t fresh = inbox->skewed() - skewed_reported; fresh > 0) {
     skewed_reported += fresh;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "robot_agent/agent.hpp"
+#include "robot_agent/heard_cells.hpp"
 #include "robot_agent/mission_watch.hpp"
 #include "robot_agent/neighbour_table.hpp"
 #include "swarm_core/metrics/histogram.hpp"
@@ -59,18 +60,13 @@ struct NewPlan {
   }
 };
 
-/// A state that passed the edge, with its age.
-struct HeardState {
-  NeighbourReport report;
-  Duration age{};  ///< written → now, by the clocks of both
-};
-
 /// The edge of an agent process: takes everything that arrived, checks it, counts what is refused,
 /// and hands on domain objects.
 class Inbox {
  public:
+  /// No robot listens farther than `hear_radius_m`.
   Inbox(Readers readers, link::StateChannel& states, const link::WireLimits& limits,
-        Duration planner_silence);
+        Duration planner_silence, double hear_radius_m);
 
   /// Takes what arrived. `own(id)` names the guard of a robot of this process, or nullptr. Robots
   /// of one process hear each other over the bus like everyone else; a robot skips its own echo.
@@ -88,9 +84,11 @@ class Inbox {
       }
     }
     received_before_ = steady_now;
+    heard_cells_.sort(heard_);
   }
 
-  std::span<const HeardState> heard() const { return heard_; }
+  /// What was heard of robots near a place, and maybe of some that are not.
+  const HeardCells& heard() const { return heard_cells_; }
 
   /// The newest plan, once, when one arrived.
   std::optional<NewPlan> take_plan() { return std::exchange(new_plan_, std::nullopt); }
@@ -135,6 +133,7 @@ class Inbox {
   std::uint32_t skewed_ = 0;
   std::optional<SteadyTime> received_before_;
   std::vector<HeardState> heard_;
+  HeardCells heard_cells_;
   std::vector<link::PlanMessage> plans_;
   std::vector<link::SceneMessage> scenes_;
   std::vector<link::HeartbeatMessage> heartbeats_;

@@ -27,7 +27,8 @@ Robot::Robot(const World& world, const AgentOptions& options, std::unique_ptr<Dr
       driver_(std::move(driver)),
       box_(std::move(box)) {}
 
-void Robot::step(const Tick& tick, const Inbox& inbox, const NewPlan* new_plan) {
+void Robot::step(const Tick& tick, const Inbox& inbox, const NewPlan* new_plan,
+                 Histogram& state_age) {
   const Measurement body = driver_->measure(tick.now);
   position_m_ = body.position_m;
   const Vec2 true_position_m = body.true_position_m.value_or(body.position_m);
@@ -44,13 +45,13 @@ void Robot::step(const Tick& tick, const Inbox& inbox, const NewPlan* new_plan) 
     agent_.accept_plan(new_plan->flow, position_m_, new_plan->entry_of(id_));
     note(tick.utc_now, "plan", "took plan version " + std::to_string(inbox.plan_version()));
   }
-  for (const HeardState& state : inbox.heard()) {
-    if (state.report.robot == id_) continue;  // our own echo
+  inbox.heard().visit_near(position_m_, [&](const HeardState& state) {
+    if (state.report.robot == id_) return;  // our own echo
     if (agent_.hear(state.report, position_m_) == NeighbourTable::Outcome::kTaken) {
-      state_age_.add(to_us(state.age));
+      state_age.add(to_us(state.age));
       ++heard_;
     }
-  }
+  });
   const RobotMode before = output_.mode;
   output_ = agent_.tick({.now = tick.now,
                          .position_m = position_m_,
@@ -100,27 +101,20 @@ void Robot::step(const Tick& tick, const Inbox& inbox, const NewPlan* new_plan) 
 }
 
 link::StatusMessage Robot::status(UtcTime utc_now) const {
-  link::StatusMessage s{
-      .robot_id = id_.value(),
-      .mode = output_.mode,
-      .arrived = output_.mode == RobotMode::kArrived,
-      .settled = output_.settled,
-      .stamp_utc_ns = to_ns(utc_now),
-      .x_m = position_m_.x(),
-      .y_m = position_m_.y(),
-      .remaining_m = output_.remaining_m,
-      .nearest_gap_m = std::isfinite(output_.nearest_gap_m) ? output_.nearest_gap_m : 1e9,
-      .neighbours_heard = output_.neighbours,
-      .ticks = ticks_,
-      .late_ticks = late_ticks_,
-      .states_sent = said_,
-      .states_received = heard_};
-  for (std::size_t i = 0; i < Histogram::kBins; ++i) {
-    if (state_age_.bin(i) == 0) continue;
-    s.state_age.push_back(
-        {static_cast<std::uint16_t>(i), static_cast<std::uint32_t>(state_age_.bin(i))});
-  }
-  return s;
+  return {.robot_id = id_.value(),
+          .mode = output_.mode,
+          .arrived = output_.mode == RobotMode::kArrived,
+          .settled = output_.settled,
+          .stamp_utc_ns = to_ns(utc_now),
+          .x_m = position_m_.x(),
+          .y_m = position_m_.y(),
+          .remaining_m = output_.remaining_m,
+          .nearest_gap_m = std::isfinite(output_.nearest_gap_m) ? output_.nearest_gap_m : 1e9,
+          .neighbours_heard = output_.neighbours,
+          .ticks = ticks_,
+          .late_ticks = late_ticks_,
+          .states_sent = said_,
+          .states_received = heard_};
 }
 
 void Robot::note(UtcTime utc_now, const std::string& code, const std::string& text,

@@ -27,8 +27,8 @@ class Robot {
     Duration period{};
   };
 
-  /// Measures, decides, commands and records one step.
-  void step(const Tick& tick, const Inbox& inbox, const NewPlan* new_plan);
+  /// Measures, decides, commands and records one step. Adds how old the states were that it used.
+  void step(const Tick& tick, const Inbox& inbox, const NewPlan* new_plan, Histogram& state_age);
 
   /// The state to tell the neighbours, if this step asked for it.
   const std::optional<link::RobotStateMessage>& to_say() const { return to_say_; }
@@ -41,7 +41,6 @@ class Robot {
   RobotId id() const { return id_; }
   const Vec2& position_m() const { return position_m_; }
   const EchoGuard& echo() const { return echo_; }
-  Histogram& state_age() { return state_age_; }
 
   void note(UtcTime utc_now, const std::string& code, const std::string& text,
             std::int64_t caused_utc_ns = 0);
@@ -53,7 +52,6 @@ class Robot {
   std::unique_ptr<Driver> driver_;
   blackbox::Writer box_;
   EchoGuard echo_;
-  Histogram state_age_;
   AgentOutput output_;
   Vec2 position_m_ = Vec2::Zero();
   bool mode_changed_ = false;

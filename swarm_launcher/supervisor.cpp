@@ -56,8 +56,11 @@ std::string_view to_string(Outcome outcome) {
 }
 
 std::string describe(const std::vector<RobotId>& robots) {
+  constexpr std::size_t kRanges = 20;  // a line that can be read, and fits into an event
   std::string text;
-  for (std::size_t i = 0; i < robots.size();) {
+  std::size_t ranges = 0;
+  for (std::size_t i = 0; i < robots.size(); ++ranges) {
+    if (ranges == kRanges) return text + fmt::format(" and {} more", robots.size() - i);
     std::size_t j = i;
     while (j + 1 < robots.size() && robots[j + 1].value() == robots[j].value() + 1) ++j;
     text += text.empty() ? "" : ", ";

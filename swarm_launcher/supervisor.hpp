@@ -179,7 +179,7 @@ class Supervisor {
   std::uint32_t signals_sent_ = 0;
 };
 
-/// "3, 7, 12-15" for people.
+/// "3, 7, 12-15" for people; of many ranges the first, "and 51 more".
 std::string describe(const std::vector<RobotId>& robots);
 
 }  // namespace swarm::launcher

@@ -10,14 +10,25 @@
 
 namespace swarm::launcher {
 
-void SwarmView::take(const link::StatusMessage& status) { robots_.at(status.robot_id) = status; }
+void SwarmView::take(const link::StatusMessage& status) {
+  link::StatusMessage& known = robots_.at(status.robot_id);
+  if (known.ticks > 0) std::erase(cell_at(known.x_m, known.y_m), status.robot_id);
+  if (status.ticks > 0) cell_at(status.x_m, status.y_m).push_back(status.robot_id);
+  known = status;
+}
 
 bool SwarmView::hears_neighbours(std::uint32_t robot) const {
   const link::StatusMessage& self = robots_.at(robot);
   std::uint32_t near = 0;
-  for (const link::StatusMessage& other : robots_) {
-    if (other.ticks == 0 || other.robot_id == robot) continue;
-    if (std::hypot(other.x_m - self.x_m, other.y_m - self.y_m) <= hear_radius_m_) ++near;
+  for (const link::Cell& touched :
+       link::cells_touching({self.x_m, self.y_m}, hear_radius_m_, hear_radius_m_)) {
+    const auto cell = cells_.find(touched);
+    if (cell == cells_.end()) continue;
+    for (const std::uint32_t id : cell->second) {
+      const link::StatusMessage& other = robots_[id];
+      if (id == robot) continue;
+      if (std::hypot(other.x_m - self.x_m, other.y_m - self.y_m) <= hear_radius_m_) ++near;
+    }
   }
   return self.neighbours_heard >= near;
 }

@@ -17,6 +17,7 @@
 #include <unistd.h>
 #include <zlib.h>
 
+#include "swarm_core/base/assert.hpp"
 #include "swarm_core/blackbox/record_codec.hpp"
 
 namespace swarm::blackbox {
@@ -112,7 +113,9 @@ std::filesystem::path file_of(const std::filesystem::path& run_dir, RobotId robo
   return run_dir / "blackbox" / fmt::format("robot-{:05}.bbox", robot.value());
 }
 
-Result<Writer> Writer::open(const std::filesystem::path& file) {
+Result<Writer> Writer::open(const std::filesystem::path& file, std::uint32_t at_once,
+                            std::uint32_t turn) {
+  SWARM_ASSERT(turn < at_once);
   std::error_code error;
   std::filesystem::create_directories(file.parent_path(), error);
   const int fd = ::open(file.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
@@ -120,48 +123,56 @@ Result<Writer> Writer::open(const std::filesystem::path& file) {
     return fail(ErrorCode::kEnvironment, fmt::format("black box {} cannot be opened: {}",
                                                      file.string(), std::strerror(errno)));
   }
-  return Writer(fd);
+  return Writer(fd, at_once, turn);
 }
 
-Writer::Writer(Writer&& other) noexcept
-    : fd_(std::exchange(other.fd_, -1)),
-      dropped_(other.dropped_),
-      buffer_(std::move(other.buffer_)) {}
+Writer::Writer(Writer&& other) noexcept { *this = std::move(other); }
 
 Writer& Writer::operator=(Writer&& other) noexcept {
-  if (this != &other) {
-    if (fd_ >= 0) ::close(fd_);
-    fd_ = std::exchange(other.fd_, -1);
-    dropped_ = other.dropped_;
-    buffer_ = std::move(other.buffer_);
-  }
+  if (this == &other) return *this;
+  std::swap(fd_, other.fd_);
+  std::swap(at_once_, other.at_once_);
+  std::swap(until_written_, other.until_written_);
+  std::swap(waiting_, other.waiting_);
+  std::swap(dropped_, other.dropped_);
+  std::swap(buffer_, other.buffer_);
   return *this;
 }
 
 Writer::~Writer() {
-  if (fd_ >= 0) ::close(fd_);
+  if (fd_ < 0) return;
+  write();
+  ::close(fd_);
 }
 
 void Writer::append(const Record& record) {
-  struct stat status {};
-  const bool has_status = fd_ >= 0 && ::fstat(fd_, &status) == 0;
-  if (!has_status) {
-    ++dropped_;
-    return;
-  }
-  buffer_.clear();
-  // The magic goes with the first record that the disk takes, in the same write.
-  if (status.st_size == 0) buffer_.assign(kMagic.begin(), kMagic.end());
   frame_record(record, buffer_);
-  ssize_t written = -1;
-  do {
-    written = ::write(fd_, buffer_.data(), buffer_.size());
-  } while (written < 0 && errno == EINTR);
-  if (written == static_cast<ssize_t>(buffer_.size())) return;
-  ++dropped_;
-  // Half a record would hide the next one from a simple reader. If this fails too, readers resync.
-  if (written > 0) [[maybe_unused]]
-    const int ignored = ::ftruncate(fd_, status.st_size);
+  ++waiting_;
+  if (--until_written_ > 0) return;
+  until_written_ = at_once_;
+  write();
+}
+
+void Writer::write() {
+  if (waiting_ == 0) return;
+  const std::uint32_t records = std::exchange(waiting_, 0);
+  struct stat before {};
+  bool written = fd_ >= 0 && ::fstat(fd_, &before) == 0;
+  if (written) {
+    // The magic goes with the first record that the disk takes, in the same write.
+    if (before.st_size == 0) buffer_.insert(buffer_.begin(), kMagic.begin(), kMagic.end());
+    ssize_t bytes = -1;
+    do {
+      bytes = ::write(fd_, buffer_.data(), buffer_.size());
+    } while (bytes < 0 && errno == EINTR);
+    written = bytes == static_cast<ssize_t>(buffer_.size());
+    // Half a record would hide the next one from a simple reader. If this fails too, readers
+    // resync.
+    if (!written && bytes > 0) [[maybe_unused]]
+      const int ignored = ::ftruncate(fd_, before.st_size);
+  }
+  if (!written) dropped_ += records;
+  buffer_.clear();
 }
 
 Batch::Batch() : bytes_(kMagic.begin(), kMagic.end()) {}

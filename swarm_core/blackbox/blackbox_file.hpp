@@ -21,8 +21,10 @@ std::filesystem::path file_of(const std::filesystem::path& run_dir, RobotId robo
 /// process appends to the same file.
 class Writer {
  public:
-  /// Creates the file and its folder if need be.
-  static Result<Writer> open(const std::filesystem::path& file);
+  /// Creates the file and its folder if need be. Writes `at_once` records at a time, the first time
+  /// `turn` records earlier: what is not written yet is lost when the process is killed.
+  static Result<Writer> open(const std::filesystem::path& file, std::uint32_t at_once = 1,
+                             std::uint32_t turn = 0);
   Writer(Writer&& other) noexcept;
   Writer& operator=(Writer&& other) noexcept;
   ~Writer();
@@ -31,8 +33,14 @@ class Writer {
   std::uint64_t dropped() const { return dropped_; }
 
  private:
-  explicit Writer(int fd) : fd_(fd) {}
+  Writer(int fd, std::uint32_t at_once, std::uint32_t turn)
+      : fd_(fd), at_once_(at_once), until_written_(at_once - turn) {}
+  void write();
+
   int fd_ = -1;
+  std::uint32_t at_once_ = 1;
+  std::uint32_t until_written_ = 1;  // records
+  std::uint32_t waiting_ = 0;        // records
   std::uint64_t dropped_ = 0;
   std::vector<unsigned char> buffer_;
 };

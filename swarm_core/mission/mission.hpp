@@ -134,13 +134,17 @@ struct TimingSpec {
 
 struct LauncherSpec {
   double starts_per_s = 60.0;
-  std::uint32_t starting_max = 32;  ///< processes started and not heard yet
-  double quorum_share = 1.0;        ///< after the time-out this share of robots is enough
-  double quorum_timeout_s = 30.0;   ///< until then all are waited for; the missing are named
-  double time_limit_s = 600.0;      ///< of mission time
+  std::uint32_t starting_max = 8;  ///< processes started and not heard yet
+  double quorum_share = 1.0;       ///< after the time-out this share of robots is enough
+  double quorum_timeout_s = 30.0;  ///< until then all are waited for; the missing are named
+  double time_limit_s = 600.0;     ///< of mission time
   std::uint32_t respawn_planner_max = 3;
   std::uint32_t respawn_agent_max = 0;
 };
+
+struct Mission;
+/// The largest sensing range of any robot [m].
+double hears_farthest_m(const Mission& mission);
 
 /// What script and user may ask of a running mission: a command to all, or a change of the scene.
 using MissionAction = std::variant<CommandKind, SceneChange>;

@@ -28,14 +28,6 @@ double hears_m(const Mission& mission, RobotId robot) {
   return own_m > 0.0 ? own_m : mission.link.hear_radius_m;
 }
 
-double hears_farthest_m(const Mission& mission) {
-  double largest_m = mission.robots.hear_radius_m;
-  for (const RobotGroupSpec& group : mission.robots.groups) {
-    largest_m = std::max(largest_m, group.hear_radius_m);
-  }
-  return std::max(largest_m, mission.link.hear_radius_m);
-}
-
 SupervisorOptions supervisor_options(const Mission& mission) {
   return {.robots = mission.robots.count,
           .per_process = mission.robots.count,

@@ -68,6 +68,7 @@ struct Bench {
 
 TEST(Supervisor, StartsThePlannerThenAgentsInWaves) {
   Bench bench(30);
+  bench.options.launcher.starting_max = 30;
 
   bench.run_for(milliseconds(1000));
 
@@ -328,6 +329,17 @@ TEST(Supervisor, EndsAtTheTimeLimit) {
   bench.run_for(seconds(6));
 
   EXPECT_EQ(bench.sut->outcome(), Outcome::kTimeLimit);
+}
+
+TEST(Describe, NamesRangesAndNotTooMany) {
+  std::vector<RobotId> robots = {RobotId(3), RobotId(7), RobotId(8), RobotId(9)};
+  EXPECT_EQ(describe(robots), "3, 7-9");
+
+  robots.clear();
+  for (std::uint32_t i = 0; i < 100; ++i) robots.emplace_back(2 * i);
+  const std::string text = describe(robots);
+  EXPECT_LT(text.size(), 120U);
+  EXPECT_TRUE(text.ends_with("36, 38 and 80 more")) << text;
 }
 
 }  // namespace

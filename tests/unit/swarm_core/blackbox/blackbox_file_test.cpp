@@ -292,5 +292,22 @@ TEST_F(BlackBox, SaysWhyItCannotBeOpened) {
   EXPECT_NE(writer.error().message.find("/dev/null/robot.bbox"), std::string::npos);
 }
 
+TEST_F(BlackBox, CanBeWrittenManyRecordsAtATime) {
+  auto writer = Writer::open(file_, 10, 4);
+  ASSERT_TRUE(writer.has_value());
+  const auto records_in_file = [&] {
+    const auto file = read_file(file_);
+    return file ? file->records.size() : 0;
+  };
+  for (int i = 0; i < 5; ++i) writer->append(step_number(i));
+  EXPECT_EQ(records_in_file(), 0U);
+  writer->append(step_number(5));
+  EXPECT_EQ(records_in_file(), 6U);
+  for (int i = 6; i < 18; ++i) writer->append(step_number(i));
+  EXPECT_EQ(records_in_file(), 16U);
+  *writer = *Writer::open("/dev/full");  // the old one ends
+  EXPECT_EQ(records_in_file(), 18U);
+}
+
 }  // namespace
 }  // namespace swarm::blackbox
