@@ -171,10 +171,12 @@ void PlannerProcess::Impl::hear_robots(SteadyTime now) {
       refused.count(ok.error());
       continue;
     }
-    keeper->hear({.robot = RobotId(status.robot_id),
-                  .position_m = {status.x_m, status.y_m},
-                  .arrived = status.arrived},
-                 status.mode == RobotMode::kMoving, now);
+    for (const link::RobotStatusMessage& robot : status.robots) {
+      keeper->hear({.robot = RobotId(robot.robot_id),
+                    .position_m = {robot.x_m, robot.y_m},
+                    .arrived = robot.arrived},
+                   robot.mode == RobotMode::kMoving, now);
+    }
   }
 }
 

@@ -2,11 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "robot_agent/agent_process.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <cmath>
 #include <ctime>
 #include <numbers>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -32,6 +34,8 @@ namespace {
 constexpr std::uint64_t kBodySeed = 0xB0D7;
 constexpr std::uint64_t kFaultSeed = 0xFA17;
 
+/// Robots that tell their health together, where a process has so many.
+constexpr std::size_t kStatusGroup = 100;
 constexpr Duration kStatsEvery = std::chrono::seconds(1);
 
 /// A black box is written at every step, so that nothing is lost with a process that is killed. In
@@ -76,6 +80,7 @@ struct AgentProcess::Impl {
   Histogram state_age;  // of what all of them used
   std::vector<link::RobotStateMessage> saying;
   std::vector<Vec2> positions;
+  link::StatusMessage health;      // kept for its memory
   link::RefusalCounters reported;  // what was announced as an event already
   std::uint32_t skewed_reported = 0;
   std::uint32_t plan_told = 0;
@@ -88,10 +93,11 @@ struct AgentProcess::Impl {
   void tick(const Robot::Tick& tick);
   void follow_scene(UtcTime now);
   void report_health(const Robot::Tick& tick);
-  bool status_is_due(std::size_t robot) const;
+  bool status_is_due(std::size_t first) const;
+  void tell_status(std::size_t first, UtcTime now);
+  std::span<const Robot> group(std::size_t first) const;
   void announce(UtcTime now, link::Severity severity, const std::string& code,
                 const std::string& text);
-  link::StatusMessage full_status(const Robot& robot, UtcTime now);
   void record_link_stats(UtcTime now);
 };
 
@@ -219,29 +225,40 @@ void AgentProcess::Impl::tick(const Robot::Tick& tick) {
   report_health(tick);
 }
 
-/// What the process heard and refused belongs to no single robot: its first one tells and keeps it.
-link::StatusMessage AgentProcess::Impl::full_status(const Robot& robot, UtcTime now) {
-  link::StatusMessage status = robot.status(now);
-  status.process_id = static_cast<std::uint32_t>(::getpid());
-  status.plan_epoch = inbox->plan_epoch();
-  status.plan_version = inbox->plan_version();
-  status.plan_scene_version = inbox->plan_scene_version();
-  if (&robot != &robots.front()) return status;
-  const auto& refused = inbox->refused().all();
-  status.refused.assign(refused.begin(), refused.end());
-  for (std::size_t i = 0; i < Histogram::kBins; ++i) {
-    if (state_age.bin(i) == 0) continue;
-    status.state_age.push_back(
-        {static_cast<std::uint16_t>(i), static_cast<std::uint32_t>(state_age.bin(i))});
+std::span<const Robot> AgentProcess::Impl::group(std::size_t first) const {
+  return std::span(robots).subspan(first, std::min(kStatusGroup, robots.size() - first));
+}
+
+/// What the process heard and refused belongs to no single robot: its first group tells it.
+void AgentProcess::Impl::tell_status(std::size_t first, UtcTime now) {
+  health.first_robot_id = robots[first].id().value();
+  health.process_id = static_cast<std::uint32_t>(::getpid());
+  health.plan_epoch = inbox->plan_epoch();
+  health.plan_version = inbox->plan_version();
+  health.plan_scene_version = inbox->plan_scene_version();
+  health.stamp_utc_ns = now.time_since_epoch().count();
+  health.robots.clear();
+  for (const Robot& robot : group(first)) health.robots.push_back(robot.status());
+  health.refused.clear();
+  health.state_age.clear();
+  if (first == 0) {
+    const auto& refused = inbox->refused().all();
+    health.refused.assign(refused.begin(), refused.end());
+    for (std::size_t i = 0; i < Histogram::kBins; ++i) {
+      if (state_age.bin(i) == 0) continue;
+      health.state_age.push_back(
+          {static_cast<std::uint16_t>(i), static_cast<std::uint32_t>(state_age.bin(i))});
+    }
   }
-  return status;
+  status_writer->write(health);
 }
 
 void AgentProcess::Impl::record_link_stats(UtcTime now) {
   for (Robot& robot : robots) {
-    const link::StatusMessage status = robot.status(now);
-    blackbox::LinkStats stats{
-        .stamp = now, .states_sent = status.states_sent, .states_received = status.states_received};
+    const link::RobotStatusMessage counted = robot.status();
+    blackbox::LinkStats stats{.stamp = now,
+                              .states_sent = counted.states_sent,
+                              .states_received = counted.states_received};
     if (&robot == &robots.front()) {
       stats.state_age = state_age;
       stats.refused.assign(inbox->refused().all().begin(), inbox->refused().all().end());
@@ -250,21 +267,22 @@ void AgentProcess::Impl::record_link_stats(UtcTime now) {
   }
 }
 
-/// Each robot in its turn, so that those of one process do not all speak at the same tick.
-bool AgentProcess::Impl::status_is_due(std::size_t robot) const {
+/// Each group in its turn, so that those of one process do not all speak at the same tick.
+bool AgentProcess::Impl::status_is_due(std::size_t first) const {
   const double ticks_per_status = mission.control.rate_hz / mission.link.status_hz;
   const auto turns = static_cast<std::size_t>(std::max(1.0, std::round(ticks_per_status)));
-  return (ticks + robot) % turns == 0;
+  const auto members = group(first);
+  return (ticks + first / kStatusGroup) % turns == 0 ||
+         std::any_of(members.begin(), members.end(),
+                     [](const Robot& robot) { return robot.mode_changed(); });
 }
 
 void AgentProcess::Impl::report_health(const Robot::Tick& tick) {
   // Everyone waits for everyone to have the plan: that is told at once.
   const bool news = inbox->plan_version() != plan_told;
   plan_told = inbox->plan_version();
-  for (std::size_t i = 0; i < robots.size(); ++i) {
-    if (news || status_is_due(i) || robots[i].mode_changed()) {
-      status_writer->write(full_status(robots[i], tick.utc_now));
-    }
+  for (std::size_t first = 0; first < robots.size(); first += kStatusGroup) {
+    if (news || status_is_due(first)) tell_status(first, tick.utc_now);
   }
   ++ticks;
   const bool alive = inbox->mission().planner_alive(tick.now);
@@ -336,10 +354,10 @@ Result<void> AgentProcess::run() {
   }
   const UtcTime at_end = utc_now();
   p.record_link_stats(at_end);
-  for (Robot& robot : p.robots) {
-    p.status_writer->write(p.full_status(robot, at_end));
-    robot.note(at_end, "exit", "graceful end");
+  for (std::size_t first = 0; first < p.robots.size(); first += kStatusGroup) {
+    p.tell_status(first, at_end);
   }
+  for (Robot& robot : p.robots) robot.note(at_end, "exit", "graceful end");
   return {};
 }
 

@@ -100,12 +100,11 @@ void Robot::step(const Tick& tick, const Inbox& inbox, const NewPlan* new_plan,
   }
 }
 
-link::StatusMessage Robot::status(UtcTime utc_now) const {
+link::RobotStatusMessage Robot::status() const {
   return {.robot_id = id_.value(),
           .mode = output_.mode,
           .arrived = output_.mode == RobotMode::kArrived,
           .settled = output_.settled,
-          .stamp_utc_ns = to_ns(utc_now),
           .x_m = position_m_.x(),
           .y_m = position_m_.y(),
           .remaining_m = output_.remaining_m,

@@ -33,8 +33,8 @@ class Robot {
   /// The state to tell the neighbours, if this step asked for it.
   const std::optional<link::RobotStateMessage>& to_say() const { return to_say_; }
 
-  /// Health for the status topic, without the counters of the process.
-  link::StatusMessage status(UtcTime utc_now) const;
+  /// Health for the status topic.
+  link::RobotStatusMessage status() const;
 
   bool mode_changed() const { return mode_changed_; }
   RobotMode mode() const { return output_.mode; }

@@ -226,14 +226,16 @@ void Flight::read_bus() {
       refused_.count(ok.error());
       continue;
     }
-    view_.take(status);
     if (observer_ != nullptr) observer_->on_status(status);
-    supervisor_->on_status(RobotId(status.robot_id),
-                           {.has_plan = status.plan_version > 0,
-                            .hears_neighbours = view_.hears_neighbours(status.robot_id),
-                            .mode = status.mode,
-                            .settled = status.settled,
-                            .scene_version = status.plan_scene_version});
+    for (const link::RobotStatusMessage& robot : status.robots) {
+      view_.take(robot);
+      supervisor_->on_status(RobotId(robot.robot_id),
+                             {.has_plan = status.plan_version > 0,
+                              .hears_neighbours = view_.hears_neighbours(robot.robot_id),
+                              .mode = robot.mode,
+                              .settled = robot.settled,
+                              .scene_version = status.plan_scene_version});
+    }
   }
   heard_events_.clear();
   event_reader_->take(heard_events_);

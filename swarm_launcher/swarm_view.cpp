@@ -10,22 +10,22 @@
 
 namespace swarm::launcher {
 
-void SwarmView::take(const link::StatusMessage& status) {
-  link::StatusMessage& known = robots_.at(status.robot_id);
+void SwarmView::take(const link::RobotStatusMessage& status) {
+  link::RobotStatusMessage& known = robots_.at(status.robot_id);
   if (known.ticks > 0) std::erase(cell_at(known.x_m, known.y_m), status.robot_id);
   if (status.ticks > 0) cell_at(status.x_m, status.y_m).push_back(status.robot_id);
   known = status;
 }
 
 bool SwarmView::hears_neighbours(std::uint32_t robot) const {
-  const link::StatusMessage& self = robots_.at(robot);
+  const link::RobotStatusMessage& self = robots_.at(robot);
   std::uint32_t near = 0;
   for (const link::Cell& touched :
        link::cells_touching({self.x_m, self.y_m}, hear_radius_m_, hear_radius_m_)) {
     const auto cell = cells_.find(touched);
     if (cell == cells_.end()) continue;
     for (const std::uint32_t id : cell->second) {
-      const link::StatusMessage& other = robots_[id];
+      const link::RobotStatusMessage& other = robots_[id];
       if (id == robot) continue;
       if (std::hypot(other.x_m - self.x_m, other.y_m - self.y_m) <= hear_radius_m_) ++near;
     }
@@ -36,7 +36,7 @@ bool SwarmView::hears_neighbours(std::uint32_t robot) const {
 std::string SwarmView::describe(SteadyTime now) {
   Totals totals;
   double gap = std::numeric_limits<double>::infinity();
-  for (const link::StatusMessage& r : robots_) {
+  for (const link::RobotStatusMessage& r : robots_) {
     if (r.ticks == 0) continue;
     totals.sent += r.states_sent;
     totals.heard += r.states_received;

@@ -19,7 +19,7 @@ class SwarmView {
   SwarmView(std::uint32_t robots, double hear_radius_m)
       : robots_(robots), hear_radius_m_(hear_radius_m) {}
 
-  void take(const link::StatusMessage& status);
+  void take(const link::RobotStatusMessage& status);
 
   /// Whether a robot hears at least as many others as stand within the hearing radius, by all their
   /// statuses. O(robots in nine cells).
@@ -36,7 +36,7 @@ class SwarmView {
     return cells_[link::cell_of({x_m, y_m}, hear_radius_m_)];
   }
 
-  std::vector<link::StatusMessage> robots_;
+  std::vector<link::RobotStatusMessage> robots_;
   double hear_radius_m_ = 0.0;
   std::map<link::Cell, std::vector<std::uint32_t>>
       cells_;  // robots, in cells as wide as the radius

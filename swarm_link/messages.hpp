@@ -14,7 +14,7 @@
 /// become domain objects only through swarm_link/validation.hpp.
 namespace swarm::link {
 
-inline constexpr std::uint16_t kSchemaVersion = 2;
+inline constexpr std::uint16_t kSchemaVersion = 3;
 inline constexpr std::size_t kMaxCellStates = 256;
 
 /// Event::source of whoever is not a robot.
@@ -132,25 +132,31 @@ struct HistogramBinMessage {
   bool operator==(const HistogramBinMessage&) const = default;
 };
 
-struct StatusMessage {
+struct RobotStatusMessage {
   std::uint32_t robot_id = 0;
-  std::uint16_t schema_version = kSchemaVersion;
   RobotMode mode = RobotMode::kWaiting;
   bool arrived = false;
   bool settled = false;
-  std::uint32_t process_id = 0;
-  std::uint32_t plan_version = 0;
-  std::uint64_t plan_epoch = 0;
-  std::uint64_t plan_scene_version = 0;
-  std::int64_t stamp_utc_ns = 0;
   double x_m = 0, y_m = 0;
   double remaining_m = 0;
   double nearest_gap_m = 0;
   std::uint32_t neighbours_heard = 0;
   std::uint32_t ticks = 0, late_ticks = 0;
   std::uint32_t states_sent = 0, states_received = 0;
+  bool operator==(const RobotStatusMessage&) const = default;
+};
+
+struct StatusMessage {
+  std::uint32_t first_robot_id = 0;
+  std::uint16_t schema_version = kSchemaVersion;
+  std::uint32_t process_id = 0;
+  std::uint32_t plan_version = 0;
+  std::uint64_t plan_epoch = 0;
+  std::uint64_t plan_scene_version = 0;
+  std::int64_t stamp_utc_ns = 0;
+  std::vector<RobotStatusMessage> robots{};
   std::vector<std::uint32_t> refused{};          ///< by RefusalReason
-  std::vector<HistogramBinMessage> state_age{};  ///< bins of a swarm::Histogram
+  std::vector<HistogramBinMessage> state_age{};  ///< bins of Histogram that are not empty
   bool operator==(const StatusMessage&) const = default;
 };
 

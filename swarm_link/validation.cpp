@@ -174,16 +174,19 @@ Checked<void> check_command(const CommandMessage& message) {
 Checked<void> check_status(const StatusMessage& message, const WireLimits& limits) {
   if (message.schema_version != kSchemaVersion) return refuse(RefusalReason::kSchema);
   if (!fits_wire(message)) return refuse(RefusalReason::kOversized);
-  if (!all_finite(message.x_m, message.y_m, message.remaining_m, message.nearest_gap_m)) {
-    return refuse(RefusalReason::kNotFinite);
+  for (const RobotStatusMessage& robot : message.robots) {
+    if (!all_finite(robot.x_m, robot.y_m, robot.remaining_m, robot.nearest_gap_m)) {
+      return refuse(RefusalReason::kNotFinite);
+    }
+    if (robot.robot_id >= limits.robots || !is_one_of_first(robot.mode, RobotMode::kStopped) ||
+        !is_inside(robot.x_m, robot.y_m, limits)) {
+      return refuse(RefusalReason::kOutOfRange);
+    }
   }
   const bool bins_exist =
       std::all_of(message.state_age.begin(), message.state_age.end(),
                   [](const HistogramBinMessage& bin) { return bin.bin < Histogram::kBins; });
-  if (message.robot_id >= limits.robots || !is_one_of_first(message.mode, RobotMode::kStopped) ||
-      !is_inside(message.x_m, message.y_m, limits) || !bins_exist) {
-    return refuse(RefusalReason::kOutOfRange);
-  }
+  if (!bins_exist) return refuse(RefusalReason::kOutOfRange);
   return {};
 }
 

@@ -16,6 +16,7 @@ inline constexpr std::size_t kMaxSceneObstacles = 256;
 inline constexpr std::size_t kMaxSceneRemoved = 256;
 inline constexpr std::size_t kMaxSceneVertices = 4096;
 inline constexpr std::size_t kMaxSceneGoals = 255;
+inline constexpr std::size_t kMaxStatusRobots = 100;
 inline constexpr std::size_t kMaxRefusalReasons = 16;
 inline constexpr std::size_t kMaxHistogramBins = 464;
 inline constexpr std::size_t kMaxEventCode = 64;
@@ -36,7 +37,8 @@ inline bool fits_wire(const SceneMessage& m) {
 }
 inline bool fits_wire(const CellStatesMessage& m) { return m.states.size() <= kMaxCellStates; }
 inline bool fits_wire(const StatusMessage& m) {
-  return m.refused.size() <= kMaxRefusalReasons && m.state_age.size() <= kMaxHistogramBins;
+  return m.robots.size() <= kMaxStatusRobots && m.refused.size() <= kMaxRefusalReasons &&
+         m.state_age.size() <= kMaxHistogramBins;
 }
 
 /// Strings are cut to their bounds instead: half a sentence is better than no event.

@@ -47,9 +47,14 @@ void SoakWatch::hear_all() {
 
 void SoakWatch::on_status(const link::StatusMessage& status) {
   if (!running_) return;
-  Robot& robot = robots_[status.robot_id];
-  if (!robot.first || robot.first->process_id != status.process_id) robot.first = status;
-  robot.last = status;
+  for (const link::RobotStatusMessage& now : status.robots) {
+    Robot& robot = robots_[now.robot_id];
+    if (robot.process_id != status.process_id) {
+      robot = {.process_id = status.process_id, .first = now};
+    }
+    robot.last = now;
+  }
+  if (!status.state_age.empty()) ages_[status.process_id] = status.state_age;
 }
 
 void SoakWatch::on_step(const Flight& flight, SteadyTime now) {
@@ -111,15 +116,14 @@ std::string SoakWatch::describe() {
 SoakMeasurements SoakWatch::measurements() const {
   SoakMeasurements m{.samples = samples_, .receive_drops = drops_};
   for (const Robot& robot : robots_) {
-    if (!robot.first) continue;
-    const link::StatusMessage &first = *robot.first, &last = *robot.last;
+    const link::RobotStatusMessage &first = robot.first, &last = robot.last;
     m.states_sent += last.states_sent - first.states_sent;
     m.states_used += last.states_received - first.states_received;
     m.ticks += last.ticks - first.ticks;
     m.late_ticks += last.late_ticks - first.late_ticks;
-    for (const link::HistogramBinMessage& bin : last.state_age) {
-      m.use_latency.add_bin(bin.bin, bin.count);
-    }
+  }
+  for (const auto& [process, bins] : ages_) {
+    for (const link::HistogramBinMessage& bin : bins) m.use_latency.add_bin(bin.bin, bin.count);
   }
   const std::lock_guard lock(mutex_);
   if (tap_) m.heard = meter_.counts();

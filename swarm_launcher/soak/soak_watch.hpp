@@ -4,9 +4,9 @@
 
 #include <atomic>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <mutex>
-#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -41,9 +41,11 @@ class SoakWatch final : public FlightObserver {
 
   /// Counters of a robot when the mission began and now.
   struct Robot {
-    std::optional<link::StatusMessage> first{}, last{};
+    std::uint32_t process_id = 0;
+    link::RobotStatusMessage first{}, last{};
   };
   std::vector<Robot> robots_;
+  std::map<std::uint32_t, std::vector<link::HistogramBinMessage>> ages_;  // by process
   std::vector<SoakSample> samples_;
   SteadyTime sampled_at_;
   double cpu_s_ = 0.0;

@@ -226,25 +226,31 @@ void from_wire(const wire::Command& in, CommandMessage& out) {
 
 bool to_wire(const StatusMessage& in, wire::Status& out) {
   if (!fits_wire(in)) return false;
-  out.robot_id(in.robot_id);
+  out.first_robot_id(in.first_robot_id);
   out.schema_version(in.schema_version);
-  out.mode(static_cast<std::uint8_t>(in.mode));
-  out.arrived(in.arrived);
-  out.settled(in.settled);
   out.process_id(in.process_id);
   out.plan_version(in.plan_version);
   out.plan_epoch(in.plan_epoch);
   out.plan_scene_version(in.plan_scene_version);
   out.stamp_utc_ns(in.stamp_utc_ns);
-  out.x_m(in.x_m);
-  out.y_m(in.y_m);
-  out.remaining_m(in.remaining_m);
-  out.nearest_gap_m(in.nearest_gap_m);
-  out.neighbours_heard(in.neighbours_heard);
-  out.ticks(in.ticks);
-  out.late_ticks(in.late_ticks);
-  out.states_sent(in.states_sent);
-  out.states_received(in.states_received);
+  out.robots().resize(in.robots.size());
+  for (std::size_t i = 0; i < in.robots.size(); ++i) {
+    const RobotStatusMessage& robot = in.robots[i];
+    wire::RobotStatus& wired = out.robots()[i];
+    wired.robot_id(robot.robot_id);
+    wired.mode(static_cast<std::uint8_t>(robot.mode));
+    wired.arrived(robot.arrived);
+    wired.settled(robot.settled);
+    wired.x_m(robot.x_m);
+    wired.y_m(robot.y_m);
+    wired.remaining_m(robot.remaining_m);
+    wired.nearest_gap_m(robot.nearest_gap_m);
+    wired.neighbours_heard(robot.neighbours_heard);
+    wired.ticks(robot.ticks);
+    wired.late_ticks(robot.late_ticks);
+    wired.states_sent(robot.states_sent);
+    wired.states_received(robot.states_received);
+  }
   out.refused(in.refused);
   out.state_age().resize(in.state_age.size());
   for (std::size_t i = 0; i < in.state_age.size(); ++i) {
@@ -255,25 +261,30 @@ bool to_wire(const StatusMessage& in, wire::Status& out) {
 }
 
 void from_wire(const wire::Status& in, StatusMessage& out) {
-  out.robot_id = in.robot_id();
+  out.first_robot_id = in.first_robot_id();
   out.schema_version = in.schema_version();
-  out.mode = static_cast<RobotMode>(in.mode());
-  out.arrived = in.arrived();
-  out.settled = in.settled();
   out.process_id = in.process_id();
   out.plan_version = in.plan_version();
   out.plan_epoch = in.plan_epoch();
   out.plan_scene_version = in.plan_scene_version();
   out.stamp_utc_ns = in.stamp_utc_ns();
-  out.x_m = in.x_m();
-  out.y_m = in.y_m();
-  out.remaining_m = in.remaining_m();
-  out.nearest_gap_m = in.nearest_gap_m();
-  out.neighbours_heard = in.neighbours_heard();
-  out.ticks = in.ticks();
-  out.late_ticks = in.late_ticks();
-  out.states_sent = in.states_sent();
-  out.states_received = in.states_received();
+  out.robots.clear();
+  out.robots.reserve(in.robots().size());
+  for (const wire::RobotStatus& robot : in.robots()) {
+    out.robots.push_back({.robot_id = robot.robot_id(),
+                          .mode = static_cast<RobotMode>(robot.mode()),
+                          .arrived = robot.arrived(),
+                          .settled = robot.settled(),
+                          .x_m = robot.x_m(),
+                          .y_m = robot.y_m(),
+                          .remaining_m = robot.remaining_m(),
+                          .nearest_gap_m = robot.nearest_gap_m(),
+                          .neighbours_heard = robot.neighbours_heard(),
+                          .ticks = robot.ticks(),
+                          .late_ticks = robot.late_ticks(),
+                          .states_sent = robot.states_sent(),
+                          .states_received = robot.states_received()});
+  }
   out.refused = in.refused();
   out.state_age.clear();
   out.state_age.reserve(in.state_age().size());

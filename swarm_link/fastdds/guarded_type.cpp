@@ -21,6 +21,7 @@ constexpr std::size_t kSceneObstacleBytes = 64;
 constexpr std::size_t kPointBytes = 16;
 constexpr std::size_t kGoalComponentBytes = 48;
 constexpr std::size_t kRobotStateBytes = 49;
+constexpr std::size_t kRobotStatusBytes = 59;
 constexpr std::size_t kHistogramBinBytes = 6;
 
 class Walker {
@@ -108,9 +109,14 @@ bool lengths_fit<wire::CellStates>(const Payload& payload) {
 template <>
 bool lengths_fit<wire::Status>(const Payload& payload) {
   Walker walker(payload);
-  walker.skip<std::uint32_t, std::uint16_t, std::uint8_t, bool, bool, std::uint32_t, std::uint32_t,
-              std::uint64_t, std::uint64_t, std::int64_t, double, double, double, double>();
-  walker.skip_times<std::uint32_t>(5);
+  walker.skip<std::uint32_t, std::uint16_t, std::uint32_t, std::uint32_t, std::uint64_t,
+              std::uint64_t, std::int64_t>();
+  const auto robots = walker.length();
+  if (!walker.fits(robots, kRobotStatusBytes)) return false;
+  for (std::uint32_t i = 0; i < robots; ++i) {
+    walker.skip<std::uint32_t, std::uint8_t, bool, bool, double, double, double, double,
+                std::uint32_t, std::uint32_t, std::uint32_t, std::uint32_t, std::uint32_t>();
+  }
   const auto refused = walker.length();
   if (!walker.fits(refused, sizeof(std::uint32_t))) return false;
   walker.skip_times<std::uint32_t>(refused);

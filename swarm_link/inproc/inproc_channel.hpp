@@ -20,7 +20,7 @@ template <class M>
 std::uint32_t instance_of(const M&) {
   return 0;
 }
-inline std::uint32_t instance_of(const StatusMessage& m) { return m.robot_id; }
+inline std::uint32_t instance_of(const StatusMessage& m) { return m.first_robot_id; }
 
 /// Keep-last history: at most `depth` messages per instance, oldest first.
 template <class M>

@@ -120,6 +120,7 @@ TEST_P(Participants, RefuseToWriteMoreThanTheContractAllows) {
   const auto cells = a.make_writer(cell_topic({0, 0})).value();
   EXPECT_FALSE(cells->write({.states = std::vector<RobotStateMessage>(257)}));
   const auto status = a.make_writer(status_topic()).value();
+  EXPECT_FALSE(status->write({.robots = std::vector<RobotStatusMessage>(101)}));
   EXPECT_FALSE(status->write({.refused = std::vector<std::uint32_t>(17)}));
   EXPECT_FALSE(status->write({.state_age = std::vector<HistogramBinMessage>(465)}));
 }
@@ -169,7 +170,7 @@ TEST_P(Participants, GiveLateJoinersNothingVolatile) {
   EXPECT_EQ(hear(late, 1), std::vector{EventMessage{.source = 2}});
 }
 
-TEST_P(Participants, KeepTheLastOfEachRobotsStatus) {
+TEST_P(Participants, KeepTheLastOfEachGroupsStatus) {
   auto deep_topic = status_topic();
   deep_topic.qos.depth = 3;
   const auto writer = a.make_writer(deep_topic).value();
@@ -177,21 +178,23 @@ TEST_P(Participants, KeepTheLastOfEachRobotsStatus) {
   const auto deep = b.make_reader(deep_topic).value();  // tells when all have arrived
   await_match(writer, deep);
   ASSERT_TRUE(bus->eventually([&] { return writer->matched() == 2; }));
-  constexpr std::uint32_t kRobots = 150;
-  for (std::uint32_t ticks = 1; ticks <= 3; ++ticks) {
-    for (std::uint32_t id = 0; id < kRobots; ++id) writer->write({.robot_id = id, .ticks = ticks});
+  constexpr std::uint32_t kGroups = 150;
+  for (std::uint32_t version = 1; version <= 3; ++version) {
+    for (std::uint32_t id = 0; id < kGroups; ++id) {
+      writer->write({.first_robot_id = id, .plan_version = version});
+    }
   }
-  ASSERT_EQ(hear(deep, 3 * kRobots).size(), 3 * kRobots);
+  ASSERT_EQ(hear(deep, 3 * kGroups).size(), 3 * kGroups);
   bus->settle();
 
   std::vector<StatusMessage> last;
   reader->take(last);
 
-  std::map<std::uint32_t, std::uint32_t> ticks_of;
-  for (const auto& status : last) ticks_of[status.robot_id] = status.ticks;
-  EXPECT_EQ(last.size(), kRobots);
-  EXPECT_EQ(ticks_of.size(), kRobots);
-  for (const auto& [id, ticks] : ticks_of) EXPECT_EQ(ticks, 3U);
+  std::map<std::uint32_t, std::uint32_t> version_of;
+  for (const auto& status : last) version_of[status.first_robot_id] = status.plan_version;
+  EXPECT_EQ(last.size(), kGroups);
+  EXPECT_EQ(version_of.size(), kGroups);
+  for (const auto& [id, version] : version_of) EXPECT_EQ(version, 3U);
 }
 
 TEST_P(Participants, KeepTheLastOfManyCellBatches) {

@@ -104,25 +104,31 @@ inline CommandMessage sample<CommandMessage>(Rng& rng) {
 }
 
 template <>
+inline RobotStatusMessage sample<RobotStatusMessage>(Rng& rng) {
+  return {.robot_id = integer<std::uint32_t>(rng),
+          .mode = RobotMode::kStopped,
+          .arrived = true,
+          .settled = true,
+          .x_m = number(rng),
+          .y_m = number(rng),
+          .remaining_m = number(rng),
+          .nearest_gap_m = number(rng),
+          .neighbours_heard = integer<std::uint32_t>(rng),
+          .ticks = integer<std::uint32_t>(rng),
+          .late_ticks = integer<std::uint32_t>(rng),
+          .states_sent = integer<std::uint32_t>(rng),
+          .states_received = integer<std::uint32_t>(rng)};
+}
+
+template <>
 inline StatusMessage sample<StatusMessage>(Rng& rng) {
-  StatusMessage status{.robot_id = integer<std::uint32_t>(rng),
-                       .mode = RobotMode::kStopped,
-                       .arrived = true,
-                       .settled = true,
+  StatusMessage status{.first_robot_id = integer<std::uint32_t>(rng),
                        .process_id = integer<std::uint32_t>(rng),
                        .plan_version = integer<std::uint32_t>(rng),
                        .plan_epoch = integer<std::uint64_t>(rng),
                        .plan_scene_version = integer<std::uint64_t>(rng),
-                       .stamp_utc_ns = integer<std::int64_t>(rng),
-                       .x_m = number(rng),
-                       .y_m = number(rng),
-                       .remaining_m = number(rng),
-                       .nearest_gap_m = number(rng),
-                       .neighbours_heard = integer<std::uint32_t>(rng),
-                       .ticks = integer<std::uint32_t>(rng),
-                       .late_ticks = integer<std::uint32_t>(rng),
-                       .states_sent = integer<std::uint32_t>(rng),
-                       .states_received = integer<std::uint32_t>(rng)};
+                       .stamp_utc_ns = integer<std::int64_t>(rng)};
+  for (int i = 0; i < 100; ++i) status.robots.push_back(sample<RobotStatusMessage>(rng));
   for (int i = 0; i < 16; ++i) status.refused.push_back(integer<std::uint32_t>(rng));
   for (std::uint16_t i = 0; i < 464; ++i) {
     status.state_age.push_back({.bin = i, .count = integer<std::uint32_t>(rng)});

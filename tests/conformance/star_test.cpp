@@ -126,7 +126,7 @@ TEST_F(StarRun, LauncherAndPlannerHearEveryAgent) {
            std::all_of(agents.begin(), agents.end(),
                        [](const AgentSeat& agent) { return agent.status->matched() == 2; });
   }));
-  for (std::uint32_t i = 0; i < kAgents; ++i) agents[i].status->write({.robot_id = i});
+  for (std::uint32_t i = 0; i < kAgents; ++i) agents[i].status->write({.first_robot_id = i});
 
   EXPECT_TRUE(eventually([&] { return heard_statuses.size() == kAgents; }));
   EXPECT_TRUE(eventually([&] { return seen_statuses.size() == kAgents; }));

@@ -117,12 +117,14 @@ TEST_F(HostilePeers, ClaimASceneTheyDoNotSend) {
 }
 
 TEST_F(HostilePeers, ClaimBinsTheyDoNotSendAndFlagsThatAreNone) {
+  constexpr std::uint32_t kMany = 0xFFFF'FFFF;
   const auto reader = us.make_reader(status_topic()).value();
-  EXPECT_TRUE(provoke(reader, [&] { return peer.send_lying_status(0, 0xFFFF'FFFF, 0); }).empty());
-  EXPECT_TRUE(provoke(reader, [&] { return peer.send_lying_status(0, 0, 0xFFFF'FFFF); }).empty());
-  EXPECT_TRUE(provoke(reader, [&] { return peer.send_lying_status(2, 0, 0); }).empty());
-  EXPECT_EQ(reader->undecodable(), 3U);
-  EXPECT_EQ(provoke(reader, [&] { return peer.send_lying_status(1, 0, 0); }).size(), 1U);
+  EXPECT_TRUE(provoke(reader, [&] { return peer.send_lying_status(1, 0, kMany, 0); }).empty());
+  EXPECT_TRUE(provoke(reader, [&] { return peer.send_lying_status(1, 0, 0, kMany); }).empty());
+  EXPECT_TRUE(provoke(reader, [&] { return peer.send_lying_status(1, 2, 0, 0); }).empty());
+  EXPECT_TRUE(provoke(reader, [&] { return peer.send_lying_status(kMany, 0, 0, 0); }).empty());
+  EXPECT_EQ(reader->undecodable(), 4U);
+  EXPECT_EQ(provoke(reader, [&] { return peer.send_lying_status(1, 1, 0, 0); }).size(), 1U);
   expect_good_samples_still_pass(status_topic(), reader);
 }
 

@@ -135,11 +135,12 @@ bool HostilePeer::send_lying_scene(std::uint32_t removed, std::uint32_t obstacle
       impl_->writer<hostile::LyingScenePubSubType>(scene_topic(), "swarm::wire::Scene"), &sample);
 }
 
-bool HostilePeer::send_lying_status(std::uint8_t arrived, std::uint32_t refused,
-                                    std::uint32_t state_age) {
+bool HostilePeer::send_lying_status(std::uint32_t robots, std::uint8_t arrived,
+                                    std::uint32_t refused, std::uint32_t state_age) {
   hostile::LyingStatus sample;
   sample.schema_version(kSchemaVersion);
-  sample.arrived(arrived);
+  sample.robots(robots);
+  sample.robot().arrived(arrived);
   sample.refused(refused);
   sample.state_age(state_age);
   return Impl::send(

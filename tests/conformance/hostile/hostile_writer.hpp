@@ -27,7 +27,8 @@ class HostilePeer {
   bool send_lying_plan(std::uint32_t nodes, std::uint32_t legs, std::uint32_t entries);
   bool send_lying_scene(std::uint32_t removed, std::uint32_t obstacles, std::uint32_t vertices,
                         std::uint32_t goal);
-  bool send_lying_status(std::uint8_t arrived, std::uint32_t refused, std::uint32_t state_age);
+  bool send_lying_status(std::uint32_t robots, std::uint8_t arrived, std::uint32_t refused,
+                         std::uint32_t state_age);
   bool send_lying_event(std::uint32_t code);
   bool send_stub_heartbeat();
   bool send_stub_command();

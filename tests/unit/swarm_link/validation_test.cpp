@@ -49,7 +49,9 @@ RobotStateMessage good_state() {
 }
 
 StatusMessage good_status() {
-  return {.robot_id = 1, .x_m = 1.0, .y_m = 2.0, .refused = {1, 2}, .state_age = {{3, 4}}};
+  return {.robots = {{.robot_id = 1, .x_m = 1.0, .y_m = 2.0}},
+          .refused = {1, 2},
+          .state_age = {{3, 4}}};
 }
 
 template <class T>
@@ -189,15 +191,18 @@ TEST(StatusCheck, RefusesEachKindOfNonsense) {
   };
   EXPECT_TRUE(verdict([](auto&) {}));
   EXPECT_TRUE(refused(verdict([](auto& m) { m.schema_version = 1; }), RefusalReason::kSchema));
+  EXPECT_TRUE(refused(verdict([](auto& m) { m.robots.resize(101); }), RefusalReason::kOversized));
   EXPECT_TRUE(refused(verdict([](auto& m) { m.refused.resize(17); }), RefusalReason::kOversized));
   EXPECT_TRUE(
       refused(verdict([](auto& m) { m.state_age.resize(465); }), RefusalReason::kOversized));
-  EXPECT_TRUE(refused(verdict([](auto& m) { m.x_m = kNaN; }), RefusalReason::kNotFinite));
+  EXPECT_TRUE(refused(verdict([](auto& m) { m.robots[0].x_m = kNaN; }), RefusalReason::kNotFinite));
+  EXPECT_TRUE(refused(verdict([](auto& m) { m.robots[0].remaining_m = kInfinity; }),
+                      RefusalReason::kNotFinite));
   EXPECT_TRUE(
-      refused(verdict([](auto& m) { m.remaining_m = kInfinity; }), RefusalReason::kNotFinite));
-  EXPECT_TRUE(refused(verdict([](auto& m) { m.robot_id = 100; }), RefusalReason::kOutOfRange));
-  EXPECT_TRUE(refused(verdict([](auto& m) { m.y_m = 46.0; }), RefusalReason::kOutOfRange));
-  EXPECT_TRUE(refused(verdict([](auto& m) { m.mode = static_cast<RobotMode>(5); }),
+      refused(verdict([](auto& m) { m.robots[0].robot_id = 100; }), RefusalReason::kOutOfRange));
+  EXPECT_TRUE(
+      refused(verdict([](auto& m) { m.robots[0].y_m = 46.0; }), RefusalReason::kOutOfRange));
+  EXPECT_TRUE(refused(verdict([](auto& m) { m.robots[0].mode = static_cast<RobotMode>(5); }),
                       RefusalReason::kOutOfRange));
   EXPECT_TRUE(refused(verdict([](auto& m) { m.state_age[0].bin = Histogram::kBins; }),
                       RefusalReason::kOutOfRange));
