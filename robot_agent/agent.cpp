@@ -163,7 +163,8 @@ AgentOptions agent_options(const Mission& mission, RobotId robot, std::uint64_t 
                      .forget_after = from_seconds(mission.timing.neighbour_forget_s)},
       .say = {.error_m = l.send_error_m,
               .interval_max = from_seconds(l.send_interval_max_s),
-              .near_m = l.send_near_m},
+              .near_m = l.send_near_m,
+              .period = period},
   };
 }
 

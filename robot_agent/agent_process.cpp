@@ -106,12 +106,12 @@ Result<void> AgentProcess::Impl::join(const shell::RunInfo& run) {
       .faults = options.faults,
       .seed = mix_seed(mix_seed(run.seed, kFaultSeed), options.number + 1),
       .run_began = run.began};
-  auto made =
-      link::join_as_agent(link::Meeting{.domain = run.domain,
-                                        .server = {run.discovery_host, run.discovery_port},
-                                        .hubs = run.hubs,
-                                        .faults = faults},
-                          options.number, fmt::format("robot_agent_{}", options.first.value()));
+  auto made = link::join_as_agent(
+      link::Meeting{.domain = run.domain,
+                    .server = {run.discovery_host, run.discovery_port},
+                    .hubs = run.hubs,
+                    .faults = faults},
+      options.number, fmt::format("robot_agent_{}", options.first.value()), options.vendor);
   if (!made) return tl::unexpected(made.error());
   participant = std::move(*made);
 

@@ -10,6 +10,7 @@
 #include "swarm_core/base/ids.hpp"
 #include "swarm_core/base/result.hpp"
 #include "swarm_core/mission/link_faults.hpp"
+#include "swarm_link/vendor.hpp"
 
 namespace swarm::agent {
 
@@ -19,6 +20,7 @@ struct ProcessOptions {
   std::uint32_t count = 1;
   std::uint32_t number = 0;  ///< of this process among the agents of the run
   LinkFaults faults{};
+  link::Vendor vendor = link::Vendor::kFastDds;
   std::uint32_t parent_pid = 0;  ///< end when this process is gone; 0 = do not watch
 };
 

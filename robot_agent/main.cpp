@@ -1,5 +1,8 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
+#include <map>
+#include <string>
+
 #include <CLI/CLI.hpp>
 
 #include "robot_agent/agent_process.hpp"
@@ -18,11 +21,16 @@ int main(int argc, char** argv) {
     swarm::agent::ProcessOptions options;
     std::uint32_t first = 0;
     std::string fault;
+    const std::map<std::string, swarm::link::Vendor> vendors = {
+        {"fastdds", swarm::link::Vendor::kFastDds},
+        {"cyclonedds", swarm::link::Vendor::kCycloneDds}};
     app.add_option("--run", options.run_dir, "Run directory made by the launcher")->required();
     app.add_option("--ids", first, "First robot of this process")->required();
     app.add_option("--count", options.count, "Number of robots in this process");
     app.add_option("--number", options.number, "Of this agent process in the run, from 0");
     app.add_option("--parent", options.parent_pid, "End when this process is no longer our parent");
+    app.add_option("--dds", options.vendor, "Whose DDS it speaks")
+        ->transform(CLI::CheckedTransformer(vendors));
     app.add_option("--fault", fault, "A bad network for what this process receives");
     swarm::shell::add_common_options(app);
     const auto done = swarm::shell::parse(app, argc, argv);

@@ -65,6 +65,10 @@ Result<std::unique_ptr<Flight>> Flight::make(FlightOptions options, FlightObserv
                                  .robots_per_process = options.per_process,
                                  .multicast = link::loopback_carries_multicast()});
   if (!channel) return tl::unexpected(channel.error());
+  if (options.agent_dds != AgentDds::kFastDds && channel->channel != Channel::kGroups) {
+    return fail(ErrorCode::kBadInput,
+                "--agent-dds: Cyclone DDS joins without a discovery server; add --channel groups");
+  }
   const std::uint32_t hubs = channel->channel == Channel::kGroups ? link::hubs_for(agents) : 0;
   auto lock = DomainLock::take(options.domain, link::participants_for({.hubs = hubs}, agents));
   if (!lock) return tl::unexpected(lock.error());
@@ -155,6 +159,10 @@ Result<void> Flight::start(ProcessIndex process) {
                     fmt::format("{}", count),
                     "--number",
                     fmt::format("{}", process.value() - 1)};
+    if (options_.agent_dds == AgentDds::kCycloneDds ||
+        (options_.agent_dds == AgentDds::kHalf && process.value() % 2 == 0)) {
+      command_line.insert(command_line.end(), {"--dds", "cyclonedds"});
+    }
     log = fmt::format("agent-{:05}.log", first.value());
   }
   if (!options_.fault.empty()) command_line.insert(command_line.end(), {"--fault", options_.fault});

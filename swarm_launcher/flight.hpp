@@ -15,6 +15,7 @@
 #include "swarm_core/base/result.hpp"
 #include "swarm_core/mission/channel.hpp"
 #include "swarm_core/mission/mission.hpp"
+#include "swarm_launcher/agent_dds.hpp"
 #include "swarm_launcher/channel_choice.hpp"
 #include "swarm_launcher/control_socket.hpp"
 #include "swarm_launcher/domain_lock.hpp"
@@ -38,6 +39,7 @@ struct FlightOptions {
   std::filesystem::path out{};       ///< run directory; empty: runs/<mission>-<time>
   int domain = -1;                   ///< DDS domain; negative: a free one
   std::optional<Channel> channel{};  ///< empty: choose_channel() decides
+  AgentDds agent_dds = AgentDds::kFastDds;
 };
 
 class Flight;

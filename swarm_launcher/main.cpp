@@ -35,8 +35,18 @@ int main(int argc, char** argv) {
         ->type_name("MISSION.yaml");
     run_command->add_option("--robots", run.robots, "Number of robots, instead of the mission's")
         ->check(CLI::Range(1, 20000));
-    run_command->add_option("--per-process", run.per_process, "Robots hosted by one agent process")
-        ->check(CLI::Range(1, 20000));
+    auto* per_process =
+        run_command
+            ->add_option("--per-process", run.per_process, "Robots hosted by one agent process")
+            ->check(CLI::Range(1, 20000));
+    std::string processes;
+    run_command
+        ->add_option(
+            "--processes", processes,
+            "Agent processes, or auto: one a robot while the machine carries that, else few")
+        ->check(CLI::IsMember({"auto"}) | CLI::Range(1, 20000))
+        ->type_name("N|auto")
+        ->excludes(per_process);
     run_command->add_option("--seed", run.seed, "Seed of placement, plan and robots");
     run_command->add_option("--out", run.out, "Run directory (default: runs/<mission>-<time>)");
     run_command->add_option("--domain", run.domain, "DDS domain (default: a free one)")
@@ -48,6 +58,13 @@ int main(int argc, char** argv) {
         ->add_option("--channel", channel,
                      "What carries robot states: DDS topics, multicast groups, or auto")
         ->check(CLI::IsMember(channels));
+    const std::map<std::string, launcher::AgentDds> agent_dds = {
+        {"fastdds", launcher::AgentDds::kFastDds},
+        {"cyclonedds", launcher::AgentDds::kCycloneDds},
+        {"half", launcher::AgentDds::kHalf}};
+    run_command
+        ->add_option("--agent-dds", run.agent_dds, "Whose DDS the agents speak (groups channel)")
+        ->transform(CLI::CheckedTransformer(agent_dds));
     run_command
         ->add_option("--fault", run.fault,
                      "A bad network for what planner and robots receive, like\n"
@@ -151,6 +168,9 @@ int main(int argc, char** argv) {
     if (*done) return **done;
     shell::catch_stop_signals();
     run.channel = channels.at(channel);
+    if (!processes.empty()) {
+      run.processes = processes == "auto" ? 0U : static_cast<std::uint32_t>(std::stoul(processes));
+    }
     if (run_command->parsed()) return launcher::run_mission(run);
     soak.channel = channels.at(soak_channel);
     if (soak_command->parsed()) return launcher::soak(soak);

@@ -2,27 +2,48 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "swarm_launcher/run.hpp"
 
+#include <algorithm>
 #include <cstdio>
+#include <thread>
 #include <utility>
+
+#include <unistd.h>
 
 #include "swarm_core/mission/mission_file.hpp"
 #include "swarm_launcher/child_process.hpp"
 #include "swarm_launcher/flight.hpp"
+#include "swarm_launcher/packing.hpp"
 
 namespace swarm::launcher {
+namespace {
+
+Machine this_machine() {
+  const auto pages = static_cast<std::uint64_t>(std::max(0L, ::sysconf(_SC_PHYS_PAGES)));
+  const auto page_bytes = static_cast<std::uint64_t>(std::max(0L, ::sysconf(_SC_PAGESIZE)));
+  return {.cores = std::thread::hardware_concurrency(), .memory_mb = pages * page_bytes >> 20U};
+}
+
+}  // namespace
 
 Result<ExitCode> run_mission(const RunOptions& options) {
   become_urgent();
   auto mission = load_mission(options.mission_file);
   if (!mission) return tl::unexpected(mission.error());
   if (options.robots) mission->robots.count = *options.robots;
+  const std::uint32_t robots = mission->robots.count;
+  std::uint32_t per_process = options.per_process;
+  if (options.processes) {
+    per_process = *options.processes > 0 ? (robots + *options.processes - 1) / *options.processes
+                                         : robots_per_process(robots, this_machine());
+  }
   const auto flight = Flight::make({.mission = std::move(*mission),
-                                    .per_process = options.per_process,
+                                    .per_process = per_process,
                                     .seed = options.seed,
                                     .fault = options.fault,
                                     .out = options.out,
                                     .domain = options.domain,
-                                    .channel = options.channel});
+                                    .channel = options.channel,
+                                    .agent_dds = options.agent_dds});
   if (!flight) return tl::unexpected(flight.error());
   std::fprintf(stderr, "run directory: %s\n", (*flight)->dir().c_str());
   const auto measured = (*flight)->fly();

@@ -8,19 +8,22 @@
 
 #include "swarm_core/base/result.hpp"
 #include "swarm_core/mission/channel.hpp"
+#include "swarm_launcher/agent_dds.hpp"
 
 namespace swarm::launcher {
 
 struct RunOptions {
   std::filesystem::path mission_file;
-  std::optional<std::uint32_t> robots;  ///< instead of the mission's
-  std::uint32_t per_process = 1;
+  std::optional<std::uint32_t> robots;       ///< instead of the mission's
+  std::uint32_t per_process = 1;             ///< robots, unless …
+  std::optional<std::uint32_t> processes{};  ///< of agents; 0: as the machine can take
   std::uint64_t seed = 1;
   std::string fault;          ///< as parse_link_faults() reads it
   std::filesystem::path out;  ///< run directory; empty: runs/<mission>-<time>
   bool json = false;
   int domain = -1;                 ///< DDS domain; negative: a free one
   std::optional<Channel> channel;  ///< empty: choose_channel() decides
+  AgentDds agent_dds = AgentDds::kFastDds;
 };
 
 /// `swarm_launcher run`: the whole mission with real processes, from planning to the audited

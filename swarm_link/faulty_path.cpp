@@ -27,7 +27,8 @@ void FaultyPath::hand_due(int fd, UtcTime now, DatagramSink& sink) {
   for (auto late = late_.begin(); late != end; ++late) {
     if (late->fd == fd) sink.datagram(late->bytes, late->sender);
   }
-  late_.erase(std::remove_if(late_.begin(), end, [&](const Late& l) { return l.fd == fd; }), end);
+  const auto done = [&](const Late& l) { return l.fd == fd || now - l.due > kAbandoned; };
+  late_.erase(std::remove_if(late_.begin(), end, done), end);
 }
 
 }  // namespace swarm::link

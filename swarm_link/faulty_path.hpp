@@ -43,6 +43,8 @@ class FaultyPath {
  private:
   /// More are lost, like in a router: a second of what the busiest process hears.
   static constexpr std::size_t kMostKept = 8192;
+  /// What nobody fetches for so long was for a socket that is closed.
+  static constexpr Duration kAbandoned = std::chrono::seconds(5);
 
   struct Late {
     UtcTime due;

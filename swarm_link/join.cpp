@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "swarm_link/cyclone/cyclone_participant.hpp"
 #include "swarm_link/hub.hpp"
 
 namespace swarm::link {
@@ -76,12 +77,26 @@ Result<std::unique_ptr<Participant>> join_as_planner(const Meeting& meeting,
 }
 
 Result<std::unique_ptr<Participant>> join_as_agent(const Meeting& meeting, std::uint32_t number,
-                                                   const std::string& name) {
-  FastDdsOptions options = member(meeting, name, agent_index(meeting, number));
+                                                   const std::string& name, Vendor vendor) {
+  std::vector<std::uint32_t> hubs;
   if (meeting.hubs > 0) {
     const std::uint32_t hub = number % meeting.hubs;
-    options.star = Star{.peers = {launcher_index(hub), planner_index(meeting, hub)}};
+    hubs = {launcher_index(hub), planner_index(meeting, hub)};
   }
+  if (vendor == Vendor::kCycloneDds) {
+    if (hubs.empty()) {
+      return fail(ErrorCode::kBadInput,
+                  "--dds cyclonedds: a discovery server of Fast DDS is not for Cyclone DDS; use "
+                  "--channel groups, whose processes meet without one");
+    }
+    CycloneOptions options{.name = name, .domain = meeting.domain};
+    for (const std::uint32_t hub : hubs) {
+      options.peer_ports.push_back(announcement_port(meeting.domain, hub));
+    }
+    return make_cyclone_participant(options);
+  }
+  FastDdsOptions options = member(meeting, name, agent_index(meeting, number));
+  if (!hubs.empty()) options.star = Star{.peers = std::move(hubs)};
   return make_checked(options);
 }
 

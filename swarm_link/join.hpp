@@ -8,6 +8,7 @@
 
 #include "swarm_link/fastdds/fastdds_participant.hpp"
 #include "swarm_link/port.hpp"
+#include "swarm_link/vendor.hpp"
 
 /// How the processes of a run come to know each other.
 namespace swarm::link {
@@ -35,8 +36,10 @@ Result<std::unique_ptr<Participant>> join_as_launcher(const Meeting& meeting);
 Result<std::unique_ptr<Participant>> join_as_planner(const Meeting& meeting,
                                                      std::uint32_t ownership_strength);
 
-/// The `number`th agent process, counted from 0.
+/// The `number`th agent process, counted from 0. Cyclone DDS knows no discovery server of the other
+/// vendor: it joins a star, and hears without faults.
 Result<std::unique_ptr<Participant>> join_as_agent(const Meeting& meeting, std::uint32_t number,
-                                                   const std::string& name);
+                                                   const std::string& name,
+                                                   Vendor vendor = Vendor::kFastDds);
 
 }  // namespace swarm::link

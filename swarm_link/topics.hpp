@@ -3,6 +3,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 #include <string>
 
 #include "swarm_link/cell.hpp"
@@ -61,8 +62,12 @@ inline Topic<HeartbeatMessage> heartbeat_topic() {
   return {"swarm/heartbeat", {.reliability = Reliability::kBestEffort, .depth = 1}};
 }
 
+/// `swarm/cell/3_m2` is the cell (3, −2): not every vendor takes a minus in a name.
 inline Topic<CellStatesMessage> cell_topic(Cell cell) {
-  return {"swarm/cell/" + std::to_string(cell.x) + "_" + std::to_string(cell.y),
+  const auto number = [](std::int32_t n) {
+    return n < 0 ? "m" + std::to_string(-static_cast<std::int64_t>(n)) : std::to_string(n);
+  };
+  return {"swarm/cell/" + number(cell.x) + "_" + number(cell.y),
           {.reliability = Reliability::kBestEffort, .depth = 64, .crowd = true}};
 }
 

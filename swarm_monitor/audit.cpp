@@ -119,6 +119,8 @@ void count_robots(const RecordedRun& run, Audit& audit) {
   std::set<std::uint32_t> processes;
   std::uint64_t steps = 0;
   std::uint64_t late = 0;
+  std::uint64_t states_sent = 0;
+  double recorded_s = 0.0;
   std::vector<double> stop_ms;
   Histogram age;
   audit.robots = static_cast<std::uint32_t>(run.tracks.size());
@@ -136,12 +138,17 @@ void count_robots(const RecordedRun& run, Audit& audit) {
     processes.insert(track.processes.begin(), track.processes.end());
     steps += track.points.size();
     late += track.late_steps;
+    states_sent += track.states_sent;
+    if (!track.points.empty()) {
+      recorded_s += track.points.back().time_s - track.points.front().time_s;
+    }
     age.merge(track.state_age);
     audit.refused_messages += track.refused;
     audit.damaged_records += track.damaged;
   }
   audit.processes = static_cast<std::uint32_t>(processes.size());
   if (steps > 0) audit.deadline_miss_ratio = static_cast<double>(late) / static_cast<double>(steps);
+  if (recorded_s > 0.0) audit.states_hz = static_cast<double>(states_sent) / recorded_s;
   if (!stop_ms.empty()) {
     std::sort(stop_ms.begin(), stop_ms.end());
     const auto quantile = [&](double q) {

@@ -55,6 +55,7 @@ struct Audit {
   std::optional<double> mission_s;  ///< first step in motion to the last arrival, else to the end
   std::optional<StateAge> state_age;
   std::optional<BeliefError> belief;
+  std::optional<double> states_hz;   ///< states that a robot says, on average over the run
   std::optional<StopLatency> stop;   ///< empty if nobody was stopped
   double deadline_miss_ratio = 0.0;  ///< share of control steps that began over 20 ms late
   std::uint64_t refused_messages = 0;

@@ -57,6 +57,7 @@ std::string to_json(const Audit& audit) {
                      {"mission_s", number(audit.mission_s)},
                      {"state_age_ms", age},
                      {"belief_error_cm", belief},
+                     {"states_hz", number(audit.states_hz)},
                      {"stop_latency_ms", stop},
                      {"deadline_miss_ratio", audit.deadline_miss_ratio},
                      {"refused_messages", audit.refused_messages},
@@ -100,6 +101,10 @@ std::string to_text(const Audit& audit) {
   if (audit.belief) {
     text += fmt::format("  belief error     {:.1f} cm (p50), {:.1f} (p99), {:.1f} (max)\n",
                         audit.belief->p50_cm, audit.belief->p99_cm, audit.belief->max_cm);
+  }
+  if (audit.states_hz) {
+    text +=
+        fmt::format("  states           {:.2f} a second said by each robot\n", *audit.states_hz);
   }
   text += fmt::format("  late steps       {:.3f} %, refused messages {}\n",
                       100.0 * audit.deadline_miss_ratio, audit.refused_messages);

@@ -92,6 +92,7 @@ void TrackMaker::take(const blackbox::Note& note) {
 
 void TrackMaker::close_life() {
   track_.state_age.merge(life_.state_age);
+  track_.states_sent += life_.states_sent;
   track_.refused += std::accumulate(life_.refused.begin(), life_.refused.end(), std::uint64_t{0});
   life_ = {};
 }

@@ -40,9 +40,10 @@ struct Track {
   bool ended_gracefully = false;           ///< the last life noted "exit"
   std::string unreadable{};                ///< why there is no black box; empty if there is one
   std::uint64_t damaged = 0;  ///< stretches of the file that are no record, and steps back in time
-  std::uint64_t late_steps = 0;  ///< later than kLate_us
-  std::uint64_t refused = 0;     ///< messages, over all lives
-  Histogram state_age{};         ///< over all lives
+  std::uint64_t late_steps = 0;   ///< later than kLate_us
+  std::uint64_t refused = 0;      ///< messages, over all lives
+  Histogram state_age{};          ///< over all lives
+  std::uint64_t states_sent = 0;  ///< over all lives
   std::vector<blackbox::Note> notes{};
 
   static constexpr std::int32_t kLate_us = 20'000;

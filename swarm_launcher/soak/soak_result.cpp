@@ -136,6 +136,7 @@ std::string to_json(const SoakResult& result, const std::vector<std::string>& co
                      {"collisions", result.collisions},
                      {"cpu_s", result.cpu_s},
                      {"rss_mb", to_json(rss)},
+                     {"rss_worst_mb", growth_of(m.samples, &SoakSample::rss_max_mb).max},
                      {"rss_growth_pct", rss.percent()},
                      {"threads", to_json(growth_of(m.samples, &SoakSample::threads))},
                      {"open_files", to_json(growth_of(m.samples, &SoakSample::open_files))},

@@ -28,6 +28,9 @@ struct Star {
   std::vector<std::uint32_t> peers{};  ///< indices of the hubs to announce itself to
 };
 
+/// Where a hub of this index listens for announcements, at 127.0.0.1.
+std::uint16_t announcement_port(std::uint32_t domain, std::uint32_t index);
+
 struct FastDdsOptions {
   std::string name;  ///< participant name, seen in DDS tools
   std::uint32_t domain = 0;

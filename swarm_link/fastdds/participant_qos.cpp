@@ -20,10 +20,6 @@ namespace rtps = eprosima::fastrtps::rtps;
 
 namespace {
 
-std::uint16_t metatraffic_port(std::uint32_t domain, std::uint32_t index) {
-  return static_cast<std::uint16_t>(7410 + 250 * domain + 2 * index);
-}
-
 rtps::Locator_t loopback(std::uint16_t port) {
   rtps::Locator_t locator;
   locator.kind = LOCATOR_KIND_UDPv4;
@@ -67,6 +63,10 @@ void announce_to(const Star& star, std::uint32_t domain, rtps::BuiltinAttributes
 }
 
 }  // namespace
+
+std::uint16_t metatraffic_port(std::uint32_t domain, std::uint32_t index) {
+  return static_cast<std::uint16_t>(7410 + 250 * domain + 2 * index);
+}
 
 Result<Ports> first_ports(std::uint32_t domain, std::uint32_t index) {
   const std::uint64_t metatraffic = 7410 + 250ULL * domain + 2ULL * index;

@@ -1,7 +1,7 @@
 #!/bin/sh
 # The figures of docs/BENCHMARKS.md that need a hundred processes and real faults: too long for the test suite.
 # One JSON-ish line a case on stdout. About half an hour.   tests/bench/must_hold.sh [CASE …]
-#   cases: plan seeds more replan lost planner stop interrupt      (default: all)
+#   cases: plan seeds more replan lost planner stop interrupt restarts      (default: all)
 set -eu
 root=$(cd "$(dirname "$0")/../.." && pwd)
 bin=${SWARM_BIN:-$root/build/release/bin}
@@ -13,7 +13,7 @@ echo "runs in $out" >&2
 report() {
   printf '%s exit=%s ' "$1" "$2"
   tr -d '\n' <"$out/$1/summary.json" | tr -s ' ' |
-    grep -oE '"(outcome|arrived|lost|collisions_robot|collisions_obstacle|min_robot_gap_m|path_ratio|mission_s|stop_latency_ms|deadline_miss_ratio|discovery_s|plan_ms|cpu_s)": ([^,[{]+|\[[^]]*\]|\{[^}]*\})' |
+    grep -oE '"(outcome|arrived|lost|collisions_robot|collisions_obstacle|min_robot_gap_m|path_ratio|mission_s|stop_latency_ms|belief_error_cm|states_hz|deadline_miss_ratio|discovery_s|plan_ms|cpu_s)": ([^,[{]+|\[[^]]*\]|\{[^}]*\})' |
     tr '\n' ' '
   echo
 }
@@ -44,7 +44,7 @@ finish() {
 
 children() { pgrep -P "$launcher" -x "$1"; }
 
-for case in ${*:-plan seeds more replan lost planner stop interrupt}; do
+for case in ${*:-plan seeds more replan lost planner stop interrupt restarts}; do
   case $case in
     plan) "$bin/swarm_launcher" plan "$mission" --repeat 31 ;;
     seeds) for seed in 1 2 3 4 5; do fly "seed$seed" --seed "$seed"; done ;;
@@ -86,6 +86,23 @@ for case in ${*:-plan seeds more replan lost planner stop interrupt}; do
         echo "interrupt after ${after} s: gone in $((($(date +%s%N) - begin) / 1000000)) ms, exit=$code," \
           "left=$left, $(grep -o '"outcome": "[a-z_]*"' "$out/interrupt$after/summary.json")"
       done
+      ;;
+    restarts) # planner and agents killed one by one, every one of them comes back
+      { cat "$mission" && printf 'launcher:\n  respawn_agent_max: 3\n  respawn_planner_max: 9\n'; } >"$out/restarts.yaml"
+      mission=$out/restarts.yaml start restarts 20
+      for robot in 11 31 51 71 91; do
+        children planner_service | xargs kill -9
+        sleep 8
+        children robot_agent | sed -n "${robot}p" | xargs kill -9
+        sleep 8
+      done
+      finish restarts
+      awk '{ match($0, /[0-9]+/); t = substr($0, RSTART, RLENGTH) / 1e9 }
+        /"(agent|planner)-exit"/ { exits++; gone = t }
+        /"planner-silent"/ { silent++ }
+        /"planner-heard"/ && gone && t - gone < 8 && t - gone > back { back = t - gone }
+        END { printf "restarts: %d, back after %.2f s at most, robots that missed the planner: %d\n", exits, back, silent }' \
+        "$out/restarts/events.jsonl"
       ;;
     *)
       echo "unknown case $case" >&2

@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "swarm_core/base/assert.hpp"
+#include "swarm_link/cyclone/cyclone_participant.hpp"
 #include "swarm_link/groups/group_channel.hpp"
 #include "swarm_link/inproc/inproc_bus.hpp"
 
@@ -75,6 +76,16 @@ class TestStarBus final : public Bus {
   std::uint32_t next_index_ = 0;
 };
 
+class TestCycloneBus final : public Bus {
+ private:
+  std::unique_ptr<Participant> make(std::uint32_t ownership_strength) override {
+    auto made = make_cyclone_participant(
+        {.name = "conformance", .domain = test_domain(), .ownership_strength = ownership_strength});
+    SWARM_ASSERT(made.has_value());
+    return *std::move(made);
+  }
+};
+
 /// Has no topics: nothing but groups.
 class TestGroupBus final : public Bus {
  public:
@@ -135,7 +146,8 @@ const std::vector<Back>& backs() {
       {"inproc", [] { return make_inproc_bus(); }},
       {"fastdds_at_tick", [] { return make_fastdds_bus(true); }},
       {"fastdds_threads", [] { return make_fastdds_bus(false); }},
-      {"fastdds_star", []() -> std::unique_ptr<Bus> { return std::make_unique<TestStarBus>(); }}};
+      {"fastdds_star", []() -> std::unique_ptr<Bus> { return std::make_unique<TestStarBus>(); }},
+      {"cyclone", []() -> std::unique_ptr<Bus> { return std::make_unique<TestCycloneBus>(); }}};
   return all;
 }
 

@@ -22,7 +22,10 @@ bool is_source(const fs::path& file) {
 }
 
 bool may_include_vendor(const std::string& file) {
-  if (file == "swarm_link/fastdds/fastdds_participant.hpp") return false;  // its public face
+  if (file == "swarm_link/fastdds/fastdds_participant.hpp" ||
+      file == "swarm_link/cyclone/cyclone_participant.hpp") {
+    return false;  // their public faces
+  }
   return file.starts_with("swarm_link/fastdds/") || file.starts_with("swarm_link/cyclone/") ||
          file.starts_with("tests/conformance/hostile/");
 }

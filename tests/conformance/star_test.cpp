@@ -27,14 +27,14 @@ struct AgentSeat {
   std::vector<CommandMessage> heard_commands;
 };
 
-struct StarRun : testing::Test {
+struct StarRun : testing::TestWithParam<Vendor> {
   StarRun() {
     statuses = launcher->make_reader(status_topic()).value();
     commands = launcher->make_writer(command_topic()).value();
     start_planner(1);
     for (std::uint32_t i = 0; i < kAgents; ++i) {
       AgentSeat& agent = agents.emplace_back();
-      agent.participant = join_as_agent(meeting, i, "agent").value();
+      agent.participant = join_as_agent(meeting, i, "agent", GetParam()).value();
       agent.plans = agent.participant->make_reader(plan_topic()).value();
       agent.commands = agent.participant->make_reader(command_topic()).value();
       agent.status = agent.participant->make_writer(status_topic()).value();
@@ -96,7 +96,12 @@ struct StarRun : testing::Test {
   std::vector<CommandMessage> planner_heard;
 };
 
-TEST_F(StarRun, EveryoneHearsPlannerAndLauncherAndNobodyElse) {
+INSTANTIATE_TEST_SUITE_P(Agents, StarRun, testing::Values(Vendor::kFastDds, Vendor::kCycloneDds),
+                         [](const auto& vendor) {
+                           return vendor.param == Vendor::kFastDds ? "FastDds" : "CycloneDds";
+                         });
+
+TEST_P(StarRun, EveryoneHearsPlannerAndLauncherAndNobodyElse) {
   Rng rng(1);
   PlanMessage plan = plan_of_size(rng, 2000, 4000);  // 160 kB
   plan.version = 1;
@@ -118,7 +123,7 @@ TEST_F(StarRun, EveryoneHearsPlannerAndLauncherAndNobodyElse) {
   EXPECT_EQ(commands->matched(), static_cast<int>(kAgents) + 1);
 }
 
-TEST_F(StarRun, LauncherAndPlannerHearEveryAgent) {
+TEST_P(StarRun, LauncherAndPlannerHearEveryAgent) {
   // Volatile: what is said before both sides have found each other is lost.
   ASSERT_TRUE(eventually([&] {
     return statuses->matched() == static_cast<int>(kAgents) &&
@@ -132,7 +137,7 @@ TEST_F(StarRun, LauncherAndPlannerHearEveryAgent) {
   EXPECT_TRUE(eventually([&] { return seen_statuses.size() == kAgents; }));
 }
 
-TEST_F(StarRun, AgentsFindAPlannerThatCameBack) {
+TEST_P(StarRun, AgentsFindAPlannerThatCameBack) {
   plans->write({.version = 1});
   commands->write({.command_id = 5});
   ASSERT_TRUE(all_have_plan(1));
@@ -145,7 +150,7 @@ TEST_F(StarRun, AgentsFindAPlannerThatCameBack) {
   EXPECT_TRUE(eventually([&] { return !planner_heard.empty(); }));  // the command it missed
 }
 
-TEST_F(StarRun, RefusesAHubWhosePortIsTaken) {
+TEST_P(StarRun, RefusesAHubWhosePortIsTaken) {
   const auto second = join_as_planner(meeting, 1);
 
   ASSERT_FALSE(second);

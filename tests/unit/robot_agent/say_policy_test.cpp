@@ -20,6 +20,16 @@ TEST(SayPolicy, StaysSilentWhileOthersExtrapolateRight) {
   EXPECT_TRUE(sut.must_say(at(400), {0.4, 0.06}, {1, 0}, 10.0));
 }
 
+TEST(SayPolicy, SpeaksBeforeATurnTakesItAway) {
+  SayOptions looks_ahead = options();
+  looks_ahead.period = milliseconds(100);
+  SayPolicy sut(looks_ahead);
+  sut.said(at(0), {0, 0}, {1, 0});
+
+  EXPECT_FALSE(sut.must_say(at(100), {0.1, 0}, {1, 0.4}, 10.0));  // 4 cm until it can speak again
+  EXPECT_TRUE(sut.must_say(at(100), {0.1, 0}, {1, 0.6}, 10.0));
+}
+
 TEST(SayPolicy, SpeaksAtLeastEveryInterval) {
   SayPolicy sut(options());
   sut.said(at(0), {0, 0}, {0, 0});

@@ -51,6 +51,16 @@ TEST(FaultyPath, KeepsSocketsApart) {
   EXPECT_EQ(heard.numbers, std::vector({2, 1, 3}));
 }
 
+TEST(FaultyPath, ForgetsWhatIsForAClosedSocket) {
+  FaultyPath path({.faults = {.delay = milliseconds(10)}, .run_began = kBegan});
+  Heard heard;
+  receive(path, 3, 1, kBegan);
+
+  path.hand_due(4, kBegan + seconds(6), heard);
+  path.hand_due(3, kBegan + seconds(6), heard);
+  EXPECT_TRUE(heard.numbers.empty());
+}
+
 TEST(FaultyPath, IsBadOnlyWhenItIsToBe) {
   FaultyPath path(
       {.faults = {.loss = 1.0, .from = seconds(10), .until = seconds(20)}, .run_began = kBegan});

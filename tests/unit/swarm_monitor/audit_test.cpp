@@ -211,6 +211,17 @@ TEST(Audit, SurvivesADamagedBlackBox) {
   EXPECT_TRUE(audit.ok());
 }
 
+TEST(Audit, SaysHowMuchRobotsSay) {
+  SyntheticRun files(2);
+  files.write(0, {.positions_m = straight({5, 5}, {12, 5}, 100), .states_sent = 20});
+  files.write(1, {.positions_m = straight({5, 15}, {12, 15}, 100), .states_sent = 30});
+
+  const Audit audit = audit_of(files);
+
+  ASSERT_TRUE(audit.states_hz);
+  EXPECT_NEAR(*audit.states_hz, 2.5, 1e-9);  // 50 in twice 10 s
+}
+
 TEST(Audit, IsADocumentWithEveryKey) {
   SyntheticRun files(1);
   files.write(0, {.positions_m = straight({5, 5}, {12, 5}, 100), .graceful = false});
@@ -223,7 +234,7 @@ TEST(Audit, IsADocumentWithEveryKey) {
                           "stop_latency_ms", "state_age_ms", "belief_error_cm", "plan_ms"}) {
     EXPECT_TRUE(json.at(key).is_null()) << key;
   }
-  EXPECT_EQ(json.size(), 26U);
+  EXPECT_EQ(json.size(), 27U);
 }
 
 }  // namespace

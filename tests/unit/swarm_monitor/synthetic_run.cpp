@@ -76,7 +76,8 @@ void SyntheticRun::write(std::uint32_t robot, const Life& life) const {
                                   .mode = static_cast<std::uint8_t>(mode),
                                   .goal = life.goal});
   }
-  blackbox::LinkStats stats{.stamp = at_s(now_s), .refused = life.refused};
+  blackbox::LinkStats stats{
+      .stamp = at_s(now_s), .states_sent = life.states_sent, .refused = life.refused};
   for (const std::int64_t age : life.ages_us) stats.state_age.add(age);
   writer->append(stats);
   if (life.graceful) {

@@ -33,6 +33,7 @@ class SyntheticRun {
     std::int32_t lateness_us = 100;
     std::vector<std::uint32_t> refused{};
     std::vector<std::int64_t> ages_us{};
+    std::uint32_t states_sent = 0;
     std::size_t moves_from = 0;                             ///< waits before this step
     std::size_t arrives_at = static_cast<std::size_t>(-1);  ///< step; default: the last
   };

@@ -1,0 +1,12 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+namespace swarm::launcher {
+
+/// Whose DDS the agents speak; launcher and planner speak Fast DDS.
+enum class AgentDds : std::uint8_t { kFastDds, kCycloneDds, kHalf /* every other one Cyclone's */ };
+
+}  // namespace swarm::launcher

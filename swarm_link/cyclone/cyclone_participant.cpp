@@ -1,0 +1,289 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "swarm_link/cyclone/cyclone_participant.hpp"
+
+#include <array>
+#include <map>
+#include <mutex>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "swarm_link/cyclone/conversion.hpp"
+#include "swarm_link/wire_bounds.hpp"
+
+namespace swarm::link {
+namespace cyclone {
+namespace {
+
+// By default Cyclone does not use multicast on the loopback interface and counts participants up to
+// 10: the eleventh process would fail. Without an index there is no such limit. Who knows a few
+// peers says often that it is there, since that is how it finds one that was restarted.
+std::string config_of(const CycloneOptions& options) {
+  std::string discovery = "<ParticipantIndex>none</ParticipantIndex>";
+  if (!options.peer_ports.empty()) {
+    discovery += "<SPDPInterval>1.5 s</SPDPInterval><Peers>";
+    for (const std::uint16_t port : options.peer_ports) {
+      discovery += fmt::format("<Peer address=\"127.0.0.1:{}\"/>", port);
+    }
+    discovery += "</Peers>";
+  }
+  return fmt::format(
+      "<CycloneDDS><Domain><General><Interfaces><NetworkInterface name=\"lo\" multicast=\"true\"/>"
+      "</Interfaces><AllowMulticast>{}</AllowMulticast></General><Discovery>{}</Discovery>"
+      "</Domain></CycloneDDS>",
+      options.peer_ports.empty(), discovery);
+}
+
+constexpr dds_duration_t kMaxBlocking = DDS_MSECS(100);
+
+/// Deletes an entity, and with it all that belongs to it.
+class Entity {
+ public:
+  explicit Entity(dds_entity_t handle = 0) : handle_(handle) {}
+  ~Entity() {
+    if (handle_ > 0) dds_delete(handle_);
+  }
+  Entity(Entity&& other) noexcept : handle_(std::exchange(other.handle_, 0)) {}
+  Entity& operator=(Entity&& other) noexcept {
+    std::swap(handle_, other.handle_);
+    return *this;
+  }
+  dds_entity_t get() const { return handle_; }
+
+ private:
+  dds_entity_t handle_;
+};
+
+struct QosDeleter {
+  void operator()(dds_qos_t* qos) const { dds_delete_qos(qos); }
+};
+using QosPtr = std::unique_ptr<dds_qos_t, QosDeleter>;
+
+/// A domain is configured once in a process, by whoever needs it first.
+std::shared_ptr<Entity> domain_of(const CycloneOptions& options) {
+  static std::mutex mutex;
+  static std::map<std::uint32_t, std::weak_ptr<Entity>> domains;
+  const std::lock_guard lock(mutex);
+  auto domain = domains[options.domain].lock();
+  if (!domain) {
+    domain =
+        std::make_shared<Entity>(dds_create_domain(options.domain, config_of(options).c_str()));
+    domains[options.domain] = domain;
+  }
+  return domain;
+}
+
+QosPtr translate(const Qos& qos, std::uint32_t ownership_strength) {
+  QosPtr out(dds_create_qos());
+  dds_qset_reliability(out.get(),
+                       qos.reliability == Reliability::kReliable ? DDS_RELIABILITY_RELIABLE
+                                                                 : DDS_RELIABILITY_BEST_EFFORT,
+                       kMaxBlocking);
+  dds_qset_durability(out.get(), qos.durability == Durability::kTransientLocal
+                                     ? DDS_DURABILITY_TRANSIENT_LOCAL
+                                     : DDS_DURABILITY_VOLATILE);
+  dds_qset_history(out.get(), DDS_HISTORY_KEEP_LAST, qos.depth);
+  dds_qset_durability_service(out.get(), 0, DDS_HISTORY_KEEP_LAST, qos.depth, DDS_LENGTH_UNLIMITED,
+                              DDS_LENGTH_UNLIMITED, DDS_LENGTH_UNLIMITED);
+  if (qos.ownership == Ownership::kExclusive) {
+    dds_qset_ownership(out.get(), DDS_OWNERSHIP_EXCLUSIVE);
+    dds_qset_ownership_strength(out.get(), static_cast<std::int32_t>(ownership_strength));
+  } else {
+    dds_qset_ownership(out.get(), DDS_OWNERSHIP_SHARED);
+  }
+  return out;
+}
+
+template <class M>
+class CycloneWriter final : public Writer<M> {
+ public:
+  CycloneWriter(Entity topic, Entity writer)
+      : topic_(std::move(topic)), writer_(std::move(writer)) {}
+
+  bool write(const M& message) override {
+    if (!fits_wire(message)) return false;
+    return dds_write(writer_.get(), &fill(message)) == DDS_RETCODE_OK;
+  }
+
+  int matched() const override {
+    dds_publication_matched_status_t status{};
+    dds_get_publication_matched_status(writer_.get(), &status);
+    return static_cast<int>(status.current_count);
+  }
+
+ private:
+  const typename Wire<M>::Type& fill(const M& message) {
+    if constexpr (std::is_same_v<M, EventMessage>) {
+      EventMessage cut = message;
+      cut_strings(cut);
+      return wire_.fill(cut);
+    } else {
+      return wire_.fill(message);
+    }
+  }
+
+  Entity topic_;  // outlives the writer: members go in reverse order
+  Entity writer_;
+  Wire<M> wire_;
+};
+
+template <class M>
+class CycloneReader final : public Reader<M> {
+ public:
+  CycloneReader(Entity topic, Entity reader)
+      : topic_(std::move(topic)), reader_(std::move(reader)) {}
+
+  std::size_t take(std::vector<M>& out) override {
+    constexpr std::size_t kAtOnce = 64;
+    const std::size_t before = out.size();
+    std::array<void*, kAtOnce> samples;
+    std::array<dds_sample_info_t, kAtOnce> infos;
+    for (;;) {
+      samples[0] = nullptr;  // lend us yours
+      const dds_return_t taken =
+          dds_take(reader_.get(), samples.data(), infos.data(), kAtOnce, kAtOnce);
+      if (taken <= 0) break;
+      for (std::size_t i = 0; i < static_cast<std::size_t>(taken); ++i) {
+        if (!infos[i].valid_data) continue;  // a writer went away
+        Wire<M>::read(*static_cast<const typename Wire<M>::Type*>(samples[i]), out.emplace_back());
+      }
+      dds_return_loan(reader_.get(), samples.data(), taken);
+    }
+    return out.size() - before;
+  }
+
+  int matched() const override {
+    dds_subscription_matched_status_t status{};
+    dds_get_subscription_matched_status(reader_.get(), &status);
+    return static_cast<int>(status.current_count);
+  }
+
+  std::uint64_t undecodable() const override { return 0; }
+
+ private:
+  Entity topic_;
+  Entity reader_;
+};
+
+class CycloneParticipant final : public Participant {
+ public:
+  CycloneParticipant(CycloneOptions options, std::shared_ptr<Entity> domain, Entity participant)
+      : options_(std::move(options)),
+        domain_(std::move(domain)),
+        participant_(std::move(participant)) {}
+
+  Result<WriterPtr<PlanMessage>> make_writer(const Topic<PlanMessage>& t) override {
+    return writer(t);
+  }
+  Result<WriterPtr<SceneMessage>> make_writer(const Topic<SceneMessage>& t) override {
+    return writer(t);
+  }
+  Result<WriterPtr<HeartbeatMessage>> make_writer(const Topic<HeartbeatMessage>& t) override {
+    return writer(t);
+  }
+  Result<WriterPtr<CellStatesMessage>> make_writer(const Topic<CellStatesMessage>& t) override {
+    return writer(t);
+  }
+  Result<WriterPtr<CommandMessage>> make_writer(const Topic<CommandMessage>& t) override {
+    return writer(t);
+  }
+  Result<WriterPtr<StatusMessage>> make_writer(const Topic<StatusMessage>& t) override {
+    return writer(t);
+  }
+  Result<WriterPtr<EventMessage>> make_writer(const Topic<EventMessage>& t) override {
+    return writer(t);
+  }
+  Result<ReaderPtr<PlanMessage>> make_reader(const Topic<PlanMessage>& t) override {
+    return reader(t);
+  }
+  Result<ReaderPtr<SceneMessage>> make_reader(const Topic<SceneMessage>& t) override {
+    return reader(t);
+  }
+  Result<ReaderPtr<HeartbeatMessage>> make_reader(const Topic<HeartbeatMessage>& t) override {
+    return reader(t);
+  }
+  Result<ReaderPtr<CellStatesMessage>> make_reader(const Topic<CellStatesMessage>& t) override {
+    return reader(t);
+  }
+  Result<ReaderPtr<CommandMessage>> make_reader(const Topic<CommandMessage>& t) override {
+    return reader(t);
+  }
+  Result<ReaderPtr<StatusMessage>> make_reader(const Topic<StatusMessage>& t) override {
+    return reader(t);
+  }
+  Result<ReaderPtr<EventMessage>> make_reader(const Topic<EventMessage>& t) override {
+    return reader(t);
+  }
+
+  void receive() override {}  // the vendor's threads do
+
+  Result<void> self_check() const override { return {}; }  // nothing fails in silence here
+
+ private:
+  template <class M>
+  Result<Entity> topic(const Topic<M>& t) const {
+    // Without QoS: what its readers and writers say counts, and a topic must not be made twice with
+    // different ones.
+    Entity made(dds_create_topic(participant_.get(), Wire<M>::descriptor(), t.name.c_str(), nullptr,
+                                 nullptr));
+    if (made.get() < 0) return refused("topic", t.name, made.get());
+    return made;
+  }
+
+  template <class M>
+  Result<WriterPtr<M>> writer(const Topic<M>& t) {
+    auto made_topic = topic(t);
+    if (!made_topic) return tl::unexpected(made_topic.error());
+    const QosPtr qos = translate(t.qos, options_.ownership_strength);
+    Entity made(dds_create_writer(participant_.get(), made_topic->get(), qos.get(), nullptr));
+    if (made.get() < 0) return refused("writer", t.name, made.get());
+    return std::make_unique<CycloneWriter<M>>(std::move(*made_topic), std::move(made));
+  }
+
+  template <class M>
+  Result<ReaderPtr<M>> reader(const Topic<M>& t) {
+    auto made_topic = topic(t);
+    if (!made_topic) return tl::unexpected(made_topic.error());
+    const QosPtr qos = translate(t.qos, options_.ownership_strength);
+    Entity made(dds_create_reader(participant_.get(), made_topic->get(), qos.get(), nullptr));
+    if (made.get() < 0) return refused("reader", t.name, made.get());
+    return std::make_unique<CycloneReader<M>>(std::move(*made_topic), std::move(made));
+  }
+
+  tl::unexpected<Error> refused(const char* what, const std::string& topic,
+                                dds_return_t code) const {
+    return fail(ErrorCode::kEnvironment,
+                fmt::format("Cyclone DDS refused participant '{}' a {} of topic '{}': {}",
+                            options_.name, what, topic, dds_strretcode(code)));
+  }
+
+  CycloneOptions options_;
+  std::shared_ptr<Entity> domain_;
+  Entity participant_;
+};
+
+}  // namespace
+}  // namespace cyclone
+
+Result<std::unique_ptr<Participant>> make_cyclone_participant(const CycloneOptions& options) {
+  using namespace cyclone;
+  auto domain = domain_of(options);
+  if (domain->get() < 0) {
+    return fail(ErrorCode::kEnvironment,
+                fmt::format("Cyclone DDS refused domain {}: {}; is the loopback interface up?",
+                            options.domain, dds_strretcode(domain->get())));
+  }
+  const QosPtr qos(dds_create_qos());
+  dds_qset_entity_name(qos.get(), options.name.c_str());
+  Entity participant(dds_create_participant(options.domain, qos.get(), nullptr));
+  if (participant.get() < 0) {
+    return fail(ErrorCode::kEnvironment,
+                fmt::format("Cyclone DDS refused participant '{}' in domain {}: {}", options.name,
+                            options.domain, dds_strretcode(participant.get())));
+  }
+  return std::make_unique<CycloneParticipant>(options, std::move(domain), std::move(participant));
+}
+
+}  // namespace swarm::link

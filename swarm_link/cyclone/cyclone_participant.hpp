@@ -1,0 +1,30 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "swarm_core/base/result.hpp"
+#include "swarm_link/port.hpp"
+
+/// The Cyclone DDS back. No Cyclone header is needed to use it.
+namespace swarm::link {
+
+struct CycloneOptions {
+  std::string name;  ///< participant name, seen in DDS tools
+  std::uint32_t domain = 0;
+  std::uint32_t ownership_strength = 0;  ///< of exclusive writers
+  /// Ports on the loopback interface where others listen for announcements. It announces itself
+  /// there and nowhere else, so that it learns of them alone; empty: to all, by multicast.
+  std::vector<std::uint16_t> peer_ports{};
+};
+
+/// Joins a domain on the loopback interface. All participants of a process in a domain must have
+/// the same peers. Cyclone's own threads receive; take() hands over what they have. What does not
+/// decode is dropped by the vendor, uncounted.
+Result<std::unique_ptr<Participant>> make_cyclone_participant(const CycloneOptions& options);
+
+}  // namespace swarm::link
