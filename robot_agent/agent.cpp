@@ -175,6 +175,7 @@ Agent::Agent(const World& world, const AgentOptions& options)
       filter_(world, options.safety),
       say_(options.say),
       method_(make_method(options)),
+      moved_(options.underway),
       rng_(options.seed) {}
 
 void Agent::accept_plan(const FlowPlan& plan, const Vec2& position_m,

@@ -25,6 +25,7 @@ struct AgentOptions {
   RobotId robot;
   double share = 0.0;  ///< of the stratified draw, see stratified_share()
   std::uint64_t seed = 0;
+  bool underway = false;       ///< respawned: it may be anywhere along its way
   std::string method = "apf";  ///< of control
   RouteOptions route;
   ApfOptions apf;

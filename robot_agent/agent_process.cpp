@@ -172,7 +172,9 @@ Result<void> AgentProcess::Impl::make_robots(std::uint64_t seed) {
                                  .stamp = utc_now()});
     auto body = make_simulated_body(body_of(mission.robots, id), std::chrono::steady_clock::now(),
                                     *place, mix_seed(mix_seed(seed, id.value()), kBodySeed));
-    robots.emplace_back(world, agent_options(mission, id, seed), std::move(body), std::move(*box));
+    AgentOptions agent = agent_options(mission, id, seed);
+    agent.underway = *place != (*places)[id.value()];
+    robots.emplace_back(world, agent, std::move(body), std::move(*box));
   }
   return {};
 }

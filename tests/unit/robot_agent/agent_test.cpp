@@ -167,6 +167,20 @@ TEST(Agent, DoesNotGoBackToWhereItsGroupWasWhenItComesBackLate) {
   EXPECT_GT(least_x_m, 44.0);
 }
 
+TEST(Agent, DoesNotGoBackToItsStartWhenItIsRespawned) {
+  Swarm sut(1);
+  AgentOptions options = agent_options(sut.spec, RobotId(0), 1);
+  options.underway = true;
+  sut.agents.clear();
+  sut.agents.emplace_back(sut.spec.world, options);
+  sut.positions[0] = {37.5, 10};  // behind the block: in sight of the goal, not of the start
+  sut.agents[0].accept_plan(plan_over_the_block(), sut.positions[0]);
+
+  for (int i = 0; i < 300; ++i) sut.tick(MissionPhase::kRunning, true);
+
+  EXPECT_EQ(sut.outputs[0].mode, RobotMode::kArrived);
+}
+
 TEST(Agent, KeepsItsPlaceInTheGoalWhenItIsPlannedFromAnotherGroup) {
   Swarm sut(1);
   sut.positions[0] = {46.0, 10.0};
