@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "swarm_core/base/assert.hpp"
+#include "swarm_link/typed_participant.hpp"
 
 namespace swarm::link {
 namespace {
@@ -57,53 +58,10 @@ class HubReader final : public Reader<M> {
   std::vector<ReaderPtr<M>> readers_;
 };
 
-class Hub final : public Participant {
+class Hub final : public TypedParticipant<Hub> {
  public:
   explicit Hub(std::vector<std::unique_ptr<Participant>> participants)
       : participants_(std::move(participants)) {}
-
-  Result<WriterPtr<PlanMessage>> make_writer(const Topic<PlanMessage>& t) override {
-    return writer(t);
-  }
-  Result<WriterPtr<SceneMessage>> make_writer(const Topic<SceneMessage>& t) override {
-    return writer(t);
-  }
-  Result<WriterPtr<HeartbeatMessage>> make_writer(const Topic<HeartbeatMessage>& t) override {
-    return writer(t);
-  }
-  Result<WriterPtr<CellStatesMessage>> make_writer(const Topic<CellStatesMessage>& t) override {
-    return writer(t);
-  }
-  Result<WriterPtr<CommandMessage>> make_writer(const Topic<CommandMessage>& t) override {
-    return writer(t);
-  }
-  Result<WriterPtr<StatusMessage>> make_writer(const Topic<StatusMessage>& t) override {
-    return writer(t);
-  }
-  Result<WriterPtr<EventMessage>> make_writer(const Topic<EventMessage>& t) override {
-    return writer(t);
-  }
-  Result<ReaderPtr<PlanMessage>> make_reader(const Topic<PlanMessage>& t) override {
-    return reader(t);
-  }
-  Result<ReaderPtr<SceneMessage>> make_reader(const Topic<SceneMessage>& t) override {
-    return reader(t);
-  }
-  Result<ReaderPtr<HeartbeatMessage>> make_reader(const Topic<HeartbeatMessage>& t) override {
-    return reader(t);
-  }
-  Result<ReaderPtr<CellStatesMessage>> make_reader(const Topic<CellStatesMessage>& t) override {
-    return reader(t);
-  }
-  Result<ReaderPtr<CommandMessage>> make_reader(const Topic<CommandMessage>& t) override {
-    return reader(t);
-  }
-  Result<ReaderPtr<StatusMessage>> make_reader(const Topic<StatusMessage>& t) override {
-    return reader(t);
-  }
-  Result<ReaderPtr<EventMessage>> make_reader(const Topic<EventMessage>& t) override {
-    return reader(t);
-  }
 
   void receive() override {
     for (const auto& participant : participants_) participant->receive();
@@ -117,6 +75,7 @@ class Hub final : public Participant {
   }
 
  private:
+  friend class TypedParticipant<Hub>;
   template <class M>
   Result<WriterPtr<M>> writer(const Topic<M>& topic) {
     std::vector<WriterPtr<M>> writers;

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "swarm_link/cyclone/conversion.hpp"
+#include "swarm_link/typed_participant.hpp"
 #include "swarm_link/wire_bounds.hpp"
 
 namespace swarm::link {
@@ -167,61 +168,19 @@ class CycloneReader final : public Reader<M> {
   Entity reader_;
 };
 
-class CycloneParticipant final : public Participant {
+class CycloneParticipant final : public TypedParticipant<CycloneParticipant> {
  public:
   CycloneParticipant(CycloneOptions options, std::shared_ptr<Entity> domain, Entity participant)
       : options_(std::move(options)),
         domain_(std::move(domain)),
         participant_(std::move(participant)) {}
 
-  Result<WriterPtr<PlanMessage>> make_writer(const Topic<PlanMessage>& t) override {
-    return writer(t);
-  }
-  Result<WriterPtr<SceneMessage>> make_writer(const Topic<SceneMessage>& t) override {
-    return writer(t);
-  }
-  Result<WriterPtr<HeartbeatMessage>> make_writer(const Topic<HeartbeatMessage>& t) override {
-    return writer(t);
-  }
-  Result<WriterPtr<CellStatesMessage>> make_writer(const Topic<CellStatesMessage>& t) override {
-    return writer(t);
-  }
-  Result<WriterPtr<CommandMessage>> make_writer(const Topic<CommandMessage>& t) override {
-    return writer(t);
-  }
-  Result<WriterPtr<StatusMessage>> make_writer(const Topic<StatusMessage>& t) override {
-    return writer(t);
-  }
-  Result<WriterPtr<EventMessage>> make_writer(const Topic<EventMessage>& t) override {
-    return writer(t);
-  }
-  Result<ReaderPtr<PlanMessage>> make_reader(const Topic<PlanMessage>& t) override {
-    return reader(t);
-  }
-  Result<ReaderPtr<SceneMessage>> make_reader(const Topic<SceneMessage>& t) override {
-    return reader(t);
-  }
-  Result<ReaderPtr<HeartbeatMessage>> make_reader(const Topic<HeartbeatMessage>& t) override {
-    return reader(t);
-  }
-  Result<ReaderPtr<CellStatesMessage>> make_reader(const Topic<CellStatesMessage>& t) override {
-    return reader(t);
-  }
-  Result<ReaderPtr<CommandMessage>> make_reader(const Topic<CommandMessage>& t) override {
-    return reader(t);
-  }
-  Result<ReaderPtr<StatusMessage>> make_reader(const Topic<StatusMessage>& t) override {
-    return reader(t);
-  }
-  Result<ReaderPtr<EventMessage>> make_reader(const Topic<EventMessage>& t) override {
-    return reader(t);
-  }
-
   void receive() override {}  // the vendor's threads do
 
   Result<void> self_check() const override { return {}; }  // nothing fails in silence here
 
  private:
+  friend class TypedParticipant<CycloneParticipant>;
   template <class M>
   Result<Entity> topic(const Topic<M>& t) const {
     // Without QoS: what its readers and writers say counts, and a topic must not be made twice with

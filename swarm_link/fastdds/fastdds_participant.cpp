@@ -12,6 +12,7 @@
 #include "swarm_link/fastdds/endpoints.hpp"
 #include "swarm_link/fastdds/entity_qos.hpp"
 #include "swarm_link/fastdds/participant_qos.hpp"
+#include "swarm_link/typed_participant.hpp"
 
 namespace swarm::link {
 
@@ -21,7 +22,7 @@ namespace dds = eprosima::fastdds::dds;
 
 namespace {
 
-class FastDdsParticipant final : public Participant {
+class FastDdsParticipant final : public TypedParticipant<FastDdsParticipant> {
  public:
   FastDdsParticipant(FastDdsOptions options, Ports ports, std::shared_ptr<ReceiveSockets> sockets,
                      dds::DomainParticipant* participant)
@@ -47,49 +48,6 @@ class FastDdsParticipant final : public Participant {
   }
 
   bool usable() const { return publisher_ != nullptr && subscriber_ != nullptr; }
-
-  Result<WriterPtr<PlanMessage>> make_writer(const Topic<PlanMessage>& t) override {
-    return writer(t);
-  }
-  Result<WriterPtr<SceneMessage>> make_writer(const Topic<SceneMessage>& t) override {
-    return writer(t);
-  }
-  Result<WriterPtr<HeartbeatMessage>> make_writer(const Topic<HeartbeatMessage>& t) override {
-    return writer(t);
-  }
-  Result<WriterPtr<CellStatesMessage>> make_writer(const Topic<CellStatesMessage>& t) override {
-    return writer(t);
-  }
-  Result<WriterPtr<CommandMessage>> make_writer(const Topic<CommandMessage>& t) override {
-    return writer(t);
-  }
-  Result<WriterPtr<StatusMessage>> make_writer(const Topic<StatusMessage>& t) override {
-    return writer(t);
-  }
-  Result<WriterPtr<EventMessage>> make_writer(const Topic<EventMessage>& t) override {
-    return writer(t);
-  }
-  Result<ReaderPtr<PlanMessage>> make_reader(const Topic<PlanMessage>& t) override {
-    return reader(t);
-  }
-  Result<ReaderPtr<SceneMessage>> make_reader(const Topic<SceneMessage>& t) override {
-    return reader(t);
-  }
-  Result<ReaderPtr<HeartbeatMessage>> make_reader(const Topic<HeartbeatMessage>& t) override {
-    return reader(t);
-  }
-  Result<ReaderPtr<CellStatesMessage>> make_reader(const Topic<CellStatesMessage>& t) override {
-    return reader(t);
-  }
-  Result<ReaderPtr<CommandMessage>> make_reader(const Topic<CommandMessage>& t) override {
-    return reader(t);
-  }
-  Result<ReaderPtr<StatusMessage>> make_reader(const Topic<StatusMessage>& t) override {
-    return reader(t);
-  }
-  Result<ReaderPtr<EventMessage>> make_reader(const Topic<EventMessage>& t) override {
-    return reader(t);
-  }
 
   void receive() override {
     if (options_.receive_at_tick) sockets_->drain();
@@ -124,6 +82,7 @@ class FastDdsParticipant final : public Participant {
   }
 
  private:
+  friend class TypedParticipant<FastDdsParticipant>;
   template <class M>
   void register_type() {
     participant_->register_type(dds::TypeSupport(new GuardedType<M>()));

@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "swarm_link/inproc/inproc_channel.hpp"
+#include "swarm_link/typed_participant.hpp"
 
 namespace swarm::link {
 
@@ -39,57 +40,15 @@ struct InprocBus::Impl {
 namespace {
 
 template <class Impl>
-class InprocParticipant final : public Participant {
+class InprocParticipant final : public TypedParticipant<InprocParticipant<Impl>> {
  public:
   InprocParticipant(Impl& bus, std::uint32_t strength) : bus_(bus), strength_(strength) {}
-
-  Result<WriterPtr<PlanMessage>> make_writer(const Topic<PlanMessage>& t) override {
-    return writer(t);
-  }
-  Result<WriterPtr<SceneMessage>> make_writer(const Topic<SceneMessage>& t) override {
-    return writer(t);
-  }
-  Result<WriterPtr<HeartbeatMessage>> make_writer(const Topic<HeartbeatMessage>& t) override {
-    return writer(t);
-  }
-  Result<WriterPtr<CellStatesMessage>> make_writer(const Topic<CellStatesMessage>& t) override {
-    return writer(t);
-  }
-  Result<WriterPtr<CommandMessage>> make_writer(const Topic<CommandMessage>& t) override {
-    return writer(t);
-  }
-  Result<WriterPtr<StatusMessage>> make_writer(const Topic<StatusMessage>& t) override {
-    return writer(t);
-  }
-  Result<WriterPtr<EventMessage>> make_writer(const Topic<EventMessage>& t) override {
-    return writer(t);
-  }
-  Result<ReaderPtr<PlanMessage>> make_reader(const Topic<PlanMessage>& t) override {
-    return reader(t);
-  }
-  Result<ReaderPtr<SceneMessage>> make_reader(const Topic<SceneMessage>& t) override {
-    return reader(t);
-  }
-  Result<ReaderPtr<HeartbeatMessage>> make_reader(const Topic<HeartbeatMessage>& t) override {
-    return reader(t);
-  }
-  Result<ReaderPtr<CellStatesMessage>> make_reader(const Topic<CellStatesMessage>& t) override {
-    return reader(t);
-  }
-  Result<ReaderPtr<CommandMessage>> make_reader(const Topic<CommandMessage>& t) override {
-    return reader(t);
-  }
-  Result<ReaderPtr<StatusMessage>> make_reader(const Topic<StatusMessage>& t) override {
-    return reader(t);
-  }
-  Result<ReaderPtr<EventMessage>> make_reader(const Topic<EventMessage>& t) override {
-    return reader(t);
-  }
 
   void receive() override {}
   Result<void> self_check() const override { return {}; }
 
  private:
+  friend class TypedParticipant<InprocParticipant>;
   template <class M>
   WriterPtr<M> writer(const Topic<M>& topic) {
     return std::make_unique<inproc::InprocWriter<M>>(bus_.template channel<M>(topic.name),
