@@ -26,15 +26,6 @@ constexpr double kAtRest_mps = 0.05;
 constexpr double kSettling_m = 4.0;  // nearer to the end than this a turn aside would only stir
 constexpr double kMeanOver_s = 2.0;
 
-double nearest_gap_m(const ControlView& view, double radius_m) {
-  double nearest_m = std::numeric_limits<double>::infinity();
-  for (const Neighbour& n : view.neighbours) {
-    nearest_m =
-        std::min(nearest_m, (n.position_m - view.position_m).norm() - radius_m - n.radius_m);
-  }
-  return nearest_m;
-}
-
 /// What the filter keeps off obstacles: a measured place may be off, and a step.
 double obstacle_margin_m(const Mission& mission, const BodySpec& body) {
   return mission.safety.obstacle_margin_m +
@@ -51,14 +42,18 @@ double force_reach_m(const ControlSpec& control, double bodies_m) {
   return std::max(SeparationFieldOptions{}.reach_m, heading.mean_m + kSigmas * heading.sigma_m);
 }
 
-/// From where on it matters neither to those nor to the filter.
+/// From where on it matters neither to those, nor to the filter, nor to what we say.
 double reach_m(const Mission& mission, const BodySpec& body, double keep_m) {
   // Its range is the sensing range.
   if (mission.control.method == "intermittent_diffusion") return keep_m;
-  const double braking_s = 1.0 / (mission.control.rate_hz * mission.safety.gap_share) + lag_s(body);
+  const double period_s = 1.0 / mission.control.rate_hz;
+  const double braking_s = period_s / mission.safety.gap_share + lag_s(body);
   const double brake_m = mission.safety.neighbour_margin_m + 2.0 * body.speed_max_mps * braking_s;
+  const double follows_m =
+      mission.safety.neighbour_margin_m +
+      body.speed_max_mps * (2.0 * period_s + lag_s(body) + mission.link.send_interval_max_s);
   const double bodies_m = body.radius_m + largest_radius_m(mission.robots);
-  return std::max(bodies_m + std::max(brake_m, mission.link.send_near_m),
+  return std::max(bodies_m + std::max({brake_m, follows_m, mission.link.send_near_m}),
                   force_reach_m(mission.control, bodies_m));
 }
 
@@ -158,7 +153,7 @@ AgentOptions agent_options(const Mission& mission, RobotId robot, std::uint64_t 
                      .reach_growth_mps = 2.0 * body.speed_max_mps * mission.safety.stale_gain /
                                          mission.safety.gap_share,
                      .near_m = l.send_near_m,
-                     .near_silence = 3 * period,
+                     .period = period,
                      .expected_silence = from_seconds(l.send_interval_max_s) + 2 * period,
                      .forget_after = from_seconds(mission.timing.neighbour_forget_s)},
       .say = {.error_m = l.send_error_m,
@@ -226,7 +221,6 @@ AgentOutput Agent::tick(const AgentInput& input) {
   AgentOutput out;
   out.mode = decide_mode(input);
   moved_ = moved_ || out.mode == RobotMode::kMoving;
-  out.nearest_gap_m = nearest_gap_m(view, options_.safety.radius_m);
   out.believed = view.neighbours;
   out.neighbours = static_cast<std::uint16_t>(std::min<std::size_t>(neighbours_.known(), 0xFFFF));
   out.remaining_m = has_route_ ? method_->remaining_m() : 0.0;
@@ -244,8 +238,15 @@ AgentOutput Agent::tick(const AgentInput& input) {
                 std::min(out.velocity_mps.norm(), mean_mps_.norm()) < kAtRest_mps;
 
   out.told_mps = input.velocity_mps.value_or(out.velocity_mps);
-  out.say = say_.must_say(input.now, input.position_m, out.told_mps, out.nearest_gap_m);
-  if (out.say) say_.said(input.now, input.position_m, out.told_mps);
+  const SayInput word{
+      .now = input.now,
+      .position_m = input.position_m,
+      .velocity_mps = out.told_mps,
+      .listeners = filter_.listeners(input.position_m, out.told_mps, view.neighbours),
+      .link = neighbours_.link()};
+  out.nearest_gap_m = word.listeners.nearest_gap_m;
+  out.say = say_.must_say(word);
+  if (out.say) say_.said(word);
   return out;
 }
 

@@ -3,6 +3,7 @@
 #include "robot_agent/neighbour_table.hpp"
 
 #include <algorithm>
+#include <limits>
 
 namespace swarm::agent {
 namespace {
@@ -11,18 +12,25 @@ constexpr std::size_t kFirstSlots = 128;
 constexpr std::size_t kSlotsEach = 4;  // of the index, for every robot known
 constexpr std::size_t kSweepAt = 8;    // so many who are gone are worth a new index
 constexpr double kStands_mps = 0.01;   // slower is standing: such a robot need not speak
+constexpr double kOfWords = 1.0 / 64;  // weight of a word in what is thought of the link
+constexpr double kPoor = 0.02;         // of two words in the last sixty-four, …
+constexpr double kClean = 0.005;       // … until eighty in a row came
+constexpr double kInside = 0.8;        // of the range: who is farther may have been out of it
 
-Vec2 nearest_on_segment(const Vec2& point, const Vec2& from, const Vec2& to) {
-  const Vec2 along = to - from;
-  const double length_squared = along.squaredNorm();
-  if (length_squared < 1e-12) return from;
-  return from + std::clamp((point - from).dot(along) / length_squared, 0.0, 1.0) * along;
+/// A product: to_seconds() divides, which is a tenth of what believing a robot costs.
+double age_in_s(SteadyTime now, SteadyTime as_of) {
+  constexpr double kSecond = std::chrono::duration<double>(Duration(1)).count();
+  return std::max(0.0, kSecond * static_cast<double>((now - as_of).count()));
 }
 
 }  // namespace
 
 NeighbourTable::NeighbourTable(const NeighbourOptions& options)
-    : options_(options), index_(kFirstSlots, kFree) {
+    : options_(options),
+      period_s_(to_seconds(options.period)),
+      silence_s_(to_seconds(options.expected_silence)),
+      forget_after_s_(to_seconds(options.forget_after)),
+      index_(kFirstSlots, kFree) {
   known_.reserve(kFirstSlots / kSlotsEach);
   candidates_.reserve(kFirstSlots / kSlotsEach);
   neighbours_.reserve(kFirstSlots / kSlotsEach);
@@ -52,6 +60,20 @@ void NeighbourTable::insert(RobotId robot, Slot& slot) {
   if (index_.size() < kSlotsEach * known_.size()) rebuild_index();
 }
 
+/// Numbers that were left out are words that were lost, where both ends of the gap were in range.
+void NeighbourTable::judge_link(const Known& before, const NeighbourReport& report,
+                                const Vec2& own_position_m) {
+  link_.late_s += kOfWords * (report.late_s - link_.late_s);
+  const double inside_m = kInside * options_.keep_radius_m;
+  if (report.as_of - before.as_of > options_.expected_silence ||
+      (before.position_m - own_position_m).squaredNorm() > inside_m * inside_m) {
+    return;
+  }
+  const double lost = std::min(report.sequence - before.sequence - 1U, 4U);
+  loss_ += kOfWords * (lost - (lost + 1.0) * loss_);
+  link_.poor = loss_ > (link_.poor ? kClean : kPoor) || link_.late_s > 1.5 * period_s_;
+}
+
 NeighbourTable::Outcome NeighbourTable::take(const NeighbourReport& report,
                                              const Vec2& own_position_m) {
   Slot& slot = slot_of(report.robot);
@@ -62,6 +84,7 @@ NeighbourTable::Outcome NeighbourTable::take(const NeighbourReport& report,
       if (report.sequence == known.sequence) return Outcome::kDuplicate;
       // Sequence numbers wrap: what lies in the half circle behind is older.
       if (static_cast<std::int32_t>(report.sequence - known.sequence) < 0) return Outcome::kStale;
+      judge_link(known, report, own_position_m);
     }
   }
   const double keep_squared = options_.keep_radius_m * options_.keep_radius_m;
@@ -83,15 +106,17 @@ NeighbourTable::Outcome NeighbourTable::take(const NeighbourReport& report,
 }
 
 /// Who may be within reach, into candidates_. Most are not, and which ones is a coin toss: no
-/// branches. Those that are extrapolated out of the sensing range are gone; a silent one may have
-/// stalled within, and is a candidate.
+/// branches. Those that are extrapolated out of the sensing range are gone: should they come back
+/// they will be heard.
 void NeighbourTable::sift(SteadyTime now, const Vec2& own_position_m) {
   const double keep_squared = options_.keep_radius_m * options_.keep_radius_m;
-  const double reach_now_m = options_.reach_m;
   const double growth_mps = options_.reach_growth_mps;
-  const Duration silence = options_.near_silence;
-  const double period_s = to_seconds(silence) / 3.0;
+  const double period_s = period_s_;
+  const double reach_now_m = options_.reach_m - growth_mps * period_s;
   const Vec2 own_m = own_position_m;
+  // What is too old is as old as it is, anything else at most as late as words are.
+  const double late_s = link_.poor ? std::numeric_limits<double>::infinity() : link_.late_s;
+  const double silence_s = silence_s_ - period_s_;
   if (candidates_.size() < known_.size()) candidates_.resize(known_.capacity());
   Known* const known = known_.data();
   std::uint32_t* const candidates = candidates_.data();
@@ -100,15 +125,15 @@ void NeighbourTable::sift(SteadyTime now, const Vec2& own_position_m) {
   std::size_t gone = 0;
   for (std::uint32_t i = 0; i < count; ++i) {
     Known& r = known[i];
-    const Duration age = now - r.as_of;
-    const double age_s = to_seconds(std::max<Duration>(age, Duration::zero()));
-    const bool silent = age > silence;
+    const double age_s = age_in_s(now, r.as_of);
     const Vec2 away_m = r.position_m + age_s * r.velocity_mps - own_m;
     const double away_squared = away_m.squaredNorm();
-    const double reach_m = reach_now_m + growth_mps * std::max(0.0, age_s - period_s);
-    r.gone |= !silent & (away_squared > keep_squared);
+    const double known_s = std::min(age_s, std::max<double>(r.late_s, late_s));
+    const double stale_s = std::max(known_s, age_s - silence_s);
+    const double reach_m = reach_now_m + growth_mps * std::max(stale_s, period_s);
+    r.gone |= away_squared > keep_squared;
     candidates[found] = i;
-    found += static_cast<std::size_t>(silent | (away_squared <= reach_m * reach_m));
+    found += static_cast<std::size_t>(away_squared <= reach_m * reach_m);
     gone += r.gone;
   }
   candidates_found_ = found;
@@ -117,43 +142,33 @@ void NeighbourTable::sift(SteadyTime now, const Vec2& own_position_m) {
 
 /// What is believed of it, if it is within reach.
 void NeighbourTable::believe(Known& r, SteadyTime now, const Vec2& own_position_m) {
-  const Duration age = std::max<Duration>(now - r.as_of, Duration::zero());
-  const double age_s = to_seconds(age);
-  const double period_s = to_seconds(options_.near_silence) / 3.0;
-  const double speaks_within_m = options_.near_m + options_.radius_m + r.radius_m;
-  const bool near =
-      (r.position_m - own_position_m).squaredNorm() < speaks_within_m * speaks_within_m;
-  const bool silent = near && age > options_.near_silence;
-  Vec2 position = r.position_m + age_s * r.velocity_mps;
-  if (silent) {
-    const Vec2 stood = r.position_m + to_seconds(options_.near_silence) * r.velocity_mps;
-    position = nearest_on_segment(own_position_m, stood, position);
-  }
-  const bool must_speak = near && r.velocity_mps.squaredNorm() > kStands_mps * kStands_mps;
-  const double stale_s =
-      must_speak ? age_s : std::min(age_s, static_cast<double>(r.late_s) + period_s);
-  const double away_squared = (position - own_position_m).squaredNorm();
-  // One that left the sensing range is not silent. Should it come back it will be heard.
-  if (age > options_.forget_after ||
-      away_squared > options_.keep_radius_m * options_.keep_radius_m) {
+  const double age_s = age_in_s(now, r.as_of);
+  if (age_s > forget_after_s_) {
     r.gone = true;
     ++gone_;
     return;
   }
-  double grown_m = 0.0;
-  if (age > options_.expected_silence) {
-    grown_m =
-        options_.fleet.of(r.robot).speed_max_mps * to_seconds(age - options_.expected_silence);
+  double stale_s = std::min(age_s, std::max<double>(r.late_s, link_.late_s));
+  if (link_.poor && r.velocity_mps.squaredNorm() > kStands_mps * kStands_mps) {
+    const double speaks_within_m = options_.near_m + options_.radius_m + r.radius_m;
+    const double spoke_at_squared = (r.position_m - own_position_m).squaredNorm();
+    if (spoke_at_squared < speaks_within_m * speaks_within_m) stale_s = age_s;
   }
+  double grown_m = 0.0;
+  if (age_s > silence_s_) {
+    grown_m = options_.fleet.of(r.robot).speed_max_mps * (age_s - silence_s_);
+  }
+  const double stalled_s = std::max(0.0, age_s - 2.0 * period_s_);
   const double reach_m =
-      options_.reach_m + grown_m + options_.reach_growth_mps * std::max(0.0, stale_s - period_s);
-  if (away_squared > reach_m * reach_m) return;
-  Neighbour& n = neighbours_.emplace_back();
-  n.robot = r.robot;
-  n.position_m = position;
-  if (!silent) n.velocity_mps = r.velocity_mps;
-  n.radius_m = r.radius_m + grown_m;
-  n.stale_s = stale_s;
+      options_.reach_m + grown_m + options_.reach_growth_mps * std::max(0.0, stale_s - period_s_);
+  const Vec2 position = r.position_m + age_s * r.velocity_mps;
+  if ((position - own_position_m).squaredNorm() > reach_m * reach_m) return;
+  neighbours_.push_back({.robot = r.robot,
+                         .position_m = position,
+                         .velocity_mps = r.velocity_mps,
+                         .radius_m = r.radius_m + grown_m,
+                         .stale_s = stale_s,
+                         .stalled_s = stalled_s});
 }
 
 std::span<const Neighbour> NeighbourTable::at(SteadyTime now, const Vec2& own_position_m) {

@@ -30,9 +30,17 @@ struct Neighbour {
   Vec2 position_m = Vec2::Zero();  ///< dead-reckoned
   Vec2 velocity_mps = Vec2::Zero();
   double radius_m = 0.0;  ///< its radius, grown while it is silent for longer than it should be
-  /// How old our knowledge of its motion is: the time since its last word if it should speak at
-  /// every tick, else, since it would have spoken had it turned, the time a word takes.
+  /// How old our knowledge of its motion is: the time a word takes, since it would have spoken had
+  /// it turned; on a poor link, the time since its last.
   double stale_s = 0.0;
+  /// For how long it may have stood by now, had its process stalled after its last word.
+  double stalled_s = 0.0;
+};
+
+/// How well the words of others reach us, and so, most likely, ours them.
+struct LinkQuality {
+  bool poor = false;    ///< words are lost, or later than a period and a half
+  double late_s = 0.0;  ///< how old they are when they are heard, mean
 };
 
 struct NeighbourOptions {
@@ -40,21 +48,20 @@ struct NeighbourOptions {
   Fleet fleet;                 ///< sizes and speeds of the others
   double keep_radius_m = 6.0;  ///< robots farther than this, heard or extrapolated, are not kept
   /// Who is farther than this matters to nobody: not told by at(). Grows with what the knowledge of
-  /// a robot is older than a control period.
+  /// a robot is older than a control period. Holds the way of one that may have stalled.
   double reach_m = 6.0;
   double reach_growth_mps = 0.0;
-  double near_m = 1.0;          ///< robots whose surface is this near speak at every tick …
-  Duration near_silence{};      ///< … so that one silent for longer, three ticks, has stalled
+  double near_m = 1.0;          ///< on a poor link robots this near speak at every tick
+  Duration period{};            ///< of control: a body stops two after its last command
   Duration expected_silence{};  ///< a healthy robot speaks at least this often
   Duration forget_after{};
 };
 
 /// The robots near us, as far as the bus tells. Between two words of a robot its position is
-/// extrapolated. A near one that is silent for longer than `near_silence` may have stalled, so that
-/// its driver has stopped it, or may go on unheard: it is taken to stand at the nearest place
-/// between the two. From `expected_silence` on its radius grows by its largest speed for every
-/// second more, and after `forget_after` it is forgotten. A robot in a crowd hears fifty others at
-/// every tick: taking a report is a look into a hash table, and believing one a pass over an array.
+/// extrapolated; that it may have stalled in between is told beside. From `expected_silence` on its
+/// radius grows by its largest speed for every second more, and after `forget_after` it is
+/// forgotten. A robot in a crowd hears fifty others at every tick: taking a report is a look into a
+/// hash table, and believing one a pass over an array.
 /// The same reports in the same order give the same neighbours in the same order. No allocation
 /// once warm.
 class NeighbourTable {
@@ -76,6 +83,8 @@ class NeighbourTable {
     swarm::prefetch(known_.data(), known_.size() * sizeof(Known));
     swarm::prefetch(index_.data(), index_.size() * sizeof(Slot));
   }
+
+  const LinkQuality& link() const { return link_; }
 
   /// Robots known at the last at(), within reach or not.
   std::size_t known() const { return known_.size() - gone_; }
@@ -99,17 +108,23 @@ class NeighbourTable {
 
   Slot& slot_of(RobotId robot);
   void insert(RobotId robot, Slot& slot);
+  void judge_link(const Known& before, const NeighbourReport& report, const Vec2& own_position_m);
   void rebuild_index();
   void sift(SteadyTime now, const Vec2& own_position_m);
   void believe(Known& r, SteadyTime now, const Vec2& own_position_m);
 
   NeighbourOptions options_;
+  double period_s_;
+  double silence_s_;  // that is expected
+  double forget_after_s_;
   std::vector<Known> known_;
   std::vector<std::uint32_t> candidates_;  // indices into known_, the first candidates_found_
   std::size_t candidates_found_ = 0;
   std::vector<Slot> index_;  // hash table with open addressing, a power of two of them
   std::vector<Neighbour> neighbours_;
   std::size_t gone_ = 0;  // of known_, as of the last at()
+  LinkQuality link_;
+  double loss_ = 0.0;  // share of words lost, mean of the last ones
 };
 
 }  // namespace swarm::agent

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace swarm::agent {
@@ -16,13 +17,14 @@ constexpr std::array kTurns_rad{0.4, 0.9, 1.4};  // to the right, while blocked,
 constexpr double kFree = 0.3;                    // … faster than this share of the wish
 constexpr double kFollowMargin = 0.9;            // share of the margin that following may give up
 constexpr double kEvade = 1.0 / 3.0;             // of the margin: kept to who does not keep off
+constexpr double kFresh = 1.01;                  // periods: known at once, but for rounding
 constexpr double kWithdraw = 0.9;                // of the largest speed: out of an obstacle
 constexpr double kLeastWish_mps = 0.1;           // slower wishes are not worth a detour
 
 }  // namespace
 
 SafetyFilter::SafetyFilter(const World& world, const SafetyOptions& options)
-    : world_(world), options_(options) {
+    : world_(world), options_(options), fresh_(pace(0.0)) {
   constraints_.reserve(64);
   relaxed_.reserve(64);
 }
@@ -51,34 +53,82 @@ void SafetyFilter::collect_obstacles(const Vec2& position_m) {
   obstacles_ = constraints_.size();
 }
 
+/// The time in which a neighbour's half of the gap may be closed, and what follows from it.
+SafetyFilter::Pace SafetyFilter::pace(double stale_s) const {
+  const double period_s = to_seconds(options_.period);
+  const double time_s = period_s + options_.gap_share * options_.lag_s +
+                        options_.stale_gain * std::max(0.0, stale_s - period_s);
+  const double given_up_m = options_.speed_max_mps * std::max(stale_s, period_s);
+  return {
+      .brake_m =
+          options_.neighbour_margin_m + 2.0 * options_.speed_max_mps * time_s / options_.gap_share,
+      .closing_hz = options_.gap_share / (2.0 * time_s),
+      // If it stops at once …
+      .follow =
+          std::min(options_.follow_share, kFollowMargin * options_.neighbour_margin_m / given_up_m),
+  };
+}
+
 void SafetyFilter::collect_neighbours(const Vec2& position_m,
                                       std::span<const Neighbour> neighbours) {
   const double period_s = to_seconds(options_.period);
   const double v_max = options_.speed_max_mps;
+  const double margin_m = options_.neighbour_margin_m;
+  const double evading_hz = 1.0 / (2.0 * period_s + options_.lag_s);
   for (const Neighbour& n : neighbours) {
-    const double time_s = period_s + options_.gap_share * options_.lag_s +
-                          options_.stale_gain * std::max(0.0, n.stale_s - period_s);
+    const Pace late = n.stale_s > kFresh * period_s ? pace(n.stale_s) : fresh_;
     // From here on the robot may do what it likes: nobody comes faster than its own brake allows.
     const double sum_m = options_.radius_m + n.radius_m;
-    const double brake_m = options_.neighbour_margin_m + 2.0 * v_max * time_s / options_.gap_share;
+    const double gone_m = n.stalled_s > 0.0 ? n.stalled_s * n.velocity_mps.norm() : 0.0;
+    const double reach_m = sum_m + late.brake_m + gone_m;
     const Vec2 offset = n.position_m - position_m;
     const double squared = offset.squaredNorm();
-    if (squared > (sum_m + brake_m) * (sum_m + brake_m)) continue;
+    if (squared > reach_m * reach_m) continue;
     const double distance = std::sqrt(squared);
     // Robots believed to be in the same spot part to opposite sides by chance.
     const Vec2 towards = distance > 1e-9 ? Vec2(offset / distance) : Vec2(1.0, 0.0);
     const double gap = distance - sum_m;
     const double leaving = towards.dot(n.velocity_mps);
-    const double margin_m = options_.neighbour_margin_m;
-    const double given_up_m = v_max * std::max(n.stale_s, period_s);  // if it stops at once
-    const double follow = std::min(options_.follow_share, kFollowMargin * margin_m / given_up_m);
-    const double share =
-        options_.gap_share * (gap - margin_m) / (2.0 * time_s) + follow * std::max(0.0, leaving);
-    const double evade =
-        (gap - kEvade * margin_m) / (2.0 * period_s + options_.lag_s) - std::max(0.0, -leaving);
+    const double share = late.closing_hz * (gap - margin_m) + late.follow * std::max(0.0, leaving);
+    const double evade = evading_hz * (gap - kEvade * margin_m) - std::max(0.0, -leaving);
     const double bound = std::min(share, evade);
     if (bound < v_max) constraints_.push_back({towards, std::max(bound, -v_max)});
+    if (n.stalled_s > 0.0 && leaving > 0.0) keep_off_stalled(position_m, n, sum_m);
   }
+}
+
+/// Where the neighbour is if it stalled when that is worst for us: the nearest place of its way
+/// since. One that stands does not come nearer, so neither must we: no more is asked.
+void SafetyFilter::keep_off_stalled(const Vec2& position_m, const Neighbour& n, double sum_m) {
+  const Vec2 back = -n.stalled_s * n.velocity_mps;
+  const double share = (position_m - n.position_m).dot(back) / back.squaredNorm();
+  const Vec2 offset = n.position_m + std::clamp(share, 0.0, 1.0) * back - position_m;
+  const double distance = offset.norm();
+  if (distance < 1e-9) return;  // we are where it would be: it went on
+  const double bound = (distance - sum_m - kEvade * options_.neighbour_margin_m) /
+                       (2.0 * to_seconds(options_.period) + options_.lag_s);
+  if (bound < options_.speed_max_mps) {
+    constraints_.push_back({offset / distance, std::max(bound, 0.0)});
+  }
+}
+
+Listeners SafetyFilter::listeners(const Vec2& position_m, const Vec2& velocity_mps,
+                                  std::span<const Neighbour> neighbours) const {
+  const double horizon_s = 2.0 * to_seconds(options_.period) + options_.lag_s;
+  const double kept_m = kEvade * options_.neighbour_margin_m;
+  Listeners found;
+  for (const Neighbour& n : neighbours) {
+    const Vec2 offset = position_m - n.position_m;
+    const double distance = offset.norm();
+    const double gap_m = distance - options_.radius_m - n.radius_m;
+    found.nearest_gap_m = std::min(found.nearest_gap_m, gap_m);
+    const double leaving_m2ps = offset.dot(velocity_mps);
+    const double coming_m2ps = std::max(0.0, offset.dot(n.velocity_mps));
+    const double spare_m2 = std::max(0.0, (gap_m - kept_m) * distance - horizon_s * coming_m2ps);
+    if (leaving_m2ps * found.patience_s > spare_m2) found.patience_s = spare_m2 / leaving_m2ps;
+  }
+  found.patience_s += 2.0 * to_seconds(options_.period);
+  return found;
 }
 
 /// All who are too near give in by the same speed, the least that leaves a common point. Nobody

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -23,6 +24,13 @@ struct SafetyOptions {
   double follow_share = 0.8;         ///< β
 };
 
+/// Who listens to a robot.
+struct Listeners {
+  double nearest_gap_m = std::numeric_limits<double>::infinity();  ///< surface to surface
+  /// From so long a silence on one that follows, should it obey, brakes for fear of a stall.
+  double patience_s = 1e9;
+};
+
 /// The layer under every control method: the velocity nearest to the wished one that keeps its
 /// promises.
 ///
@@ -30,6 +38,8 @@ struct SafetyOptions {
 ///                 n·u ≤ (gap − m/3) / (2Δt + λ) − max(0, −n·v_j)     n points to the neighbour,
 ///                 v_j is
 ///                                                                what it said of its velocity
+///                 n·u ≤ max(0, (gap_s − m/3) / (2Δt + λ))            gap_s, n to where it is if it
+///                                                                stalled after its last word
 ///   obstacle o:   n·u ≤ (s − m_o) / (2Δt + λ) − max(0, −n·v_o)       n points into the obstacle
 ///   bounds:       the same with the four walls of the world
 ///
@@ -45,7 +55,9 @@ struct SafetyOptions {
 ///    as what is given up when that one stops at once, β v_max τ, is below 0.9 m.
 /// 3. From a robot that obeys nobody, heard at every tick and no faster than v_max, a robot
 ///    withdraws before contact: the second line asks for u at least as fast as the other comes once
-///    the gap is down to a third of m. It is met whenever there is room to go to.
+///    the gap is down to a third of m. It is met whenever there is room to go to. One that stalled
+///    unheard, so that its body stopped, is not touched either: the third line keeps a robot that
+///    follows off every place where it may have been left behind.
 /// 4. Nobody freezes who may move: where the lines have no common point, those that ask for a wider
 ///    gap give in by the same least speed, down to not closing it, which u = 0 obeys. A robot whose
 ///    wish is blocked by robots that face it turns its wish to its right, as everyone does, so that
@@ -66,14 +78,26 @@ class SafetyFilter {
   Vec2 filter(const Vec2& position_m, const Vec2& wish_mps, std::span<const Neighbour> neighbours,
               bool gives_way = false);
 
+  /// What it means to `neighbours` that a robot at `position_m` goes at `velocity_mps`.
+  Listeners listeners(const Vec2& position_m, const Vec2& velocity_mps,
+                      std::span<const Neighbour> neighbours) const;
+
  private:
+  struct Pace {
+    double brake_m;     ///< from where on a neighbour bounds us at all
+    double closing_hz;  ///< γ / (2T)
+    double follow;      ///< β
+  };
+  Pace pace(double stale_s) const;
   void collect_obstacles(const Vec2& position_m);
   void collect_neighbours(const Vec2& position_m, std::span<const Neighbour> neighbours);
+  void keep_off_stalled(const Vec2& position_m, const Neighbour& n, double sum_m);
   Vec2 nearest(const Vec2& wish_mps);
   Vec2 least_violation(const Vec2& wish_mps);
 
   const World& world_;
   SafetyOptions options_;
+  Pace fresh_;                          // of neighbours that are known at once
   std::vector<HalfPlane> constraints_;  // obstacles first
   std::vector<HalfPlane> relaxed_;
   std::size_t obstacles_ = 0;  // of constraints_

@@ -120,7 +120,7 @@ struct LinkSpec {
   double group_cell_size_m = 5.0;    ///< of the groups channel, whose cells cost no discovery
   double send_error_m = 0.05;        ///< dead reckoning: speak when extrapolation is off by this
   double send_interval_max_s = 0.5;  ///< … or this old
-  double send_near_m = 1.0;  ///< … or at every tick while a neighbour's surface is this near
+  double send_near_m = 1.0;          ///< … or, on a poor link, while a surface is this near
   double status_hz = 1.0;
 };
 

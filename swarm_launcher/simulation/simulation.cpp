@@ -177,7 +177,9 @@ void Simulation::tick_robot(std::uint32_t id, SteadyTime now, Histogram* ages) {
   air_.hear(
       RobotId(id), robot.position_m, robot.hears_m, robot.heard_until, now,
       [&](const agent::NeighbourReport& report) {
-        robot.agent.hear(report, robot.position_m);
+        agent::NeighbourReport heard = report;
+        heard.late_s = to_seconds(now - report.as_of);
+        robot.agent.hear(heard, robot.position_m);
         ++robot.received;
         if (ages == nullptr) return;
         ages->add(

@@ -16,7 +16,7 @@ NeighbourTable table() {
                          .fleet = Fleet(Fleet::Body{0.2, 1.5}),
                          .keep_radius_m = 6.0,
                          .near_m = 1.0,
-                         .near_silence = milliseconds(300),
+                         .period = milliseconds(100),
                          .expected_silence = milliseconds(700),
                          .forget_after = milliseconds(1000)});
 }
@@ -38,20 +38,62 @@ TEST(NeighbourTable, ExtrapolatesAlongTheLastVelocity) {
   EXPECT_DOUBLE_EQ(now[0].radius_m, 0.2);
 }
 
-TEST(NeighbourTable, TakesANearRobotThatFellSilentForStandingWhereItIsNearest) {
-  auto ahead = table();
-  ahead.take(report(3, 1, 0, {1, 0}, {1, 0}), Vec2::Zero());
-  auto behind = table();
-  behind.take(report(3, 1, 0, {-1, 0}, {1, 0}), Vec2::Zero());
+TEST(NeighbourTable, TellsForHowLongARobotMayHaveStood) {
+  auto sut = table();
+  sut.take(report(3, 1, 0, {1, 0}, {1, 0}), Vec2::Zero());
 
-  const auto stopped = ahead.at(at(600), Vec2::Zero());
-  const auto going_on = behind.at(at(600), Vec2::Zero());
+  EXPECT_DOUBLE_EQ(sut.at(at(200), Vec2::Zero())[0].stalled_s, 0.0);  // its command still holds
+  EXPECT_NEAR(sut.at(at(500), Vec2::Zero())[0].stalled_s, 0.3, 1e-12);
+  EXPECT_NEAR(sut.at(at(500), Vec2::Zero())[0].position_m.x(), 1.5, 1e-12);
+}
 
-  ASSERT_EQ(stopped.size(), 1U);
-  EXPECT_NEAR(stopped[0].position_m.x(), 1.3, 1e-12);  // where its driver stopped it, give or take
-  EXPECT_EQ(stopped[0].velocity_mps, Vec2::Zero());
-  ASSERT_EQ(going_on.size(), 1U);
-  EXPECT_NEAR(going_on[0].position_m.x(), -0.4, 1e-12);
+/// Hears robot 3, one metre away, ten times a second; the first `lost` of them do not come.
+void hear_at_every_tick(NeighbourTable& sut, int count, int lost) {
+  static std::uint32_t sequence = 0;
+  for (int i = 0; i < count; ++i) {
+    ++sequence;
+    if (i > 0 && i <= lost) continue;
+    sut.take(report(3, sequence, 100 * static_cast<int>(sequence), {1, 0}, {1, 0}), Vec2::Zero());
+  }
+}
+
+TEST(NeighbourTable, TakesALinkForPoorWhileWordsAreMissing) {
+  auto sut = table();
+
+  hear_at_every_tick(sut, 20, 0);
+  EXPECT_FALSE(sut.link().poor);
+  hear_at_every_tick(sut, 10, 1);
+  EXPECT_FALSE(sut.link().poor) << "one word may get lost";
+  hear_at_every_tick(sut, 10, 3);
+  EXPECT_TRUE(sut.link().poor);
+  hear_at_every_tick(sut, 200, 0);
+  EXPECT_FALSE(sut.link().poor);
+}
+
+TEST(NeighbourTable, DoesNotTakeARobotThatWasOutOfRangeForLostWords) {
+  auto sut = table();
+  for (std::uint32_t i = 0; i < 40; ++i) {
+    sut.take(report(3, 4 * i, static_cast<int>(400 * i), {5.5, 0}), Vec2::Zero());
+  }
+
+  EXPECT_FALSE(sut.link().poor);
+}
+
+TEST(NeighbourTable, KnowsAMotionAsLateAsWordsComeAndWhereTheyAreLostAsOldAsTheLast) {
+  auto sut = table();
+  NeighbourReport word = report(4, 1, 0, {1, 0.5}, {1, 0});
+  word.late_s = 0.05;
+  sut.take(word, Vec2::Zero());
+  EXPECT_NEAR(sut.at(at(400), Vec2::Zero())[0].stale_s, 0.05, 1e-6);
+
+  hear_at_every_tick(sut, 20, 5);
+  ASSERT_TRUE(sut.link().poor);
+  word.sequence = 2;
+  word.as_of = at(1000000);
+  sut.take(word, Vec2::Zero());
+  const auto later = sut.at(at(1000400), Vec2::Zero());
+  ASSERT_EQ(later.size(), 1U);
+  EXPECT_NEAR(later[0].stale_s, 0.4, 1e-6);
 }
 
 TEST(NeighbourTable, GrowsARobotThatIsSilentForTooLong) {

@@ -205,5 +205,56 @@ TEST(SafetyFilter, GetsOutOfTheWayOfAnObstacleThatComes) {
   }
 }
 
+TEST(SafetyFilter, DoesNotFollowOntoOneThatMayHaveStalled) {
+  const World world = empty_world();
+  SafetyFilter sut(world, options());
+  // Ahead, as fast as we are, last heard half a second ago: a command holds for 0.2 s.
+  Neighbour ahead{.robot = RobotId(1),
+                  .position_m = {1.0, 0.0},
+                  .velocity_mps = {1.0, 0.0},
+                  .radius_m = kRadius_m,
+                  .stale_s = kPeriod_s,
+                  .stalled_s = 0.0};
+  const Vec2 wish(1.0, 0.0);
+
+  EXPECT_NEAR(sut.filter(Vec2::Zero(), wish, {&ahead, 1}).x(), 1.0, 1e-9);
+
+  ahead.stalled_s = 0.4;  // at 0.6, so that the bodies are 0.2 m apart
+  const double margin_m = options().neighbour_margin_m / 3.0;
+  EXPECT_NEAR(sut.filter(Vec2::Zero(), wish, {&ahead, 1}).x(),
+              (0.6 - 2.0 * kRadius_m - margin_m) / (2.0 * kPeriod_s), 1e-9);
+  ahead.stalled_s = 0.8;  // it would be upon us: it is not, but we come no nearer
+  EXPECT_NEAR(sut.filter(Vec2::Zero(), wish, {&ahead, 1}).x(), 0.0, 1e-9);
+  // One that comes nearer is where it is believed, or farther.
+  ahead.velocity_mps = {-0.1, 0.0};
+  EXPECT_GT(sut.filter(Vec2::Zero(), wish, {&ahead, 1}).x(), 0.1);
+}
+
+TEST(SafetyFilter, KnowsHowLongThoseWhoFollowWaitForAWord) {
+  const World world = empty_world();
+  const SafetyFilter sut(world, options());
+  Neighbour behind{.robot = RobotId(1),
+                   .position_m = {-1.0, 0.0},
+                   .velocity_mps = {1.0, 0.0},
+                   .radius_m = kRadius_m};
+
+  const Listeners followed = sut.listeners(Vec2::Zero(), {1.0, 0.0}, {&behind, 1});
+  const Listeners met = sut.listeners(Vec2::Zero(), {-1.0, 0.0}, {&behind, 1});
+
+  EXPECT_NEAR(followed.nearest_gap_m, 1.0 - 2.0 * kRadius_m, 1e-12);
+  EXPECT_GT(met.patience_s, 1e6);
+  // After exactly that long the follower is as fast as it may be.
+  Neighbour ahead{.robot = RobotId(0),
+                  .position_m = {1.0, 0.0},
+                  .velocity_mps = {1.0, 0.0},
+                  .radius_m = kRadius_m,
+                  .stale_s = kPeriod_s,
+                  .stalled_s = followed.patience_s - 2.0 * kPeriod_s};
+  SafetyFilter follower(world, options());
+  EXPECT_NEAR(follower.filter(Vec2::Zero(), {1.0, 0.0}, {&ahead, 1}).x(), 1.0, 1e-9);
+  ahead.stalled_s += 0.05;
+  EXPECT_LT(follower.filter(Vec2::Zero(), {1.0, 0.0}, {&ahead, 1}).x(), 0.8);
+}
+
 }  // namespace
 }  // namespace swarm::agent
