@@ -17,9 +17,10 @@ constexpr std::array kTurns_rad{0.4, 0.9, 1.4};  // to the right, while blocked,
 constexpr double kFree = 0.3;                    // … faster than this share of the wish
 constexpr double kFollowMargin = 0.9;            // share of the margin that following may give up
 constexpr double kEvade = 1.0 / 3.0;             // of the margin: kept to who does not keep off
-constexpr double kFresh = 1.01;                  // periods: known at once, but for rounding
-constexpr double kWithdraw = 0.9;                // of the largest speed: out of an obstacle
-constexpr double kLeastWish_mps = 0.1;           // slower wishes are not worth a detour
+constexpr double kFollows = 3.5;        // periods: who is known from before may have turned
+constexpr double kFresh = 1.01;         // periods: known at once, but for rounding
+constexpr double kWithdraw = 0.9;       // of the largest speed: out of an obstacle
+constexpr double kLeastWish_mps = 0.1;  // slower wishes are not worth a detour
 
 }  // namespace
 
@@ -64,8 +65,10 @@ SafetyFilter::Pace SafetyFilter::pace(double stale_s) const {
           options_.neighbour_margin_m + 2.0 * options_.speed_max_mps * time_s / options_.gap_share,
       .closing_hz = options_.gap_share / (2.0 * time_s),
       // If it stops at once …
-      .follow =
-          std::min(options_.follow_share, kFollowMargin * options_.neighbour_margin_m / given_up_m),
+      .follow = stale_s > kFollows * period_s
+                    ? 0.0
+                    : std::min(options_.follow_share,
+                               kFollowMargin * options_.neighbour_margin_m / given_up_m),
   };
 }
 
