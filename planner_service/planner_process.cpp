@@ -97,6 +97,8 @@ Result<void> PlannerProcess::Impl::join(const shell::RunInfo& run) {
       link::Meeting{.domain = run.domain,
                     .server = {run.discovery_host, run.discovery_port},
                     .hubs = run.hubs,
+                    .host = run.host,
+                    .interface = run.interface,
                     .faults = link::ReceptionFaults{.faults = options.faults,
                                                     .seed = mix_seed(run.seed, kFaultSeed),
                                                     .run_began = run.began}},

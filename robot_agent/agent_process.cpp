@@ -110,6 +110,8 @@ Result<void> AgentProcess::Impl::join(const shell::RunInfo& run) {
       link::Meeting{.domain = run.domain,
                     .server = {run.discovery_host, run.discovery_port},
                     .hubs = run.hubs,
+                    .host = run.host,
+                    .interface = run.interface,
                     .faults = faults},
       options.number, fmt::format("robot_agent_{}", options.first.value()), options.vendor);
   if (!made) return tl::unexpected(made.error());
@@ -132,7 +134,8 @@ Result<void> AgentProcess::Impl::join(const shell::RunInfo& run) {
 
   const LinkSpec& l = mission.link;
   if (run.channel == Channel::kGroups) {
-    link::GroupChannelOptions groups{.domain = run.domain, .faults = faults};
+    link::GroupChannelOptions groups{
+        .domain = run.domain, .interface = run.interface, .faults = faults};
     groups.cells.cell_size_m = l.group_cell_size_m;
     groups.cells.hear_radius_m = l.hear_radius_m;
     auto channel = link::make_group_channel(groups);
@@ -147,7 +150,9 @@ Result<void> AgentProcess::Impl::join(const shell::RunInfo& run) {
   const link::WireLimits limits = link::wire_limits(mission);
   inbox.emplace(Readers{std::move(*plan_reader), std::move(*scene_reader),
                         std::move(*heartbeat_reader), std::move(*command_reader)},
-                *states, limits, from_seconds(mission.timing.planner_silence_s),
+                *states, limits,
+                MissionWatch(from_seconds(mission.timing.planner_silence_s),
+                             from_seconds(l.send_interval_max_s + 2.0 / mission.control.rate_hz)),
                 hears_farthest_m(mission));
   return {};
 }

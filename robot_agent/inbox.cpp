@@ -16,11 +16,11 @@ constexpr Duration kLatePlausible = std::chrono::seconds(1);
 }  // namespace
 
 Inbox::Inbox(Readers readers, link::StateChannel& states, const link::WireLimits& limits,
-             Duration planner_silence, double hear_radius_m)
+             const MissionWatch& mission, double hear_radius_m)
     : readers_(std::move(readers)),
       states_(states),
       limits_(limits),
-      mission_(planner_silence),
+      mission_(mission),
       heard_cells_(hear_radius_m) {}
 
 void Inbox::receive_plans(std::uint64_t newest) {

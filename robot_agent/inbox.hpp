@@ -66,7 +66,7 @@ class Inbox {
  public:
   /// No robot listens farther than `hear_radius_m`.
   Inbox(Readers readers, link::StateChannel& states, const link::WireLimits& limits,
-        Duration planner_silence, double hear_radius_m);
+        const MissionWatch& mission, double hear_radius_m);
 
   /// Takes what arrived. `own(id)` names the guard of a robot of this process, or nullptr. Robots
   /// of one process hear each other over the bus like everyone else; a robot skips its own echo.

@@ -18,25 +18,33 @@ namespace swarm::agent {
 /// except that a stop is always obeyed.
 class MissionWatch {
  public:
-  explicit MissionWatch(Duration planner_silence) : planner_silence_(planner_silence) {}
+  /// `settle`: so long a planner must be heard again after a silence. Whoever was cut off from it
+  /// was from others, and hears them, too, before it moves.
+  explicit MissionWatch(Duration planner_silence, Duration settle = Duration::zero())
+      : planner_silence_(planner_silence), settle_(settle) {}
 
   enum class Outcome { kObeyed, kDuplicate, kStale };
   Outcome on_command(CommandKind kind, std::uint64_t command_id);
 
   void on_heartbeat(SteadyTime now) {
+    if (!heard_ || now - heard_at_ > planner_silence_) back_at_ = now;
     heard_ = true;
     heard_at_ = now;
   }
 
   MissionPhase phase() const { return phase_; }
-  bool planner_alive(SteadyTime now) const { return heard_ && now - heard_at_ <= planner_silence_; }
+  bool planner_alive(SteadyTime now) const {
+    return heard_ && now - heard_at_ <= planner_silence_ && now - back_at_ >= settle_;
+  }
 
  private:
   Duration planner_silence_;
+  Duration settle_;
   MissionPhase phase_ = MissionPhase::kReady;
   std::uint64_t last_command_ = 0;
   bool heard_ = false;
   SteadyTime heard_at_;
+  SteadyTime back_at_;  // heard without a silence since
 };
 
 }  // namespace swarm::agent

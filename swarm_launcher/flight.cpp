@@ -26,6 +26,7 @@ namespace {
 
 constexpr Duration kStep = std::chrono::milliseconds(20);
 constexpr std::uint32_t kPlannerStrength = 100;
+constexpr Duration kBoxesPatience = std::chrono::minutes(3);
 
 int number_of(EndSignal signal) {
   switch (signal) {
@@ -37,6 +38,10 @@ int number_of(EndSignal signal) {
       return SIGKILL;
   }
   return SIGKILL;
+}
+
+std::uint32_t remote_processes(const FlightOptions& options) {
+  return (options.remote + options.per_process - 1) / options.per_process;
 }
 
 }  // namespace
@@ -60,10 +65,21 @@ Result<std::unique_ptr<Flight>> Flight::make(FlightOptions options, FlightObserv
   }
   const std::uint32_t agents =
       (options.mission.robots.count + options.per_process - 1) / options.per_process;
+  if (options.remote > 0 && options.channel.value_or(Channel::kGroups) != Channel::kGroups) {
+    return fail(ErrorCode::kBadInput, "--remote: robots of several hosts meet by --channel groups");
+  }
+  if (options.remote > 0) options.channel = Channel::kGroups;
+  if (options.remote > options.mission.robots.count ||
+      (options.mission.robots.count - options.remote) % options.per_process != 0) {
+    return fail(ErrorCode::kBadInput,
+                fmt::format("--remote {}: of {} robots that many must be there, and what is left "
+                            "must be whole processes of {}",
+                            options.remote, options.mission.robots.count, options.per_process));
+  }
   auto channel = choose_channel({.wanted = options.channel,
                                  .agents = agents,
                                  .robots_per_process = options.per_process,
-                                 .multicast = link::loopback_carries_multicast()});
+                                 .multicast = link::carries_multicast(options.interface)});
   if (!channel) return tl::unexpected(channel.error());
   if (options.agent_dds != AgentDds::kFastDds && channel->channel != Channel::kGroups) {
     return fail(ErrorCode::kBadInput,
@@ -89,23 +105,26 @@ Flight::~Flight() {
 }
 
 Result<void> Flight::join() {
-  link::Meeting meeting{.domain = lock_.domain(), .hubs = hubs_};
+  link::Meeting meeting{.domain = lock_.domain(),
+                        .hubs = hubs_,
+                        .host = options_.interface,
+                        .interface = options_.interface};
   if (hubs_ == 0) {
     auto server = link::make_discovery_server(lock_.domain(), 0);
     if (!server) return tl::unexpected(server.error());
     server_ = std::move(*server);
     meeting.server = server_->address();
   }
-  if (auto written = shell::write_run_info(dir_, {.domain = meeting.domain,
-                                                  .discovery_host = meeting.server.host,
-                                                  .discovery_port = meeting.server.port,
-                                                  .hubs = meeting.hubs,
-                                                  .channel = channel_.channel,
-                                                  .seed = options_.seed,
-                                                  .began = utc_now()});
-      !written) {
-    return written;
-  }
+  const shell::RunInfo run{.domain = meeting.domain,
+                           .discovery_host = meeting.server.host,
+                           .discovery_port = meeting.server.port,
+                           .hubs = meeting.hubs,
+                           .host = options_.interface,
+                           .interface = options_.interface,
+                           .channel = channel_.channel,
+                           .seed = options_.seed,
+                           .began = utc_now()};
+  if (auto written = shell::write_run_info(dir_, run); !written) return written;
   auto participant = link::join_as_launcher(meeting);
   if (!participant) return tl::unexpected(participant.error());
   participant_ = std::move(*participant);
@@ -128,6 +147,7 @@ Result<void> Flight::join() {
   limits_ = link::wire_limits(options_.mission);
   supervisor_.emplace(SupervisorOptions{.robots = options_.mission.robots.count,
                                         .per_process = options_.per_process,
+                                        .remote_processes = remote_processes(options_),
                                         .launcher = options_.mission.launcher,
                                         .script = options_.mission.script},
                       std::chrono::steady_clock::now());
@@ -136,7 +156,39 @@ Result<void> Flight::join() {
   events_.write(utc_now(), "launcher", link::Severity::kInfo, "channel", told);
   std::fprintf(stderr, "%s\n", told.c_str());
   view_ = SwarmView(options_.mission.robots.count, options_.mission.link.hear_radius_m);
+  return options_.remote > 0 ? open_to_hosts(run) : Result<void>{};
+}
+
+Result<void> Flight::open_to_hosts(const shell::RunInfo& run) {
+  auto server = LineServer::listen({options_.interface, options_.join_port});
+  if (!server) return tl::unexpected(server.error());
+  const std::uint32_t first = options_.mission.robots.count - options_.remote;
+  hosts_.emplace(std::move(*server),
+                 HostOffer{.run = run,
+                           .first_robot = first,
+                           .robots = options_.remote,
+                           .per_process = options_.per_process,
+                           .first_process = first / options_.per_process,
+                           .mission_yaml = to_yaml(options_.mission)},
+                 dir_);
+  std::fprintf(stderr, "%u robots are for other hosts: swarm_launcher join %s:%u\n",
+               options_.remote, options_.interface.c_str(), hosts_->port());
   return {};
+}
+
+/// The audit needs what happened to the robots of other hosts.
+void Flight::bring_boxes_home() {
+  const auto until = std::chrono::steady_clock::now() + kBoxesPatience;
+  while (hosts_ && !hosts_->collect() && std::chrono::steady_clock::now() < until) {
+    progress_.show("ending", fmt::format("{} black boxes on their way", hosts_->missing_boxes()));
+    std::this_thread::sleep_for(kStep);
+  }
+  if (hosts_ && hosts_->missing_boxes() > 0) {
+    log({.warning = true,
+         .code = "boxes-missing",
+         .text =
+             fmt::format("{} black boxes of other hosts did not come", hosts_->missing_boxes())});
+  }
 }
 
 Result<void> Flight::start(ProcessIndex process) {
@@ -205,13 +257,18 @@ Result<void> Flight::act(const Action& action) {
     for (const auto& [pid, process] : children_) {
       if (process == signal->process) ::kill(pid, number_of(signal->signal));
     }
+    if (hosts_) hosts_->end(signal->process, signal->signal);
   } else if (const auto* event = std::get_if<LogEvent>(&action)) {
-    events_.write(utc_now(), "launcher",
-                  event->warning ? link::Severity::kWarning : link::Severity::kInfo, event->code,
-                  event->text);
-    if (event->warning) progress_.say(event->text);
+    log(*event);
   }
   return {};
+}
+
+void Flight::log(const LogEvent& event) {
+  events_.write(utc_now(), "launcher",
+                event.warning ? link::Severity::kWarning : link::Severity::kInfo, event.code,
+                event.text);
+  if (event.warning) progress_.say(event.text);
 }
 
 void Flight::reap(SteadyTime now) {
@@ -225,7 +282,7 @@ void Flight::reap(SteadyTime now) {
   }
 }
 
-void Flight::read_bus() {
+void Flight::read_bus(SteadyTime now) {
   participant_->receive();
   statuses_.clear();
   status_reader_->take(statuses_);
@@ -237,6 +294,7 @@ void Flight::read_bus() {
     if (observer_ != nullptr) observer_->on_status(status);
     for (const link::RobotStatusMessage& robot : status.robots) {
       view_.take(robot);
+      if (hosts_) hosts_->on_status(RobotId(robot.robot_id), now);
       supervisor_->on_status(RobotId(robot.robot_id),
                              {.has_plan = status.plan_version > 0,
                               .hears_neighbours = view_.hears_neighbours(robot.robot_id),
@@ -308,7 +366,10 @@ Result<Measurements> Flight::fly() {
     for (; interrupts_seen_ < shell::stop_requests(); ++interrupts_seen_)
       supervisor_->on_interrupt();
     reap(now);
-    read_bus();
+    read_bus(now);
+    if (hosts_) {
+      for (const LogEvent& event : hosts_->step(*supervisor_, now)) log(event);
+    }
     serve_control(now);
     for (const Action& action : supervisor_->step(now)) {
       if (auto done = act(action); !done) return tl::unexpected(done.error());
@@ -317,6 +378,7 @@ Result<Measurements> Flight::fly() {
     show(now);
     std::this_thread::sleep_for(kStep);
   }
+  bring_boxes_home();
   rusage own = {};
   ::getrusage(RUSAGE_SELF, &own);
   measurements_.cpu_s += static_cast<double>(own.ru_utime.tv_sec + own.ru_stime.tv_sec) +

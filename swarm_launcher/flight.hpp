@@ -15,11 +15,13 @@
 #include "swarm_core/base/result.hpp"
 #include "swarm_core/mission/channel.hpp"
 #include "swarm_core/mission/mission.hpp"
+#include "swarm_core/shell/run_directory.hpp"
 #include "swarm_launcher/agent_dds.hpp"
 #include "swarm_launcher/channel_choice.hpp"
 #include "swarm_launcher/control_socket.hpp"
 #include "swarm_launcher/domain_lock.hpp"
 #include "swarm_launcher/event_log.hpp"
+#include "swarm_launcher/hosts/remote_hosts.hpp"
 #include "swarm_launcher/progress.hpp"
 #include "swarm_launcher/scene_keeper.hpp"
 #include "swarm_launcher/summary.hpp"
@@ -40,6 +42,9 @@ struct FlightOptions {
   int domain = -1;                   ///< DDS domain; negative: a free one
   std::optional<Channel> channel{};  ///< empty: choose_channel() decides
   AgentDds agent_dds = AgentDds::kFastDds;
+  std::string interface = "127.0.0.1";  ///< address of the network's interface
+  std::uint32_t remote = 0;             ///< robots that other hosts start: the last ones
+  std::uint16_t join_port = 0;          ///< where those hosts come to; 0: a free one
 };
 
 class Flight;
@@ -82,11 +87,14 @@ class Flight {
   Result<void> join();
   Result<void> act(const Action& action);
   Result<void> start(ProcessIndex process);
+  Result<void> open_to_hosts(const shell::RunInfo& run);
+  void log(const LogEvent& event);
+  void bring_boxes_home();
   void send(CommandKind kind);
   Result<std::string> change(const SceneChange& change);
   void serve(const ControlServer::Request& request, SteadyTime now);
   void reap(SteadyTime now);
-  void read_bus();
+  void read_bus(SteadyTime now);
   void serve_control(SteadyTime now);
   void show(SteadyTime now);
 
@@ -104,6 +112,7 @@ class Flight {
   link::ReaderPtr<link::EventMessage> event_reader_;
   link::WriterPtr<link::CommandMessage> command_writer_;
   std::optional<ControlServer> control_;
+  std::optional<RemoteHosts> hosts_;
   std::vector<ControlServer::ClientId> stopping_;  // clients who wait for a stop to be confirmed
   std::optional<SceneKeeper> scene_;
   std::optional<Supervisor> supervisor_;

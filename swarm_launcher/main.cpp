@@ -11,6 +11,7 @@
 #include "swarm_core/shell/program.hpp"
 #include "swarm_core/shell/stop_signal.hpp"
 #include "swarm_launcher/command.hpp"
+#include "swarm_launcher/hosts/join_host.hpp"
 #include "swarm_launcher/plan.hpp"
 #include "swarm_launcher/run.hpp"
 #include "swarm_launcher/simulation/simulate.hpp"
@@ -70,7 +71,28 @@ int main(int argc, char** argv) {
                      "A bad network for what planner and robots receive, like\n"
                      "loss=0.2,delay-ms=150,jitter-ms=50,from=10,to=60")
         ->type_name("FAULT");
+    run_command->add_option("--interface", run.interface, "IPv4 address to meet other hosts on")
+        ->check(CLI::ValidIPV4);
+    run_command->add_option("--remote", run.remote,
+                            "Robots, the last ones, that other hosts start: see join");
+    run_command->add_option("--join-port", run.join_port,
+                            "TCP port where those come to (default: a free one)");
     run_command->add_flag("--json", run.json, "Print the summary as JSON");
+
+    launcher::JoinOptions join;
+    CLI::App* join_command =
+        app.add_subcommand("join", "Fly robots of a run that another host's launcher leads");
+    join_command->add_option("launcher", join.launcher, "As that launcher says it")
+        ->required()
+        ->type_name("HOST:PORT");
+    join_command->add_option("--robots", join.robots, "So many, if there are as many left")
+        ->check(CLI::Range(1, 20000));
+    join_command
+        ->add_option("--interface", join.interface,
+                     "IPv4 address to meet them on (default: of the way to the launcher)")
+        ->check(CLI::ValidIPV4);
+    join_command->add_flag("--cyclonedds", join.cyclone, "The agents speak Cyclone DDS");
+    join_command->add_option("--out", join.out, "Run directory (default: runs/joined-<time>)");
 
     launcher::SoakOptions soak;
     std::string soak_channel = "auto";
@@ -174,6 +196,7 @@ int main(int argc, char** argv) {
     if (run_command->parsed()) return launcher::run_mission(run);
     soak.channel = channels.at(soak_channel);
     if (soak_command->parsed()) return launcher::soak(soak);
+    if (join_command->parsed()) return launcher::join_host(join);
     if (plan_command->parsed()) return launcher::plan_mission(plan);
     const auto faults = parse_link_faults(simulated_fault);
     if (!faults) return tl::unexpected(faults.error());

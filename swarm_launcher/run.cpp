@@ -43,7 +43,10 @@ Result<ExitCode> run_mission(const RunOptions& options) {
                                     .out = options.out,
                                     .domain = options.domain,
                                     .channel = options.channel,
-                                    .agent_dds = options.agent_dds});
+                                    .agent_dds = options.agent_dds,
+                                    .interface = options.interface,
+                                    .remote = options.remote,
+                                    .join_port = options.join_port});
   if (!flight) return tl::unexpected(flight.error());
   std::fprintf(stderr, "run directory: %s\n", (*flight)->dir().c_str());
   const auto measured = (*flight)->fly();

@@ -24,6 +24,9 @@ struct RunOptions {
   int domain = -1;                 ///< DDS domain; negative: a free one
   std::optional<Channel> channel;  ///< empty: choose_channel() decides
   AgentDds agent_dds = AgentDds::kFastDds;
+  std::string interface = "127.0.0.1";  ///< address of the network's interface
+  std::uint32_t remote = 0;             ///< robots that other hosts start
+  std::uint16_t join_port = 0;          ///< where those hosts come to; 0: a free one
 };
 
 /// `swarm_launcher run`: the whole mission with real processes, from planning to the audited

@@ -15,8 +15,13 @@ namespace {
 
 std::filesystem::path default_run_dir(const std::string& mission) {
   const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
-  return std::filesystem::path("runs") /
-         fmt::format("{}-{:%Y%m%d-%H%M%S}", mission, fmt::localtime(now));
+  const std::string name = fmt::format("{}-{:%Y%m%d-%H%M%S}", mission, fmt::localtime(now));
+  const std::filesystem::path runs = "runs";
+  std::filesystem::path dir = runs / name;
+  std::error_code error;
+  for (int i = 2; std::filesystem::exists(dir, error); ++i)
+    dir = runs / fmt::format("{}-{}", name, i);
+  return dir;
 }
 
 }  // namespace

@@ -89,6 +89,14 @@ void Supervisor::on_status(RobotId robot, const RobotReport& report) {
   r.heard = true;
 }
 
+void Supervisor::on_joined(ProcessIndex first, std::uint32_t count, SteadyTime now) {
+  for (std::uint32_t i = first.value(); i < first.value() + count; ++i) {
+    Process& p = processes_.at(i);
+    p.alive = p.started = true;
+    p.started_at = last_start_ = now;
+  }
+}
+
 void Supervisor::on_exit(ProcessIndex process, const ProcessExit& exit, SteadyTime now) {
   Process& p = processes_.at(process.value());
   p.alive = false;
@@ -104,7 +112,7 @@ void Supervisor::on_exit(ProcessIndex process, const ProcessExit& exit, SteadyTi
                          exit.code == static_cast<int>(ExitCode::kUsage));
   const std::uint32_t allowed =
       is_planner ? options_.launcher.respawn_planner_max : options_.launcher.respawn_agent_max;
-  if (!hopeless && p.respawns < allowed) {
+  if (!hopeless && !is_remote(process) && p.respawns < allowed) {
     p.respawn_due = true;
     p.respawn_at = now + kRespawnDelay;
     return;
@@ -162,7 +170,7 @@ void Supervisor::start_due(SteadyTime now, std::vector<Action>& actions) {
   const double due = 1.0 + to_seconds(now - begun_) * options_.launcher.starts_per_s;
   std::uint32_t starting = 0;
   for (std::uint32_t i = 0; i < next_start_; ++i) starting += is_starting(i, now) ? 1 : 0;
-  while (next_start_ < processes() && static_cast<double>(next_start_) < due &&
+  while (next_start_ < local_processes() && static_cast<double>(next_start_) < due &&
          starting++ < options_.launcher.starting_max) {
     processes_[next_start_].alive = processes_[next_start_].started = true;
     processes_[next_start_].started_at = now;
@@ -198,6 +206,9 @@ void Supervisor::gather(SteadyTime now, std::vector<Action>& actions) {
       begin_ending(Outcome::kQuorumTimeout, now);
       return;
     }
+  }
+  for (std::uint32_t i = 0; i < robots_.size(); ++i) {
+    robots_[i].lost = robots_[i].lost || !processes_[1 + i / options_.per_process].started;
   }
   stage_ = Stage::kRunning;
   command(CommandKind::kStart, now, actions);
@@ -304,7 +315,7 @@ std::vector<Action> Supervisor::step(SteadyTime now) {
   repeat_stop(now, actions);
   if (phase_ != MissionPhase::kStopped) start_due(now, actions);
   if (phase_ == MissionPhase::kStopped) stage_ = Stage::kRunning;
-  if (stage_ == Stage::kStarting && next_start_ == processes()) stage_ = Stage::kGathering;
+  if (stage_ == Stage::kStarting && next_start_ == local_processes()) stage_ = Stage::kGathering;
   if (stage_ == Stage::kGathering) gather(now, actions);
   if (stage_ == Stage::kRunning) run(now, actions);
   return actions;

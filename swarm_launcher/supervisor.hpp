@@ -22,6 +22,7 @@ inline constexpr ProcessIndex kPlanner{0};
 struct SupervisorOptions {
   std::uint32_t robots = 0;
   std::uint32_t per_process = 1;
+  std::uint32_t remote_processes = 0;  ///< the last ones: started by other hosts
   LauncherSpec launcher;
   std::vector<ScriptEvent> script;
   Duration signal_grace = std::chrono::seconds(5);  ///< SIGINT, this, SIGTERM, this, SIGKILL
@@ -95,6 +96,8 @@ class Supervisor {
   std::pair<RobotId, std::uint32_t> robots_of(ProcessIndex process) const;
 
   void on_status(RobotId robot, const RobotReport& report);
+  /// Another host has started some of its processes.
+  void on_joined(ProcessIndex first, std::uint32_t count, SteadyTime now);
   void on_exit(ProcessIndex process, const ProcessExit& exit, SteadyTime now);
   void on_command(CommandKind kind, SteadyTime now);  ///< of the user
   /// The swarm has a new goal: who arrives by a plan for an older scene has not arrived.
@@ -139,6 +142,8 @@ class Supervisor {
     bool lost = false;
   };
 
+  bool is_remote(ProcessIndex process) const { return process.value() >= local_processes(); }
+  std::uint32_t local_processes() const { return processes() - options_.remote_processes; }
   bool is_starting(std::uint32_t process, SteadyTime now) const;
   void start_due(SteadyTime now, std::vector<Action>& actions);
   void gather(SteadyTime now, std::vector<Action>& actions);

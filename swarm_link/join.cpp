@@ -28,6 +28,7 @@ FastDdsOptions member(const Meeting& meeting, std::string name, std::uint32_t in
           .domain = meeting.domain,
           .index = index,
           .discovery = meeting.server,
+          .interface = meeting.interface,
           .faults = meeting.faults};
 }
 
@@ -68,7 +69,10 @@ Result<std::unique_ptr<Participant>> join_as_planner(const Meeting& meeting,
     options.ownership_strength = ownership_strength;
     if (meeting.hubs > 0) options.star = Star{.is_hub = true};
     // Of all its hubs one is enough for what launcher and planner have to tell each other.
-    if (meeting.hubs > 0 && hub == 0) options.star->peers = {launcher_index(0)};
+    if (meeting.hubs > 0 && hub == 0) {
+      options.star->peers = {launcher_index(0)};
+      options.star->host = meeting.host;
+    }
     auto made = make_checked(options);
     if (!made) return made;
     hubs.push_back(std::move(*made));
@@ -89,14 +93,17 @@ Result<std::unique_ptr<Participant>> join_as_agent(const Meeting& meeting, std::
                   "--dds cyclonedds: a discovery server of Fast DDS is not for Cyclone DDS; use "
                   "--channel groups, whose processes meet without one");
     }
-    CycloneOptions options{.name = name, .domain = meeting.domain};
+    CycloneOptions options{.name = name,
+                           .domain = meeting.domain,
+                           .peer_host = meeting.host,
+                           .interface = meeting.interface};
     for (const std::uint32_t hub : hubs) {
       options.peer_ports.push_back(announcement_port(meeting.domain, hub));
     }
     return make_cyclone_participant(options);
   }
   FastDdsOptions options = member(meeting, name, agent_index(meeting, number));
-  if (!hubs.empty()) options.star = Star{.peers = std::move(hubs)};
+  if (!hubs.empty()) options.star = Star{.peers = std::move(hubs), .host = meeting.host};
   return make_checked(options);
 }
 

@@ -20,7 +20,9 @@ struct Meeting {
   std::uint32_t domain = 0;
   DiscoveryAddress server{};  ///< used when `hubs` is 0
   std::uint32_t hubs = 0;
-  ReceptionFaults faults{};  ///< of whoever joins
+  std::string host = "127.0.0.1";       ///< where launcher and planner are
+  std::string interface = "127.0.0.1";  ///< of whoever joins: the address of its interface
+  ReceptionFaults faults{};             ///< of whoever joins
 };
 
 /// Hubs for a number of agents: about 25 each; with 300 at one, it never gets done with discovery.

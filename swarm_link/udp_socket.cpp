@@ -7,6 +7,8 @@
 #include <cstring>
 #include <ctime>
 
+#include <arpa/inet.h>
+#include <poll.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -19,10 +21,10 @@ namespace {
 constexpr std::size_t kDatagramBytes = 65'536;
 constexpr std::size_t kBatch = 32;
 
-bool set_membership(int fd, int option, const in_addr& group) {
+bool set_membership(int fd, int option, const in_addr& group, const in_addr& interface) {
   ip_mreqn request{};
   request.imr_multiaddr = group;
-  request.imr_address.s_addr = htonl(INADDR_LOOPBACK);
+  request.imr_address = interface;
   return ::setsockopt(fd, IPPROTO_IP, option, &request, sizeof request) == 0;
 }
 
@@ -39,6 +41,12 @@ UtcTime received_at(msghdr& message, UtcTime otherwise) {
 }
 
 }  // namespace
+
+in_addr to_in_addr(const std::string& address) {
+  in_addr out{};
+  if (::inet_pton(AF_INET, address.c_str(), &out) != 1) out.s_addr = htonl(INADDR_LOOPBACK);
+  return out;
+}
 
 bool is_multicast(const in_addr& address) { return IN_MULTICAST(ntohl(address.s_addr)); }
 
@@ -62,40 +70,40 @@ int open_receive_socket(const sockaddr_in& address, int buffer_bytes, bool share
   return -1;
 }
 
-bool join_group(int fd, const in_addr& group) {
-  return set_membership(fd, IP_ADD_MEMBERSHIP, group);
+bool join_group(int fd, const in_addr& group, const in_addr& interface) {
+  return set_membership(fd, IP_ADD_MEMBERSHIP, group, interface);
 }
 
-bool leave_group(int fd, const in_addr& group) {
-  return set_membership(fd, IP_DROP_MEMBERSHIP, group);
+bool leave_group(int fd, const in_addr& group, const in_addr& interface) {
+  return set_membership(fd, IP_DROP_MEMBERSHIP, group, interface);
 }
 
-int open_group_sender() {
+int open_group_sender(const in_addr& interface) {
   const int fd = ::socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
   if (fd < 0) return -1;
-  ip_mreqn through_loopback{};
-  through_loopback.imr_address.s_addr = htonl(INADDR_LOOPBACK);
-  if (::setsockopt(fd, IPPROTO_IP, IP_MULTICAST_IF, &through_loopback, sizeof through_loopback) ==
-      0) {
-    return fd;
-  }
+  ip_mreqn through{};
+  through.imr_address = interface;
+  if (::setsockopt(fd, IPPROTO_IP, IP_MULTICAST_IF, &through, sizeof through) == 0) return fd;
   ::close(fd);
   return -1;
 }
 
-bool loopback_carries_multicast() {
+bool carries_multicast(const std::string& interface) {
+  constexpr int kPatience_ms = 200;  // the loopback delivers while it sends, others soon after
+  const in_addr own = to_in_addr(interface);
   sockaddr_in address{};
   address.sin_family = AF_INET;
   address.sin_addr.s_addr = htonl(0xEFFF0000);  // 239.255.0.0; port 0: any free one
   socklen_t size = sizeof address;
   const int hearing = open_receive_socket(address, 1 << 16);
-  const int speaking = open_group_sender();
+  const int speaking = open_group_sender(own);
+  pollfd waiting{.fd = hearing, .events = POLLIN, .revents = 0};
   char back = 0;
   const bool heard =
-      hearing >= 0 && speaking >= 0 && join_group(hearing, address.sin_addr) &&
+      hearing >= 0 && speaking >= 0 && join_group(hearing, address.sin_addr, own) &&
       ::getsockname(hearing, reinterpret_cast<sockaddr*>(&address), &size) == 0 &&
       ::sendto(speaking, "?", 1, 0, reinterpret_cast<const sockaddr*>(&address), size) == 1 &&
-      ::recv(hearing, &back, 1, 0) == 1;  // the loopback delivers while it sends
+      ::poll(&waiting, 1, kPatience_ms) == 1 && ::recv(hearing, &back, 1, 0) == 1;
   if (hearing >= 0) ::close(hearing);
   if (speaking >= 0) ::close(speaking);
   return heard;

@@ -6,13 +6,20 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
 
 #include <netinet/in.h>
 
 #include "swarm_link/faulty_path.hpp"
 
-/// UDP on the loopback interface: what the Fast DDS back and the groups share. No vendor's types.
+/// UDP on one interface: what the Fast DDS back and the groups share. No vendor's types. Interfaces
+/// are named by their IPv4 address.
 namespace swarm::link {
+
+inline constexpr const char* kLoopback = "127.0.0.1";
+
+/// 127.0.0.1 if the text is no IPv4 address.
+in_addr to_in_addr(const std::string& address);
 
 bool is_multicast(const in_addr& address);
 
@@ -24,14 +31,14 @@ sockaddr_in multicast_group(std::uint32_t domain, std::uint32_t hash);
 /// hears nothing at all until join_group(). Others share theirs if `shared`.
 int open_receive_socket(const sockaddr_in& address, int buffer_bytes, bool shared = false);
 
-bool join_group(int fd, const in_addr& group);
-bool leave_group(int fd, const in_addr& group);
+bool join_group(int fd, const in_addr& group, const in_addr& interface);
+bool leave_group(int fd, const in_addr& group, const in_addr& interface);
 
-/// A non-blocking socket that sends to multicast groups on the loopback interface; −1 if refused.
-int open_group_sender();
+/// A non-blocking socket that sends to multicast groups on an interface; −1 if refused.
+int open_group_sender(const in_addr& interface);
 
 /// Sends a datagram to a multicast group and looks whether it comes back.
-bool loopback_carries_multicast();
+bool carries_multicast(const std::string& interface = kLoopback);
 
 /// Receive buffer the kernel really grants when `asked_bytes` are asked for.
 int granted_receive_buffer_bytes(int asked_bytes);

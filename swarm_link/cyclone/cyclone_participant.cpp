@@ -26,15 +26,16 @@ std::string config_of(const CycloneOptions& options) {
   if (!options.peer_ports.empty()) {
     discovery += "<SPDPInterval>1.5 s</SPDPInterval><Peers>";
     for (const std::uint16_t port : options.peer_ports) {
-      discovery += fmt::format("<Peer address=\"127.0.0.1:{}\"/>", port);
+      discovery += fmt::format("<Peer address=\"{}:{}\"/>", options.peer_host, port);
     }
     discovery += "</Peers>";
   }
   return fmt::format(
-      "<CycloneDDS><Domain><General><Interfaces><NetworkInterface name=\"lo\" multicast=\"true\"/>"
-      "</Interfaces><AllowMulticast>{}</AllowMulticast></General><Discovery>{}</Discovery>"
+      "<CycloneDDS><Domain><General><Interfaces><NetworkInterface address=\"{}\" "
+      "multicast=\"true\"/></Interfaces><AllowMulticast>{}</AllowMulticast></"
+      "General><Discovery>{}</Discovery>"
       "</Domain></CycloneDDS>",
-      options.peer_ports.empty(), discovery);
+      options.interface, options.peer_ports.empty(), discovery);
 }
 
 constexpr dds_duration_t kMaxBlocking = DDS_MSECS(100);

@@ -17,14 +17,16 @@ struct CycloneOptions {
   std::string name;  ///< participant name, seen in DDS tools
   std::uint32_t domain = 0;
   std::uint32_t ownership_strength = 0;  ///< of exclusive writers
-  /// Ports on the loopback interface where others listen for announcements. It announces itself
-  /// there and nowhere else, so that it learns of them alone; empty: to all, by multicast.
+  /// Ports of a host where others listen for announcements. It announces itself there and nowhere
+  /// else, so that it learns of them alone; empty: to all, by multicast.
   std::vector<std::uint16_t> peer_ports{};
+  std::string peer_host = "127.0.0.1";
+  std::string interface = "127.0.0.1";  ///< address of the interface it speaks on
 };
 
-/// Joins a domain on the loopback interface. All participants of a process in a domain must have
-/// the same peers. Cyclone's own threads receive; take() hands over what they have. What does not
-/// decode is dropped by the vendor, uncounted.
+/// Joins a domain. All participants of a process in a domain must have the same peers and
+/// interface. Cyclone's own threads receive; take() hands over what they have. What does not decode
+/// is dropped by the vendor, uncounted.
 Result<std::unique_ptr<Participant>> make_cyclone_participant(const CycloneOptions& options);
 
 }  // namespace swarm::link

@@ -56,19 +56,20 @@ class FastDdsParticipant final : public TypedParticipant<FastDdsParticipant> {
   Result<void> self_check() const override {
     if (!sockets_->hears_data() || !sockets_->hears_metatraffic()) {
       return fail(ErrorCode::kEnvironment,
-                  fmt::format("participant '{}' is deaf: none of {} UDP ports from 127.0.0.1:{} on "
-                              "(domain {}, index {}) was free for its {}; end old processes or use "
-                              "another domain",
-                              options_.name, options_.port_tries + 1,
+                  fmt::format("participant '{}' is deaf: none of {} UDP ports from {}:{} on "
+                              "(domain {}, index {}) was free for its {}; end old processes, use "
+                              "another domain, or give the address of an interface",
+                              options_.name, options_.port_tries + 1, options_.interface,
                               sockets_->hears_metatraffic() ? ports_.data : ports_.metatraffic,
                               options_.domain, options_.index,
                               sockets_->hears_metatraffic() ? "data" : "discovery"));
     }
     if (options_.star && options_.star->is_hub && !sockets_->hears(ports_.metatraffic)) {
       return fail(ErrorCode::kEnvironment,
-                  fmt::format("hub '{}': UDP port 127.0.0.1:{} (domain {}, index {}) is taken; end "
+                  fmt::format("hub '{}': UDP port {}:{} (domain {}, index {}) is taken; end "
                               "old processes or use another domain",
-                              options_.name, ports_.metatraffic, options_.domain, options_.index));
+                              options_.name, options_.interface, ports_.metatraffic,
+                              options_.domain, options_.index));
     }
     const int granted = granted_receive_buffer_bytes(options_.receive_buffer_bytes);
     if (granted < options_.receive_buffer_bytes / 2) {
@@ -138,7 +139,8 @@ class FastDdsParticipant final : public TypedParticipant<FastDdsParticipant> {
   }
 
   FastDdsOptions options_;
-  bool multicast_ = options_.receive_at_tick && loopback_carries_multicast();  // else by unicast
+  bool multicast_ =
+      options_.receive_at_tick && carries_multicast(options_.interface);  // else by unicast
   Ports ports_;
   std::shared_ptr<ReceiveSockets> sockets_;
   dds::DomainParticipant* participant_;
@@ -166,7 +168,8 @@ Result<std::unique_ptr<Participant>> make_fastdds_participant(const FastDdsOptio
   try {
     set_up_library();
     auto sockets = std::make_shared<ReceiveSockets>(ports->data, options.receive_at_tick,
-                                                    options.receive_buffer_bytes, options.faults);
+                                                    options.receive_buffer_bytes, options.interface,
+                                                    options.faults);
     // The vendor announces a participant before it hands it what its sockets receive: a hub that
     // answers at once would go unheard, and does not repeat itself.
     sockets->set_silent(options.star.has_value());

@@ -26,9 +26,10 @@ struct DiscoveryAddress {
 struct Star {
   bool is_hub = false;  ///< others know its port: it listens at that of its index, or is of no use
   std::vector<std::uint32_t> peers{};  ///< indices of the hubs to announce itself to
+  std::string host = "127.0.0.1";      ///< where those are
 };
 
-/// Where a hub of this index listens for announcements, at 127.0.0.1.
+/// Where a hub of this index listens for announcements, at its host.
 std::uint16_t announcement_port(std::uint32_t domain, std::uint32_t index);
 
 struct FastDdsOptions {
@@ -37,6 +38,7 @@ struct FastDdsOptions {
   std::uint32_t index = 0;       ///< unique per domain; decides the first ports tried
   DiscoveryAddress discovery{};  ///< the server this participant is a client of, unless in a …
   std::optional<Star> star{};
+  std::string interface = "127.0.0.1";  ///< address of the interface it speaks on
   /// Of exclusive writers. A stand-by planner that waits in the background has less; one that
   /// replaces another must have more: a killed writer keeps its topic until its lease ends, and an
   /// equal or weaker one goes unheard that long (measured with a lease of 15 s: 14 s, against 0.9
@@ -59,7 +61,7 @@ class DiscoveryServer {
 Result<std::unique_ptr<DiscoveryServer>> make_discovery_server(std::uint32_t domain,
                                                                std::uint16_t port);
 
-/// Joins a run, by its discovery server or in a star; UDP on loopback only, no shared memory.
+/// Joins a run, by its discovery server or in a star; UDP on one interface, no shared memory.
 Result<std::unique_ptr<Participant>> make_fastdds_participant(const FastDdsOptions& options);
 
 }  // namespace swarm::link

@@ -33,9 +33,10 @@ rtps::Locator to_locator(const sockaddr_in& address) {
   return locator;
 }
 
-std::shared_ptr<rtps::UDPv4TransportDescriptor> loopback_udp(int buffer_bytes) {
+std::shared_ptr<rtps::UDPv4TransportDescriptor> udp_on(const std::string& interface,
+                                                       int buffer_bytes) {
   auto udp = std::make_shared<rtps::UDPv4TransportDescriptor>();
-  udp->interfaceWhiteList = {"127.0.0.1"};
+  udp->interfaceWhiteList = {interface};
   udp->receiveBufferSize = static_cast<std::uint32_t>(buffer_bytes);
   udp->sendBufferSize = static_cast<std::uint32_t>(buffer_bytes);
   return udp;
@@ -96,8 +97,11 @@ class LoopbackTransport final : public rtps::ChainingTransport {
 }  // namespace
 
 ReceiveSockets::ReceiveSockets(std::uint16_t first_data_port, bool at_tick, int buffer_bytes,
-                               const ReceptionFaults& faults)
-    : first_data_port_(first_data_port), at_tick_(at_tick), buffer_bytes_(buffer_bytes) {
+                               const std::string& interface, const ReceptionFaults& faults)
+    : first_data_port_(first_data_port),
+      at_tick_(at_tick),
+      buffer_bytes_(buffer_bytes),
+      interface_(to_in_addr(interface)) {
   if (at_tick_) drain_.emplace(faults);
 }
 
@@ -125,7 +129,7 @@ const ReceiveSockets::Socket* ReceiveSockets::find(const Locator& locator) const
 
 bool ReceiveSockets::open(const Locator& locator, Receiver* receiver) {
   sockaddr_in address = to_address(locator);
-  if (!is_multicast(address.sin_addr)) address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  if (!is_multicast(address.sin_addr)) address.sin_addr = interface_;
   const int fd = open_receive_socket(address, buffer_bytes_);
   if (fd < 0) return false;
   const std::lock_guard lock(mutex_);
@@ -147,7 +151,7 @@ bool ReceiveSockets::join(const Locator& group) {
   const std::lock_guard lock(mutex_);
   Socket* const socket = find(group);
   if (socket == nullptr) return false;
-  if (socket->members == 0 && !join_group(socket->fd, to_address(group).sin_addr)) {
+  if (socket->members == 0 && !join_group(socket->fd, to_address(group).sin_addr, interface_)) {
     return false;
   }
   ++socket->members;
@@ -158,7 +162,7 @@ void ReceiveSockets::leave(const Locator& group) {
   const std::lock_guard lock(mutex_);
   Socket* const socket = find(group);
   if (socket == nullptr || socket->members == 0) return;
-  if (--socket->members == 0) leave_group(socket->fd, to_address(group).sin_addr);
+  if (--socket->members == 0) leave_group(socket->fd, to_address(group).sin_addr, interface_);
 }
 
 bool ReceiveSockets::is_open(const Locator& locator) const {
@@ -208,8 +212,8 @@ bool ReceiveSockets::hears(std::uint32_t port) const {
 }
 
 LoopbackTransportDescriptor::LoopbackTransportDescriptor(
-    std::shared_ptr<ReceiveSockets> receive_sockets, int buffer_bytes)
-    : ChainingTransportDescriptor(loopback_udp(buffer_bytes)),
+    std::shared_ptr<ReceiveSockets> receive_sockets, const std::string& interface, int buffer_bytes)
+    : ChainingTransportDescriptor(udp_on(interface, buffer_bytes)),
       sockets(std::move(receive_sockets)) {}
 
 rtps::TransportInterface* LoopbackTransportDescriptor::create_transport() const {

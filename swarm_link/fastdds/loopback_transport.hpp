@@ -7,6 +7,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include <fastdds/rtps/transport/ChainingTransport.h>
@@ -14,7 +15,7 @@
 
 #include "swarm_link/udp_socket.hpp"
 
-/// UDP on the loopback interface whose user-data sockets have no receive thread: the owner drains
+/// UDP on one interface whose user-data sockets have no receive thread: the owner drains
 /// them from its own tick. The wake-up per datagram is two thirds of what receiving a small sample
 /// costs; this removes it. Metatraffic (discovery) stays with the vendor's threads.
 namespace swarm::link::fastdds {
@@ -26,7 +27,7 @@ class ReceiveSockets {
   /// `first_data_port`: data ports are this one and every second one above it (the vendor's rule
   /// for finding a free port adds 2). Zero: every port stays with the vendor.
   ReceiveSockets(std::uint16_t first_data_port, bool at_tick, int buffer_bytes,
-                 const ReceptionFaults& faults = {});
+                 const std::string& interface = kLoopback, const ReceptionFaults& faults = {});
   ~ReceiveSockets();
   ReceiveSockets(const ReceiveSockets&) = delete;
   ReceiveSockets& operator=(const ReceiveSockets&) = delete;
@@ -73,6 +74,7 @@ class ReceiveSockets {
   std::uint16_t first_data_port_;
   bool at_tick_;
   int buffer_bytes_;
+  in_addr interface_;
   mutable std::mutex mutex_;
   std::vector<Socket> sockets_;
   std::vector<std::uint32_t> opened_;
@@ -84,12 +86,13 @@ class ReceiveSockets {
 eprosima::fastdds::rtps::Locator to_locator(const sockaddr_in& address);
 sockaddr_in to_address(const eprosima::fastdds::rtps::Locator& locator);
 
-/// The vendor's own UDP transport, bound to the loopback interface.
-std::shared_ptr<eprosima::fastdds::rtps::UDPv4TransportDescriptor> loopback_udp(int buffer_bytes);
+/// The vendor's own UDP transport, bound to one interface.
+std::shared_ptr<eprosima::fastdds::rtps::UDPv4TransportDescriptor> udp_on(
+    const std::string& interface, int buffer_bytes);
 
 struct LoopbackTransportDescriptor : eprosima::fastdds::rtps::ChainingTransportDescriptor {
   explicit LoopbackTransportDescriptor(std::shared_ptr<ReceiveSockets> receive_sockets,
-                                       int buffer_bytes);
+                                       const std::string& interface, int buffer_bytes);
   eprosima::fastdds::rtps::TransportInterface* create_transport() const override;
 
   std::shared_ptr<ReceiveSockets> sockets;

@@ -7,7 +7,6 @@
 
 #include <fastdds/dds/log/Log.hpp>
 #include <fastdds/dds/log/StdoutErrConsumer.hpp>
-#include <fastrtps/utils/IPLocator.h>
 #include <fastrtps/xmlparser/XMLProfileManager.h>
 #include <fmt/format.h>
 
@@ -20,19 +19,21 @@ namespace rtps = eprosima::fastrtps::rtps;
 
 namespace {
 
-rtps::Locator_t loopback(std::uint16_t port) {
-  rtps::Locator_t locator;
-  locator.kind = LOCATOR_KIND_UDPv4;
-  rtps::IPLocator::setIPv4(locator, 127, 0, 0, 1);
-  rtps::IPLocator::setPhysicalPort(locator, port);
-  return locator;
+rtps::Locator_t locator(const std::string& address, std::uint16_t port) {
+  sockaddr_in at{};
+  at.sin_addr = to_in_addr(address);
+  at.sin_port = htons(port);
+  return to_locator(at);
 }
 
-dds::DomainParticipantQos common_qos(std::shared_ptr<ReceiveSockets> sockets, int buffer_bytes) {
+rtps::Locator_t loopback(std::uint16_t port) { return locator(kLoopback, port); }
+
+dds::DomainParticipantQos common_qos(std::shared_ptr<ReceiveSockets> sockets,
+                                     const std::string& interface, int buffer_bytes) {
   dds::DomainParticipantQos qos;
   qos.transport().use_builtin_transports = false;
   qos.transport().user_transports.push_back(
-      std::make_shared<LoopbackTransportDescriptor>(std::move(sockets), buffer_bytes));
+      std::make_shared<LoopbackTransportDescriptor>(std::move(sockets), interface, buffer_bytes));
   qos.transport().listen_socket_buffer_size = static_cast<std::uint32_t>(buffer_bytes);
   qos.transport().send_socket_buffer_size = static_cast<std::uint32_t>(buffer_bytes);
 
@@ -58,7 +59,7 @@ void announce_to(const Star& star, std::uint32_t domain, rtps::BuiltinAttributes
                                                    ? eprosima::fastrtps::Duration_t{3, 0}
                                                    : eprosima::fastrtps::Duration_t{1, 500'000'000};
   for (const std::uint32_t peer : star.peers) {
-    builtin.initialPeersList.push_back(loopback(metatraffic_port(domain, peer)));
+    builtin.initialPeersList.push_back(locator(star.host, metatraffic_port(domain, peer)));
   }
 }
 
@@ -93,12 +94,13 @@ rtps::GuidPrefix_t server_prefix(std::uint32_t domain, std::uint16_t port) {
 
 dds::DomainParticipantQos client_qos(const FastDdsOptions& options, Ports ports,
                                      std::shared_ptr<ReceiveSockets> sockets) {
-  auto qos = common_qos(std::move(sockets), options.receive_buffer_bytes);
+  auto qos = common_qos(std::move(sockets), options.interface, options.receive_buffer_bytes);
   qos.name(options.name.c_str());
   auto& wire = qos.wire_protocol();
   // Explicit, so that the transport knows which port is data.
-  wire.default_unicast_locator_list.push_back(loopback(ports.data));
-  wire.builtin.metatrafficUnicastLocatorList.push_back(loopback(ports.metatraffic));
+  wire.default_unicast_locator_list.push_back(locator(options.interface, ports.data));
+  wire.builtin.metatrafficUnicastLocatorList.push_back(
+      locator(options.interface, ports.metatraffic));
   wire.builtin.mutation_tries = options.port_tries;
   if (options.star) {
     announce_to(*options.star, options.domain, wire.builtin);
@@ -116,7 +118,7 @@ dds::DomainParticipantQos server_qos(std::uint32_t domain, std::uint16_t port,
                                      Ports unused_data_ports,
                                      std::shared_ptr<ReceiveSockets> sockets) {
   constexpr int kBufferBytes = 8 << 20;  // all clients talk to this one socket
-  auto qos = common_qos(std::move(sockets), kBufferBytes);
+  auto qos = common_qos(std::move(sockets), kLoopback, kBufferBytes);
   qos.name("swarm_discovery");
   auto& wire = qos.wire_protocol();
   wire.prefix = server_prefix(domain, port);

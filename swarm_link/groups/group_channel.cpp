@@ -36,9 +36,9 @@ GuidPrefix random_prefix() {
 /// socket never matters. Open files are the limit.
 class GroupSocket {
  public:
-  GroupSocket(const sockaddr_in& group, int buffer_bytes)
+  GroupSocket(const sockaddr_in& group, const in_addr& interface, int buffer_bytes)
       : fd_(open_receive_socket(group, buffer_bytes)),
-        joined_(fd_ >= 0 && join_group(fd_, group.sin_addr)) {}
+        joined_(fd_ >= 0 && join_group(fd_, group.sin_addr, interface)) {}
   ~GroupSocket() {
     if (fd_ >= 0) ::close(fd_);  // and with it the membership
   }
@@ -65,7 +65,8 @@ class GroupChannel final : public StateChannel, private DatagramSink {
         interest_(options.cells),
         batches_(options.cells.cell_size_m),
         prefix_(random_prefix()),
-        sender_(open_group_sender()),
+        interface_(to_in_addr(options.interface)),
+        sender_(open_group_sender(interface_)),
         drain_(options.faults) {}
 
   ~GroupChannel() override {
@@ -104,7 +105,7 @@ class GroupChannel final : public StateChannel, private DatagramSink {
       if (at != joined_.end() && at->group == group) continue;
       sockaddr_in address = group_of(options_.domain, {});
       address.sin_addr.s_addr = group;
-      GroupSocket socket(address, options_.receive_buffer_bytes);
+      GroupSocket socket(address, interface_, options_.receive_buffer_bytes);
       if (socket.joined()) joined_.insert(at, {group, std::move(socket)});  // else again next time
     }
   }
@@ -137,6 +138,7 @@ class GroupChannel final : public StateChannel, private DatagramSink {
   CellStatesCdr cdr_;
   GuidPrefix prefix_;
   std::uint64_t sequence_number_ = 0;
+  in_addr interface_;
   int sender_;
   DatagramDrain drain_;
   std::vector<Joined> joined_;     // sorted by group
@@ -158,10 +160,12 @@ GroupAddress group_address(std::uint32_t domain, Cell cell) {
 
 Result<std::unique_ptr<StateChannel>> make_group_channel(const GroupChannelOptions& options) {
   auto channel = std::make_unique<GroupChannel>(options);
-  if (!channel->can_send() || !loopback_carries_multicast()) {
+  if (!channel->can_send() || !carries_multicast(options.interface)) {
     return fail(ErrorCode::kEnvironment,
-                "the loopback interface carries no multicast: run 'ip link set lo up', let "
-                "firewalls pass 239.255.0.0/16 on lo, or use --channel topics");
+                fmt::format("the interface with address {} carries no multicast: set it up ('ip "
+                            "link set lo up' for 127.0.0.1), let firewalls pass 239.255.0.0/16, or "
+                            "use --channel topics",
+                            options.interface));
   }
   return channel;
 }

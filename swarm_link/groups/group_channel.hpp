@@ -24,7 +24,8 @@ GroupAddress group_address(std::uint32_t domain, Cell cell);
 struct GroupChannelOptions {
   std::uint32_t domain = 0;  ///< groups of different domains do not hear each other
   CellOptions cells{.cell_size_m = 5.0, .join_margin_m = 0.5, .leave_margin_m = 1.5};
-  int receive_buffer_bytes = 1 << 20;  ///< per cell that is heard
+  int receive_buffer_bytes = 1 << 20;   ///< per cell that is heard
+  std::string interface = "127.0.0.1";  ///< address of the interface it hears and speaks on
   ReceptionFaults faults{};
 };
 
@@ -34,8 +35,7 @@ struct GroupChannelOptions {
 /// DDS Security: everything is checked at the edge, and only trusted processes may reach the
 /// groups.
 ///
-/// Heard and said on the loopback interface. take() empties the sockets itself. Fails when the
-/// machine carries no multicast there.
+/// take() empties the sockets itself. Fails when the interface carries no multicast.
 Result<std::unique_ptr<StateChannel>> make_group_channel(const GroupChannelOptions& options);
 
 }  // namespace swarm::link

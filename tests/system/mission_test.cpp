@@ -40,6 +40,18 @@ TEST(Mission, FliesAndIsAudited) {
   EXPECT_EQ(nlohmann::json::parse(run.launcher().out()), summary);
 }
 
+// Cyclone's default configuration counts participants of a machine up to ten.
+TEST(Mission, IsFlownByMoreCycloneProcessesThanItsDefaultsAllow) {
+  FlownRun run({"--channel", "groups", "--agent-dds", "cyclonedds"});
+
+  ASSERT_EQ(run.launcher().wait(), 0) << run.launcher().err();
+
+  const auto summary = run.summary();
+  EXPECT_EQ(summary["processes"], 12);
+  EXPECT_EQ(summary["arrived"], 12);
+  EXPECT_EQ(summary["collisions_robot"], 0);
+}
+
 TEST(Mission, AuditOfItsDirectoryAgreesWithTheSummary) {
   FlownRun run({"--robots", "6"});
   ASSERT_EQ(run.launcher().wait(), 0) << run.launcher().err();

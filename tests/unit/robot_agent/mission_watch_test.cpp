@@ -52,5 +52,22 @@ TEST(MissionWatch, NoticesTheSilenceOfThePlanner) {
   EXPECT_FALSE(sut.planner_alive(t0 + kSilence + Duration(1)));
 }
 
+TEST(MissionWatch, HearsOthersBeforeItTrustsAPlannerThatIsBack) {
+  constexpr Duration kSettle = std::chrono::milliseconds(700);
+  MissionWatch sut(kSilence, kSettle);
+  const SteadyTime t0{std::chrono::seconds(100)};
+  sut.on_heartbeat(t0);
+  sut.on_heartbeat(t0 + kSettle);
+  EXPECT_TRUE(sut.planner_alive(t0 + kSettle));
+
+  const SteadyTime back = t0 + kSettle + 2 * kSilence;
+  sut.on_heartbeat(back);
+  EXPECT_FALSE(sut.planner_alive(back));
+  sut.on_heartbeat(back + kSettle / 2);
+  EXPECT_FALSE(sut.planner_alive(back + kSettle / 2));
+  sut.on_heartbeat(back + kSettle);
+  EXPECT_TRUE(sut.planner_alive(back + kSettle));
+}
+
 }  // namespace
 }  // namespace swarm::agent

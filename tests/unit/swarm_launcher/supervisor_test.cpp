@@ -111,6 +111,38 @@ TEST(Supervisor, StartsTheMissionWhenEveryRobotIsReady) {
   EXPECT_GE(bench.sut->discovery_s(), 0.0);
 }
 
+TEST(Supervisor, LeavesRemoteRobotsToOtherHosts) {
+  Bench bench(4);
+  bench.options.remote_processes = 2;
+  bench.run_for(seconds(1));
+  EXPECT_EQ(bench.started.size(), 3U) << "the planner and two agents";
+  bench.report_all(RobotMode::kWaiting);
+  bench.sut->on_joined(ProcessIndex(3), 2, bench.now);
+  bench.run_for(milliseconds(100));
+  ASSERT_EQ(bench.commands.size(), 1U);
+
+  bench.sut->on_exit(ProcessIndex(4), {}, bench.now);
+  bench.run_for(seconds(2));
+
+  EXPECT_EQ(bench.started.size(), 3U) << "another host's process is not ours to start again";
+  EXPECT_EQ(bench.sut->lost(), std::vector<RobotId>{RobotId(3)});
+}
+
+TEST(Supervisor, GoesOnWithoutAHostThatNeverCame) {
+  Bench bench(4);
+  bench.options.remote_processes = 1;
+  bench.options.launcher.quorum_timeout_s = 5.0;
+  bench.options.launcher.quorum_share = 0.5;
+  bench.run_for(seconds(1));
+  for (std::uint32_t i = 0; i < 3; ++i) {
+    bench.sut->on_status(RobotId(i), {true, true, RobotMode::kWaiting, false});
+  }
+  bench.run_for(seconds(5));
+
+  EXPECT_EQ(bench.sut->stage(), Supervisor::Stage::kRunning);
+  EXPECT_EQ(bench.sut->lost(), std::vector<RobotId>{RobotId(3)});
+}
+
 TEST(Supervisor, WaitsUntilEveryRobotHearsItsNeighbours) {
   Bench bench(3);
   bench.run_for(seconds(1));

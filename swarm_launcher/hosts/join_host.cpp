@@ -1,0 +1,206 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "swarm_launcher/hosts/join_host.hpp"
+
+#include <csignal>
+#include <cstdio>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <unistd.h>
+
+#include "swarm_core/blackbox/blackbox_file.hpp"
+#include "swarm_core/mission/mission_file.hpp"
+#include "swarm_core/shell/stop_signal.hpp"
+#include "swarm_launcher/child_process.hpp"
+#include "swarm_launcher/hosts/line_socket.hpp"
+#include "swarm_launcher/hosts/offer.hpp"
+#include "swarm_launcher/progress.hpp"
+#include "swarm_launcher/run_dir.hpp"
+
+namespace swarm::launcher {
+namespace {
+
+constexpr int kStep_ms = 20;
+constexpr Duration kAnswerPatience = std::chrono::seconds(10);
+constexpr Duration kStartEvery = std::chrono::milliseconds(50);  // dozens at once slow each other
+constexpr Duration kGrace = std::chrono::seconds(5);             // of each signal
+constexpr std::size_t kMaxBoxBytes = 1U << 30U;
+
+SteadyTime now() { return std::chrono::steady_clock::now(); }
+
+Result<HostOffer> ask(LineSocket& socket, std::uint32_t robots) {
+  socket.send(nlohmann::json{{"join", robots}}.dump());
+  for (const SteadyTime until = now() + kAnswerPatience; now() < until && !socket.gone();) {
+    socket.wait(kStep_ms);
+    socket.flush();
+    socket.receive();
+    if (const auto line = socket.line()) return parse_offer(*line);
+  }
+  return fail(ErrorCode::kEnvironment, "no launcher answers there");
+}
+
+/// The processes of this host.
+class Crew {
+ public:
+  Crew(const HostOffer& offer, std::filesystem::path dir, bool cyclone, std::uint32_t respawns)
+      : offer_(offer), dir_(std::move(dir)), cyclone_(cyclone), respawns_(respawns) {
+    for (std::uint32_t robot = 0; robot < offer.robots; robot += offer.per_process) {
+      waiting_.push_back(robot);
+    }
+  }
+  ~Crew() { signal(SIGKILL); }
+  Crew(const Crew&) = delete;
+  Crew& operator=(const Crew&) = delete;
+
+  Result<void> step() {
+    while (const auto child = reap_child()) {
+      const auto known = children_.find(child->pid);
+      if (known == children_.end()) continue;
+      if (!ending_ && deaths_[known->second]++ < respawns_) waiting_.push_back(known->second);
+      children_.erase(known);
+    }
+    if (ending_ || waiting_.empty() || now() < next_start_) return {};
+    next_start_ = now() + kStartEvery;
+    const std::uint32_t robot = waiting_.front();
+    waiting_.erase(waiting_.begin());
+    return start(robot);
+  }
+
+  void signal(int number) {
+    ending_ = true;
+    for (const auto& [pid, robot] : children_) ::kill(pid, number);
+  }
+
+  bool over() const { return children_.empty() && (ending_ || waiting_.empty()); }
+  std::size_t living() const { return children_.size(); }
+
+ private:
+  Result<void> start(std::uint32_t robot) {
+    const std::uint32_t id = offer_.first_robot + robot;
+    std::vector<std::string> command_line = {
+        sibling_program("robot_agent"),
+        "--run",
+        dir_.string(),
+        "--ids",
+        fmt::format("{}", id),
+        "--count",
+        fmt::format("{}", std::min(offer_.per_process, offer_.robots - robot)),
+        "--number",
+        fmt::format("{}", offer_.first_process + robot / offer_.per_process),
+        "--parent",
+        fmt::format("{}", ::getpid())};
+    if (cyclone_) command_line.insert(command_line.end(), {"--dds", "cyclonedds"});
+    const auto pid =
+        start_process(command_line, dir_ / shell::kLogsFolder / fmt::format("agent-{:05}.log", id));
+    if (!pid) return tl::unexpected(pid.error());
+    children_.emplace(*pid, robot);
+    return {};
+  }
+
+  const HostOffer& offer_;
+  std::filesystem::path dir_;
+  bool cyclone_;
+  std::uint32_t respawns_;
+  std::vector<std::uint32_t> waiting_;  // first robots of processes, counted from ours
+  std::map<pid_t, std::uint32_t> children_;
+  std::map<std::uint32_t, std::uint32_t> deaths_;
+  SteadyTime next_start_;
+  bool ending_ = false;
+};
+
+/// Until all processes have ended: because the launcher says so, is gone, or we are to stop.
+Result<void> fly(Crew& crew, LineSocket& socket, Progress& progress) {
+  constexpr int kLadder[] = {SIGINT, SIGTERM, SIGKILL};
+  int told = -1;
+  SteadyTime told_at;
+  const auto tell = [&](int rung) {
+    told = std::min(rung, 2);
+    told_at = now();
+    crew.signal(kLadder[told]);
+  };
+  while (!crew.over()) {
+    socket.wait(kStep_ms);
+    socket.flush();
+    socket.receive();
+    while (const auto line = socket.line()) {
+      const auto json = nlohmann::json::parse(*line, nullptr, false);
+      const auto end = json.is_object() ? json.find("end") : json.end();
+      if (end == json.end() || !end->is_number_integer()) continue;
+      const int rung = std::clamp(end->get<int>(), 0, 2);
+      if (rung > told) tell(rung);
+    }
+    if (told < 0 && (socket.gone() || shell::stop_requests() > 0)) tell(0);
+    if (told >= 0 && told < 2 && now() - told_at > kGrace) tell(told + 1);
+    if (auto stepped = crew.step(); !stepped) return stepped;
+    progress.show("flying", fmt::format("{} processes", crew.living()));
+  }
+  return {};
+}
+
+/// Black boxes go home one after the other.
+void send_boxes(const HostOffer& offer, const std::filesystem::path& dir, LineSocket& socket,
+                Progress& progress) {
+  socket.send(R"({"over": true})");
+  for (std::uint32_t i = 0; i <= offer.robots && !socket.gone(); ++i) {
+    if (i < offer.robots) {
+      const RobotId robot(offer.first_robot + i);
+      const auto box = shell::read_file(blackbox::file_of(dir, robot), kMaxBoxBytes);
+      if (!box || box->empty()) continue;
+      socket.send(nlohmann::json{{"box", robot.value()}, {"bytes", box->size()}}.dump());
+      socket.send_bytes(*box);
+    } else {
+      socket.send(R"({"bye": true})");
+    }
+    while (socket.unsent() > 0 && !socket.gone()) {
+      socket.flush();
+      socket.wait(kStep_ms);
+      progress.show("ending", fmt::format("{} of {} black boxes sent", i, offer.robots));
+    }
+  }
+}
+
+}  // namespace
+
+Result<ExitCode> join_host(const JoinOptions& options) {
+  const auto to = parse_host_port(options.launcher);
+  if (!to) return tl::unexpected(to.error());
+  auto socket = LineSocket::connect(*to);
+  if (!socket) return tl::unexpected(socket.error());
+  auto offer = ask(*socket, options.robots);
+  if (!offer) return tl::unexpected(offer.error());
+  offer->run.interface = options.interface.empty() ? socket->own_address() : options.interface;
+
+  const auto dir = make_run_dir(options.out, "joined");
+  if (!dir) return tl::unexpected(dir.error());
+  const auto mission_file = *dir / shell::kMissionFile;
+  if (auto written = shell::write_file(mission_file, offer->mission_yaml); !written) {
+    return tl::unexpected(written.error());
+  }
+  const auto mission = load_mission(mission_file);
+  if (!mission) return tl::unexpected(mission.error());
+  if (offer->first_robot + offer->robots > mission->robots.count) {
+    return fail(ErrorCode::kBadInput, "the launcher's offer does not fit its mission");
+  }
+  if (auto written = shell::write_run_info(*dir, offer->run); !written) {
+    return tl::unexpected(written.error());
+  }
+  std::fprintf(stderr, "run directory: %s\nrobots %u-%u on %s\n", dir->c_str(), offer->first_robot,
+               offer->first_robot + offer->robots - 1, offer->run.interface.c_str());
+  Progress progress;
+  {
+    Crew crew(*offer, *dir, options.cyclone, mission->launcher.respawn_agent_max);
+    if (auto flown = fly(crew, *socket, progress); !flown) return tl::unexpected(flown.error());
+  }
+  send_boxes(*offer, *dir, *socket, progress);
+  if (socket->gone()) {
+    return fail(ErrorCode::kEnvironment,
+                "the launcher is gone; the black boxes are in " + dir->string());
+  }
+  return ExitCode::kOk;
+}
+
+}  // namespace swarm::launcher

@@ -1,0 +1,69 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "swarm_launcher/hosts/offer.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace swarm::launcher {
+namespace {
+
+constexpr int kVersion = 1;
+constexpr std::uint32_t kMaxRobots = 20'000;
+
+}  // namespace
+
+std::string to_line(const HostOffer& offer) {
+  return nlohmann::json{{"version", kVersion},
+                        {"domain", offer.run.domain},
+                        {"hubs", offer.run.hubs},
+                        {"host", offer.run.host},
+                        {"seed", offer.run.seed},
+                        {"began_utc_ns", offer.run.began.time_since_epoch().count()},
+                        {"first_robot", offer.first_robot},
+                        {"robots", offer.robots},
+                        {"per_process", offer.per_process},
+                        {"first_process", offer.first_process},
+                        {"mission", offer.mission_yaml}}
+      .dump();
+}
+
+Result<HostOffer> parse_offer(const std::string& line) {
+  try {
+    const auto json = nlohmann::json::parse(line);
+    if (json.contains("refused")) {
+      return fail(ErrorCode::kEnvironment,
+                  "the launcher refused: " + json.at("refused").get<std::string>());
+    }
+    if (const int version = json.at("version").get<int>(); version != kVersion) {
+      return fail(ErrorCode::kEnvironment,
+                  fmt::format("the launcher speaks version {} of this protocol, this program {}: "
+                              "use the same release on all hosts",
+                              version, kVersion));
+    }
+    HostOffer offer{
+        .run = {.domain = json.at("domain").get<std::uint32_t>(),
+                .hubs = json.at("hubs").get<std::uint32_t>(),
+                .host = json.at("host").get<std::string>(),
+                .channel = Channel::kGroups,
+                .seed = json.at("seed").get<std::uint64_t>(),
+                .began = UtcTime(Duration(json.at("began_utc_ns").get<std::int64_t>()))},
+        .first_robot = json.at("first_robot").get<std::uint32_t>(),
+        .robots = json.at("robots").get<std::uint32_t>(),
+        .per_process = json.at("per_process").get<std::uint32_t>(),
+        .first_process = json.at("first_process").get<std::uint32_t>(),
+        .mission_yaml = json.at("mission").get<std::string>()};
+    const bool plausible = offer.run.domain < 230 && offer.run.hubs >= 1 &&
+                           offer.run.hubs <= 1000 && offer.robots >= 1 &&
+                           offer.robots <= kMaxRobots && offer.first_robot <= kMaxRobots &&
+                           offer.per_process >= 1 && offer.first_process <= kMaxRobots;
+    if (plausible) return offer;
+    return fail(ErrorCode::kBadInput, "what answered is no launcher: its offer makes no sense");
+  } catch (const nlohmann::json::exception& e) {
+    return fail(
+        ErrorCode::kBadInput,
+        fmt::format("what answered is no launcher: its offer cannot be read: {}", e.what()));
+  }
+}
+
+}  // namespace swarm::launcher

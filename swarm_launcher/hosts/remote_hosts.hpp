@@ -1,0 +1,73 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "swarm_launcher/hosts/host_watch.hpp"
+#include "swarm_launcher/hosts/line_socket.hpp"
+#include "swarm_launcher/hosts/offer.hpp"
+#include "swarm_launcher/supervisor.hpp"
+
+namespace swarm::launcher {
+
+/// The launcher's side of robots that other hosts start (`swarm_launcher join`). A host asks for a
+/// number of them over TCP, is told the mission and how to meet, is told when to end them, and then
+/// sends their black boxes home. In flight it is heard by its robots' statuses alone: while one is
+/// not, everybody else is paused, since the robots of the two sides do not see each other.
+class RemoteHosts {
+ public:
+  /// `offer`: all robots that are for other hosts. `dir`: the run's directory.
+  RemoteHosts(LineServer server, HostOffer offer, std::filesystem::path dir)
+      : server_(std::move(server)), offer_(std::move(offer)), dir_(std::move(dir)) {}
+
+  std::uint16_t port() const { return server_.port(); }
+
+  void on_status(RobotId robot, SteadyTime now);
+
+  /// Takes what came, and tells the supervisor. Returns what there is to log.
+  std::vector<LogEvent> step(Supervisor& supervisor, SteadyTime now);
+
+  /// Ends a process of another host.
+  void end(ProcessIndex process, EndSignal signal);
+
+  /// Takes black boxes. Call it, after the flight, until it returns true.
+  bool collect();
+  /// Black boxes that were promised and are not here.
+  std::uint32_t missing_boxes() const;
+
+ private:
+  struct Host {
+    LineSocket socket;
+    HostWatch watch{1};
+    std::uint32_t first_robot = 0, robots = 0;  // none: it has not asked yet
+    ProcessIndex first_process{};
+    std::uint32_t processes = 0;
+    int told = -1;      // strongest signal sent
+    bool over = false;  // its processes have ended
+    bool left = false;  // it said good-bye, or is out of reach
+    std::ofstream box{};
+    std::uint64_t box_bytes = 0;  // still to come
+    std::uint32_t boxes = 0;
+  };
+
+  void take(Host& host);
+  bool take_line(Host& host, const std::string& line);
+  void answer(Host& host, std::uint32_t robots);
+  void drop(Host& host);
+
+  LineServer server_;
+  HostOffer offer_;
+  std::filesystem::path dir_;
+  std::vector<Host> hosts_;
+  std::vector<std::size_t> joined_;  // since the last step: indices of hosts_
+  std::uint32_t given_ = 0;          // robots
+  bool paused_ = false;              // by us
+  bool begun_ = false;
+};
+
+}  // namespace swarm::launcher

@@ -1,0 +1,74 @@
+#!/bin/sh
+# One mission by two hosts, each a network namespace of this machine, with 5 % loss and 20 ms of delay between them; as root.
+# One JSON line a case on stdout. About eight minutes.   tests/bench/two_hosts.sh [CASE …]
+#   cases: lossy cut      (default: both; cut: the link is cut for 10 s in mid-flight)
+set -eu
+root=$(cd "$(dirname "$0")/../.." && pwd)
+bin=${SWARM_BIN:-$root/build/release/bin}
+mission=$root/deploy/missions/swarmprm_standin.yaml
+robots=${ROBOTS:-100}
+out=$(mktemp -d "${TMPDIR:-/tmp}/swarmflow-two-hosts-XXXXXX")
+a=swarmflow-a-$$
+b=swarmflow-b-$$
+echo "runs in $out" >&2
+
+clean() {
+  ip netns del "$a" 2>/dev/null || true
+  ip netns del "$b" 2>/dev/null || true
+}
+trap clean EXIT
+
+# host NAMESPACE INTERFACE ADDRESS
+host() {
+  ip -n "$1" link set lo up
+  ip -n "$1" addr add "$3/24" dev "$2"
+  ip -n "$1" link set "$2" up multicast on
+  ip netns exec "$1" tc qdisc add dev "$2" root netem loss 5% delay 20ms limit 100000
+}
+
+# link LOSS: in both directions
+link() {
+  ip netns exec "$a" tc qdisc change dev veth-a root netem loss "$1" delay 20ms limit 100000
+  ip netns exec "$b" tc qdisc change dev veth-b root netem loss "$1" delay 20ms limit 100000
+}
+
+ip netns add "$a"
+ip netns add "$b"
+ip link add veth-a netns "$a" type veth peer name veth-b netns "$b"
+host "$a" veth-a 10.77.0.1
+host "$b" veth-b 10.77.0.2
+
+# fly NAME: half of the robots on each host, in the background
+fly() {
+  ip netns exec "$a" "$bin/swarm_launcher" run "$mission" --robots "$robots" --out "$out/$1" --json \
+    --interface 10.77.0.1 --remote $((robots / 2)) --join-port 7000 >/dev/null 2>"$out/$1.log" &
+  launcher=$!
+  until grep -qs 'swarm_launcher join' "$out/$1.log"; do sleep 0.2; done
+  ip netns exec "$b" "$bin/swarm_launcher" join 10.77.0.1:7000 --robots $((robots / 2)) --out "$out/$1-b" \
+    2>"$out/$1-b.log" &
+  joined=$!
+}
+
+# finish NAME
+finish() {
+  code=0
+  wait "$launcher" || code=$?
+  joined_code=0
+  wait "$joined" || joined_code=$?
+  jq -c --arg name "$1" --argjson exit "[$code, $joined_code]" '{name: $name, exit: $exit, arrived, lost, collisions_robot,
+    collisions_obstacle, min_robot_gap_m, path_ratio, mission_s, discovery_s, states_hz, state_age_ms, belief_error_cm}' \
+    "$out/$1/summary.json"
+  grep -E '"host-(joined|silent|back|over)"|boxes-missing' "$out/$1/events.jsonl" >&2 || true
+}
+
+for case in ${*:-lossy cut}; do
+  fly "$case"
+  if [ "$case" = cut ]; then
+    until grep -qs '"text":"start"' "$out/$case/events.jsonl"; do sleep 0.2; done
+    sleep 60
+    link 100%
+    sleep 10
+    link 5%
+  fi
+  finish "$case"
+done

@@ -1,0 +1,67 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+// Robots that another host starts. Both hosts are this machine here; tests/bench/two_hosts.sh gives
+// each a network namespace of its own, and cuts the link.
+#include <csignal>
+
+#include "flown_run.hpp"
+
+namespace swarm::test {
+namespace {
+
+/// The address that a launcher told those who may join.
+std::string join_address(Program& launcher) {
+  const std::string before = "swarm_launcher join ";
+  std::string err;
+  if (!eventually([&] { return (err = launcher.err()).find(before) != std::string::npos; }))
+    return "";
+  const std::size_t begin = err.find(before) + before.size();
+  return err.substr(begin, err.find_first_of(" \n", begin) - begin);
+}
+
+TEST(TwoHosts, FlyOneMission) {
+  FlownRun run({"--remote", "6"});
+  const std::string address = join_address(run.launcher());
+  ASSERT_NE(address, "") << run.launcher().err();
+  TemporaryFolder theirs;
+  Program first("swarm_launcher",
+                {"join", address, "--robots", "4", "--out", (theirs.path() / "first").string()});
+  Program second("swarm_launcher",
+                 {"join", address, "--robots", "4", "--out", (theirs.path() / "second").string()});
+
+  EXPECT_EQ(run.launcher().wait(), 0) << run.launcher().err();
+  EXPECT_EQ(first.wait(), 0) << first.err();
+  EXPECT_EQ(second.wait(), 0) << second.err();
+  const auto summary = run.summary();
+  EXPECT_EQ(summary["arrived"], 12);  // by the black boxes, which came home
+  EXPECT_EQ(summary["collisions_robot"], 0);
+  EXPECT_EQ(summary["lost"], nlohmann::json::array());
+}
+
+TEST(TwoHosts, AHostThatGoesTakesItsRobotsWithIt) {
+  FlownRun run({"--remote", "4"});
+  const std::string address = join_address(run.launcher());
+  ASSERT_NE(address, "") << run.launcher().err();
+  TemporaryFolder theirs;
+  Program host("swarm_launcher",
+               {"join", address, "--robots", "4", "--out", (theirs.path() / "run").string()});
+  ASSERT_TRUE(run.mission_started()) << run.launcher().err();
+  const auto agents = children_of(host.pid(), "robot_agent");
+  EXPECT_EQ(agents.size(), 4U);
+
+  host.signal(SIGKILL);
+
+  EXPECT_NE(run.launcher().wait(), 0);
+  EXPECT_EQ(run.summary()["lost"], nlohmann::json({8, 9, 10, 11}));
+  for (const pid_t agent : agents) EXPECT_NE(::kill(agent, 0), 0) << "an orphan";
+}
+
+TEST(TwoHosts, NobodyJoinsWhereNobodyAnswers) {
+  Program nobody("swarm_launcher", {"join", "127.0.0.1:1", "--robots", "1"});
+
+  EXPECT_NE(nobody.wait(), 0);
+  EXPECT_NE(nobody.err().find("cannot connect to 127.0.0.1:1"), std::string::npos) << nobody.err();
+}
+
+}  // namespace
+}  // namespace swarm::test
