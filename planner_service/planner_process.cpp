@@ -94,14 +94,16 @@ Result<void> PlannerProcess::Impl::plan_first() {
 
 Result<void> PlannerProcess::Impl::join(const shell::RunInfo& run) {
   auto made = link::join_as_planner(
-      link::Meeting{.domain = run.domain,
-                    .server = {run.discovery_host, run.discovery_port},
-                    .hubs = run.hubs,
-                    .host = run.host,
-                    .interface = run.interface,
-                    .faults = link::ReceptionFaults{.faults = options.faults,
-                                                    .seed = mix_seed(run.seed, kFaultSeed),
-                                                    .run_began = run.began}},
+      link::Meeting{
+          .domain = run.domain,
+          .server = {run.discovery_host, run.discovery_port},
+          .hubs = run.hubs,
+          .planner = run.cyclone_planner ? link::Vendor::kCycloneDds : link::Vendor::kFastDds,
+          .host = run.host,
+          .interface = run.interface,
+          .faults = link::ReceptionFaults{.faults = options.faults,
+                                          .seed = mix_seed(run.seed, kFaultSeed),
+                                          .run_began = run.began}},
       options.ownership_strength);
   if (!made) return tl::unexpected(made.error());
   participant = std::move(*made);

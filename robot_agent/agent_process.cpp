@@ -106,14 +106,17 @@ Result<void> AgentProcess::Impl::join(const shell::RunInfo& run) {
       .faults = options.faults,
       .seed = mix_seed(mix_seed(run.seed, kFaultSeed), options.number + 1),
       .run_began = run.began};
-  auto made = link::join_as_agent(
-      link::Meeting{.domain = run.domain,
-                    .server = {run.discovery_host, run.discovery_port},
-                    .hubs = run.hubs,
-                    .host = run.host,
-                    .interface = run.interface,
-                    .faults = faults},
-      options.number, fmt::format("robot_agent_{}", options.first.value()), options.vendor);
+  auto made =
+      link::join_as_agent(link::Meeting{.domain = run.domain,
+                                        .server = {run.discovery_host, run.discovery_port},
+                                        .hubs = run.hubs,
+                                        .planner = run.cyclone_planner ? link::Vendor::kCycloneDds
+                                                                       : link::Vendor::kFastDds,
+                                        .host = run.host,
+                                        .interface = run.interface,
+                                        .faults = faults},
+                          options.number, fmt::format("robot_agent_{}", options.first.value()),
+                          options.vendor, options.by_gateway);
   if (!made) return tl::unexpected(made.error());
   participant = std::move(*made);
 
@@ -133,7 +136,7 @@ Result<void> AgentProcess::Impl::join(const shell::RunInfo& run) {
   event_writer = std::move(*event);
 
   const LinkSpec& l = mission.link;
-  if (run.channel == Channel::kGroups) {
+  if (run.channel == Channel::kGroups && !options.by_gateway) {
     link::GroupChannelOptions groups{
         .domain = run.domain, .interface = run.interface, .faults = faults};
     groups.cells.cell_size_m = l.group_cell_size_m;

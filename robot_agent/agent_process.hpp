@@ -21,6 +21,7 @@ struct ProcessOptions {
   std::uint32_t number = 0;  ///< of this process among the agents of the run
   LinkFaults faults{};
   link::Vendor vendor = link::Vendor::kFastDds;
+  bool by_gateway = false;       ///< its states go by topics where the others' go by groups
   std::uint32_t parent_pid = 0;  ///< end when this process is gone; 0 = do not watch
 };
 

@@ -31,6 +31,8 @@ int main(int argc, char** argv) {
     app.add_option("--parent", options.parent_pid, "End when this process is no longer our parent");
     app.add_option("--dds", options.vendor, "Whose DDS it speaks")
         ->transform(CLI::CheckedTransformer(vendors));
+    app.add_flag("--by-gateway", options.by_gateway,
+                 "Its states go by topics through the gateway, where the others' go by groups");
     app.add_option("--fault", fault, "A bad network for what this process receives");
     swarm::shell::add_common_options(app);
     const auto done = swarm::shell::parse(app, argc, argv);

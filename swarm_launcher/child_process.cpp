@@ -73,6 +73,18 @@ Result<pid_t> start_process(const std::vector<std::string>& command_line,
   return pid;
 }
 
+int number_of(EndSignal signal) {
+  switch (signal) {
+    case EndSignal::kInterrupt:
+      return SIGINT;
+    case EndSignal::kTerminate:
+      return SIGTERM;
+    case EndSignal::kKill:
+      return SIGKILL;
+  }
+  return SIGKILL;
+}
+
 std::optional<ExitedChild> reap_child() {
   int status = 0;
   rusage usage = {};

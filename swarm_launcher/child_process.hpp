@@ -28,6 +28,9 @@ void become_urgent();
 Result<pid_t> start_process(const std::vector<std::string>& command_line,
                             const std::filesystem::path& log);
 
+/// The kernel's number of a signal.
+int number_of(EndSignal signal);
+
 struct ExitedChild {
   pid_t pid = 0;
   ProcessExit exit;

@@ -28,22 +28,6 @@ constexpr Duration kStep = std::chrono::milliseconds(20);
 constexpr std::uint32_t kPlannerStrength = 100;
 constexpr Duration kBoxesPatience = std::chrono::minutes(3);
 
-int number_of(EndSignal signal) {
-  switch (signal) {
-    case EndSignal::kInterrupt:
-      return SIGINT;
-    case EndSignal::kTerminate:
-      return SIGTERM;
-    case EndSignal::kKill:
-      return SIGKILL;
-  }
-  return SIGKILL;
-}
-
-std::uint32_t remote_processes(const FlightOptions& options) {
-  return (options.remote + options.per_process - 1) / options.per_process;
-}
-
 }  // namespace
 
 Flight::Flight(FlightOptions options, FlightObserver* observer, std::filesystem::path dir,
@@ -81,9 +65,13 @@ Result<std::unique_ptr<Flight>> Flight::make(FlightOptions options, FlightObserv
                                  .robots_per_process = options.per_process,
                                  .multicast = link::carries_multicast(options.interface)});
   if (!channel) return tl::unexpected(channel.error());
-  if (options.agent_dds != AgentDds::kFastDds && channel->channel != Channel::kGroups) {
+  if ((options.agent_dds != AgentDds::kFastDds || options.cyclone_planner ||
+       options.by_gateway > 0) &&
+      channel->channel != Channel::kGroups) {
     return fail(ErrorCode::kBadInput,
-                "--agent-dds: Cyclone DDS joins without a discovery server; add --channel groups");
+                "--agent-dds, --planner-dds, --by-gateway: Cyclone DDS joins without a discovery "
+                "server; add "
+                "--channel groups");
   }
   const std::uint32_t hubs = channel->channel == Channel::kGroups ? link::hubs_for(agents) : 0;
   auto lock = DomainLock::take(options.domain, link::participants_for({.hubs = hubs}, agents));
@@ -105,10 +93,12 @@ Flight::~Flight() {
 }
 
 Result<void> Flight::join() {
-  link::Meeting meeting{.domain = lock_.domain(),
-                        .hubs = hubs_,
-                        .host = options_.interface,
-                        .interface = options_.interface};
+  link::Meeting meeting{
+      .domain = lock_.domain(),
+      .hubs = hubs_,
+      .planner = options_.cyclone_planner ? link::Vendor::kCycloneDds : link::Vendor::kFastDds,
+      .host = options_.interface,
+      .interface = options_.interface};
   if (hubs_ == 0) {
     auto server = link::make_discovery_server(lock_.domain(), 0);
     if (!server) return tl::unexpected(server.error());
@@ -119,6 +109,7 @@ Result<void> Flight::join() {
                            .discovery_host = meeting.server.host,
                            .discovery_port = meeting.server.port,
                            .hubs = meeting.hubs,
+                           .cyclone_planner = options_.cyclone_planner,
                            .host = options_.interface,
                            .interface = options_.interface,
                            .channel = channel_.channel,
@@ -145,17 +136,23 @@ Result<void> Flight::join() {
   control_.emplace(std::move(*control));
 
   limits_ = link::wire_limits(options_.mission);
-  supervisor_.emplace(SupervisorOptions{.robots = options_.mission.robots.count,
-                                        .per_process = options_.per_process,
-                                        .remote_processes = remote_processes(options_),
-                                        .launcher = options_.mission.launcher,
-                                        .script = options_.mission.script},
-                      std::chrono::steady_clock::now());
+  supervisor_.emplace(
+      SupervisorOptions{
+          .robots = options_.mission.robots.count,
+          .per_process = options_.per_process,
+          .remote_processes = (options_.remote + options_.per_process - 1) / options_.per_process,
+          .launcher = options_.mission.launcher,
+          .script = options_.mission.script},
+      std::chrono::steady_clock::now());
   const std::string told =
       fmt::format("robot states go by {}: {}", to_string(channel_.channel), channel_.reason);
   events_.write(utc_now(), "launcher", link::Severity::kInfo, "channel", told);
   std::fprintf(stderr, "%s\n", told.c_str());
   view_ = SwarmView(options_.mission.robots.count, options_.mission.link.hear_radius_m);
+  if (options_.by_gateway > 0) {
+    gateway_.emplace(dir_);
+    if (auto started = gateway_->start(); !started) return started;
+  }
   return options_.remote > 0 ? open_to_hosts(run) : Result<void>{};
 }
 
@@ -211,10 +208,12 @@ Result<void> Flight::start(ProcessIndex process) {
                     fmt::format("{}", count),
                     "--number",
                     fmt::format("{}", process.value() - 1)};
-    if (options_.agent_dds == AgentDds::kCycloneDds ||
+    const bool by_gateway = process.value() <= options_.by_gateway;
+    if (by_gateway || options_.agent_dds == AgentDds::kCycloneDds ||
         (options_.agent_dds == AgentDds::kHalf && process.value() % 2 == 0)) {
       command_line.insert(command_line.end(), {"--dds", "cyclonedds"});
     }
+    if (by_gateway) command_line.emplace_back("--by-gateway");
     log = fmt::format("agent-{:05}.log", first.value());
   }
   if (!options_.fault.empty()) command_line.insert(command_line.end(), {"--fault", options_.fault});
@@ -274,7 +273,11 @@ void Flight::log(const LogEvent& event) {
 void Flight::reap(SteadyTime now) {
   while (const auto child = reap_child()) {
     const auto known = children_.find(child->pid);
-    if (known == children_.end()) continue;
+    if (known == children_.end()) {
+      const auto gateway = gateway_ ? gateway_->on_exit(child->pid) : std::nullopt;
+      if (gateway) log({.warning = true, .code = "gateway-exit", .text = *gateway});
+      continue;
+    }
     measurements_.cpu_s += child->cpu_s;
     measurements_.max_rss_mb = std::max(measurements_.max_rss_mb, child->max_rss_mb);
     supervisor_->on_exit(known->second, child->exit, now);

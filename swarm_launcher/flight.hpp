@@ -21,6 +21,7 @@
 #include "swarm_launcher/control_socket.hpp"
 #include "swarm_launcher/domain_lock.hpp"
 #include "swarm_launcher/event_log.hpp"
+#include "swarm_launcher/gateway.hpp"
 #include "swarm_launcher/hosts/remote_hosts.hpp"
 #include "swarm_launcher/progress.hpp"
 #include "swarm_launcher/scene_keeper.hpp"
@@ -42,6 +43,8 @@ struct FlightOptions {
   int domain = -1;                   ///< DDS domain; negative: a free one
   std::optional<Channel> channel{};  ///< empty: choose_channel() decides
   AgentDds agent_dds = AgentDds::kFastDds;
+  bool cyclone_planner = false;
+  std::uint32_t by_gateway = 0;  ///< agent processes, the first ones, whose states go by topics
   std::string interface = "127.0.0.1";  ///< address of the network's interface
   std::uint32_t remote = 0;             ///< robots that other hosts start: the last ones
   std::uint16_t join_port = 0;          ///< where those hosts come to; 0: a free one
@@ -113,6 +116,7 @@ class Flight {
   link::WriterPtr<link::CommandMessage> command_writer_;
   std::optional<ControlServer> control_;
   std::optional<RemoteHosts> hosts_;
+  std::optional<GatewayKeeper> gateway_;
   std::vector<ControlServer::ClientId> stopping_;  // clients who wait for a stop to be confirmed
   std::optional<SceneKeeper> scene_;
   std::optional<Supervisor> supervisor_;

@@ -11,6 +11,7 @@
 #include "swarm_core/shell/program.hpp"
 #include "swarm_core/shell/stop_signal.hpp"
 #include "swarm_launcher/command.hpp"
+#include "swarm_launcher/gateway.hpp"
 #include "swarm_launcher/hosts/join_host.hpp"
 #include "swarm_launcher/plan.hpp"
 #include "swarm_launcher/run.hpp"
@@ -66,6 +67,14 @@ int main(int argc, char** argv) {
     run_command
         ->add_option("--agent-dds", run.agent_dds, "Whose DDS the agents speak (groups channel)")
         ->transform(CLI::CheckedTransformer(agent_dds));
+    run_command->add_option(
+        "--by-gateway", run.by_gateway,
+        "The first N agent processes speak Cyclone DDS and say their states by\n"
+        "topics, through a gateway to the others' groups");
+    std::string planner_dds = "fastdds";
+    run_command
+        ->add_option("--planner-dds", planner_dds, "Whose DDS the planner speaks (groups channel)")
+        ->check(CLI::IsMember({"fastdds", "cyclonedds"}));
     run_command
         ->add_option("--fault", run.fault,
                      "A bad network for what planner and robots receive, like\n"
@@ -78,6 +87,15 @@ int main(int argc, char** argv) {
     run_command->add_option("--join-port", run.join_port,
                             "TCP port where those come to (default: a free one)");
     run_command->add_flag("--json", run.json, "Print the summary as JSON");
+
+    launcher::GatewayCommandOptions gateway;
+    CLI::App* gateway_command = app.add_subcommand(
+        "gateway", "Carry the robot states of a run between groups and DDS topics");
+    gateway_command->add_option("run", gateway.run_dir, "Run directory")
+        ->required()
+        ->type_name("RUN_DIR");
+    gateway_command->add_option("--parent", gateway.parent_pid,
+                                "End when this process is no longer our parent");
 
     launcher::JoinOptions join;
     CLI::App* join_command =
@@ -193,9 +211,11 @@ int main(int argc, char** argv) {
     if (!processes.empty()) {
       run.processes = processes == "auto" ? 0U : static_cast<std::uint32_t>(std::stoul(processes));
     }
+    run.cyclone_planner = planner_dds == "cyclonedds";
     if (run_command->parsed()) return launcher::run_mission(run);
     soak.channel = channels.at(soak_channel);
     if (soak_command->parsed()) return launcher::soak(soak);
+    if (gateway_command->parsed()) return launcher::run_gateway(gateway);
     if (join_command->parsed()) return launcher::join_host(join);
     if (plan_command->parsed()) return launcher::plan_mission(plan);
     const auto faults = parse_link_faults(simulated_fault);

@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include <fmt/format.h>
+
 #include "swarm_link/cyclone/cyclone_participant.hpp"
 #include "swarm_link/hub.hpp"
 
@@ -14,13 +16,15 @@ namespace {
 
 constexpr std::uint32_t kAgentsPerHub = 25;
 
-// Participant indices: the launcher's, the planner's, then the agents'.
+// Participant indices: the launcher's, the planner's, the gateway's, then the agents'.
 std::uint32_t launcher_index(std::uint32_t hub) { return hub; }
+/// All participants of a Cyclone process share their port: such a planner is one hub.
 std::uint32_t planner_index(const Meeting& m, std::uint32_t hub) {
-  return std::max(1U, m.hubs) + hub;
+  return std::max(1U, m.hubs) + (m.planner == Vendor::kCycloneDds ? 0 : hub);
 }
+std::uint32_t gateway_index(const Meeting& m) { return 2 * std::max(1U, m.hubs); }
 std::uint32_t agent_index(const Meeting& m, std::uint32_t number) {
-  return 2 * std::max(1U, m.hubs) + number;
+  return gateway_index(m) + 1 + number;
 }
 
 FastDdsOptions member(const Meeting& meeting, std::string name, std::uint32_t index) {
@@ -37,6 +41,13 @@ Result<std::unique_ptr<Participant>> make_checked(const FastDdsOptions& options)
   if (!made) return made;
   if (const auto hears = (*made)->self_check(); !hears) return tl::unexpected(hears.error());
   return made;
+}
+
+tl::unexpected<Error> no_server_for_cyclone(const char* option) {
+  return fail(ErrorCode::kBadInput,
+              fmt::format("{} cyclonedds: a discovery server of Fast DDS is not for Cyclone DDS; "
+                          "use --channel groups, whose processes meet without one",
+                          option));
 }
 
 }  // namespace
@@ -63,6 +74,17 @@ Result<std::unique_ptr<Participant>> join_as_launcher(const Meeting& meeting) {
 
 Result<std::unique_ptr<Participant>> join_as_planner(const Meeting& meeting,
                                                      std::uint32_t ownership_strength) {
+  if (meeting.planner == Vendor::kCycloneDds) {
+    if (meeting.hubs == 0) return no_server_for_cyclone("--planner-dds");
+    return make_cyclone_participant(
+        {.name = "planner_service",
+         .domain = meeting.domain,
+         .ownership_strength = ownership_strength,
+         .peer_ports = {announcement_port(meeting.domain, launcher_index(0))},
+         .peer_host = meeting.host,
+         .index = planner_index(meeting, 0),
+         .interface = meeting.interface});
+  }
   std::vector<std::unique_ptr<Participant>> hubs;
   for (std::uint32_t hub = 0; hub < std::max(1U, meeting.hubs); ++hub) {
     FastDdsOptions options = member(meeting, "planner_service", planner_index(meeting, hub));
@@ -80,19 +102,24 @@ Result<std::unique_ptr<Participant>> join_as_planner(const Meeting& meeting,
   return make_hub(std::move(hubs));
 }
 
+Result<std::unique_ptr<Participant>> join_as_gateway(const Meeting& meeting) {
+  FastDdsOptions options = member(meeting, "gateway", gateway_index(meeting));
+  options.star = Star{.is_hub = true};
+  options.cells_by_multicast = false;
+  return make_checked(options);
+}
+
 Result<std::unique_ptr<Participant>> join_as_agent(const Meeting& meeting, std::uint32_t number,
-                                                   const std::string& name, Vendor vendor) {
+                                                   const std::string& name, Vendor vendor,
+                                                   bool by_gateway) {
   std::vector<std::uint32_t> hubs;
   if (meeting.hubs > 0) {
     const std::uint32_t hub = number % meeting.hubs;
     hubs = {launcher_index(hub), planner_index(meeting, hub)};
+    if (by_gateway) hubs.push_back(gateway_index(meeting));
   }
   if (vendor == Vendor::kCycloneDds) {
-    if (hubs.empty()) {
-      return fail(ErrorCode::kBadInput,
-                  "--dds cyclonedds: a discovery server of Fast DDS is not for Cyclone DDS; use "
-                  "--channel groups, whose processes meet without one");
-    }
+    if (hubs.empty()) return no_server_for_cyclone("--dds");
     CycloneOptions options{.name = name,
                            .domain = meeting.domain,
                            .peer_host = meeting.host,

@@ -20,6 +20,7 @@ struct Meeting {
   std::uint32_t domain = 0;
   DiscoveryAddress server{};  ///< used when `hubs` is 0
   std::uint32_t hubs = 0;
+  Vendor planner = Vendor::kFastDds;    ///< whose DDS it speaks; Cyclone's only in a star
   std::string host = "127.0.0.1";       ///< where launcher and planner are
   std::string interface = "127.0.0.1";  ///< of whoever joins: the address of its interface
   ReceptionFaults faults{};             ///< of whoever joins
@@ -38,10 +39,15 @@ Result<std::unique_ptr<Participant>> join_as_launcher(const Meeting& meeting);
 Result<std::unique_ptr<Participant>> join_as_planner(const Meeting& meeting,
                                                      std::uint32_t ownership_strength);
 
+/// One more hub of a star, at a port that agents who want it know.
+Result<std::unique_ptr<Participant>> join_as_gateway(const Meeting& meeting);
+
 /// The `number`th agent process, counted from 0. Cyclone DDS knows no discovery server of the other
 /// vendor: it joins a star, and hears without faults.
+/// `by_gateway`: meets the gateway as well, whose topics carry the states of a star.
 Result<std::unique_ptr<Participant>> join_as_agent(const Meeting& meeting, std::uint32_t number,
                                                    const std::string& name,
-                                                   Vendor vendor = Vendor::kFastDds);
+                                                   Vendor vendor = Vendor::kFastDds,
+                                                   bool by_gateway = false);
 
 }  // namespace swarm::link

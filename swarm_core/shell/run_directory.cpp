@@ -56,6 +56,7 @@ Result<void> write_run_info(const std::filesystem::path& run_dir, const RunInfo&
                                {"discovery_host", info.discovery_host},
                                {"discovery_port", info.discovery_port},
                                {"hubs", info.hubs},
+                               {"cyclone_planner", info.cyclone_planner},
                                {"host", info.host},
                                {"interface", info.interface},
                                {"channel", to_string(info.channel)},
@@ -73,6 +74,7 @@ Result<RunInfo> read_run_info(const std::filesystem::path& run_dir) {
                    .discovery_host = json.at("discovery_host").get<std::string>(),
                    .discovery_port = json.at("discovery_port").get<std::uint16_t>(),
                    .hubs = json.at("hubs").get<std::uint32_t>(),
+                   .cyclone_planner = json.at("cyclone_planner").get<bool>(),
                    .host = json.at("host").get<std::string>(),
                    .interface = json.at("interface").get<std::string>(),
                    .channel = json.at("channel").get<std::string>() == to_string(Channel::kGroups)

@@ -114,13 +114,12 @@ class Crew {
 
 /// Until all processes have ended: because the launcher says so, is gone, or we are to stop.
 Result<void> fly(Crew& crew, LineSocket& socket, Progress& progress) {
-  constexpr int kLadder[] = {SIGINT, SIGTERM, SIGKILL};
   int told = -1;
   SteadyTime told_at;
   const auto tell = [&](int rung) {
     told = std::min(rung, 2);
     told_at = now();
-    crew.signal(kLadder[told]);
+    crew.signal(number_of(static_cast<EndSignal>(told)));
   };
   while (!crew.over()) {
     socket.wait(kStep_ms);

@@ -58,7 +58,8 @@ Result<HostPort> parse_host_port(const std::string& text) {
   const char* const last = text.data() + text.size();
   const auto [end, error] = std::from_chars(first, last, out.port);
   if (first == last || end != last || error != std::errc{} || out.host.empty()) {
-    return fail(ErrorCode::kBadInput, fmt::format("'{}' is not HOST:PORT, like 10.0.0.1:7000", text));
+    return fail(ErrorCode::kBadInput,
+                fmt::format("'{}' is not HOST:PORT, like 10.0.0.1:7000", text));
   }
   return out;
 }

@@ -18,6 +18,7 @@ std::string to_line(const HostOffer& offer) {
                         {"domain", offer.run.domain},
                         {"hubs", offer.run.hubs},
                         {"host", offer.run.host},
+                        {"cyclone_planner", offer.run.cyclone_planner},
                         {"seed", offer.run.seed},
                         {"began_utc_ns", offer.run.began.time_since_epoch().count()},
                         {"first_robot", offer.first_robot},
@@ -44,6 +45,7 @@ Result<HostOffer> parse_offer(const std::string& line) {
     HostOffer offer{
         .run = {.domain = json.at("domain").get<std::uint32_t>(),
                 .hubs = json.at("hubs").get<std::uint32_t>(),
+                .cyclone_planner = json.at("cyclone_planner").get<bool>(),
                 .host = json.at("host").get<std::string>(),
                 .channel = Channel::kGroups,
                 .seed = json.at("seed").get<std::uint64_t>(),

@@ -22,7 +22,9 @@ namespace {
 // 10: the eleventh process would fail. Without an index there is no such limit. Who knows a few
 // peers says often that it is there, since that is how it finds one that was restarted.
 std::string config_of(const CycloneOptions& options) {
-  std::string discovery = "<ParticipantIndex>none</ParticipantIndex>";
+  std::string discovery =
+      fmt::format("<ParticipantIndex>{}</ParticipantIndex>",
+                  options.index ? fmt::format("{}", *options.index) : std::string("none"));
   if (!options.peer_ports.empty()) {
     discovery += "<SPDPInterval>1.5 s</SPDPInterval><Peers>";
     for (const std::uint16_t port : options.peer_ports) {

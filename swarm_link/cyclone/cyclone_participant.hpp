@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,10 +22,12 @@ struct CycloneOptions {
   /// else, so that it learns of them alone; empty: to all, by multicast.
   std::vector<std::uint16_t> peer_ports{};
   std::string peer_host = "127.0.0.1";
+  /// Decides the port it listens at for announcements, as announcement_port() tells; empty: any.
+  std::optional<std::uint32_t> index{};
   std::string interface = "127.0.0.1";  ///< address of the interface it speaks on
 };
 
-/// Joins a domain. All participants of a process in a domain must have the same peers and
+/// Joins a domain. All participants of a process in a domain must have the same index, peers and
 /// interface. Cyclone's own threads receive; take() hands over what they have. What does not decode
 /// is dropped by the vendor, uncounted.
 Result<std::unique_ptr<Participant>> make_cyclone_participant(const CycloneOptions& options);

@@ -139,8 +139,8 @@ class FastDdsParticipant final : public TypedParticipant<FastDdsParticipant> {
   }
 
   FastDdsOptions options_;
-  bool multicast_ =
-      options_.receive_at_tick && carries_multicast(options_.interface);  // else by unicast
+  bool multicast_ = options_.receive_at_tick && options_.cells_by_multicast &&
+                    carries_multicast(options_.interface);  // else by unicast
   Ports ports_;
   std::shared_ptr<ReceiveSockets> sockets_;
   dds::DomainParticipant* participant_;

@@ -44,6 +44,9 @@ struct FastDdsOptions {
   /// equal or weaker one goes unheard that long (measured with a lease of 15 s: 14 s, against 0.9
   /// s).
   std::uint32_t ownership_strength = 0;
+  /// Readers of cells hear by a multicast group each, where the interface carries it; who joins a
+  /// star without multicast cannot speak to such.
+  bool cells_by_multicast = true;
   bool receive_at_tick = true;  ///< no receive thread on data ports; see Participant::receive
   int receive_buffer_bytes = 4 << 20;
   ReceptionFaults faults{};         ///< of data that is received at the tick

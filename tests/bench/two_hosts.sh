@@ -22,21 +22,17 @@ trap clean EXIT
 host() {
   ip -n "$1" link set lo up
   ip -n "$1" addr add "$3/24" dev "$2"
-  ip -n "$1" link set "$2" up multicast on
-  ip netns exec "$1" tc qdisc add dev "$2" root netem loss 5% delay 20ms limit 100000
-}
-
-# link LOSS: in both directions
-link() {
-  ip netns exec "$a" tc qdisc change dev veth-a root netem loss "$1" delay 20ms limit 100000
-  ip netns exec "$b" tc qdisc change dev veth-b root netem loss "$1" delay 20ms limit 100000
+  ip -n "$1" link set "$2" up
 }
 
 ip netns add "$a"
 ip netns add "$b"
-ip link add veth-a netns "$a" type veth peer name veth-b netns "$b"
-host "$a" veth-a 10.77.0.1
-host "$b" veth-b 10.77.0.2
+mkfifo "$out/loss" "$out/ready"
+"$root/tests/bench/lossy_cable.py" "$a" cable-a "$b" cable-b 0.05 20 <"$out/loss" >"$out/ready" &
+exec 3>"$out/loss" # the cable ends when this is closed
+read -r _ <"$out/ready"
+host "$a" cable-a 10.77.0.1
+host "$b" cable-b 10.77.0.2
 
 # fly NAME: half of the robots on each host, in the background
 fly() {
@@ -66,9 +62,9 @@ for case in ${*:-lossy cut}; do
   if [ "$case" = cut ]; then
     until grep -qs '"text":"start"' "$out/$case/events.jsonl"; do sleep 0.2; done
     sleep 60
-    link 100%
+    echo 1 >&3
     sleep 10
-    link 5%
+    echo 0.05 >&3
   fi
   finish "$case"
 done

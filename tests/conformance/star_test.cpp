@@ -27,14 +27,21 @@ struct AgentSeat {
   std::vector<CommandMessage> heard_commands;
 };
 
-struct StarRun : testing::TestWithParam<Vendor> {
+/// Who speaks whose DDS. A process has one configuration of Cyclone's, so that a planner and agents
+/// of its are for the system tests.
+struct Vendors {
+  Vendor agents;
+  Vendor planner;
+};
+
+struct StarRun : testing::TestWithParam<Vendors> {
   StarRun() {
     statuses = launcher->make_reader(status_topic()).value();
     commands = launcher->make_writer(command_topic()).value();
     start_planner(1);
     for (std::uint32_t i = 0; i < kAgents; ++i) {
       AgentSeat& agent = agents.emplace_back();
-      agent.participant = join_as_agent(meeting, i, "agent", GetParam()).value();
+      agent.participant = join_as_agent(meeting, i, "agent", GetParam().agents).value();
       agent.plans = agent.participant->make_reader(plan_topic()).value();
       agent.commands = agent.participant->make_reader(command_topic()).value();
       agent.status = agent.participant->make_writer(status_topic()).value();
@@ -82,7 +89,7 @@ struct StarRun : testing::TestWithParam<Vendor> {
     });
   }
 
-  Meeting meeting{.domain = test_domain(), .hubs = 2};
+  Meeting meeting{.domain = test_domain(), .hubs = 2, .planner = GetParam().planner};
   std::unique_ptr<Participant> launcher = join_as_launcher(meeting).value();
   std::unique_ptr<Participant> planner;
   ReaderPtr<StatusMessage> statuses;
@@ -96,9 +103,15 @@ struct StarRun : testing::TestWithParam<Vendor> {
   std::vector<CommandMessage> planner_heard;
 };
 
-INSTANTIATE_TEST_SUITE_P(Agents, StarRun, testing::Values(Vendor::kFastDds, Vendor::kCycloneDds),
-                         [](const auto& vendor) {
-                           return vendor.param == Vendor::kFastDds ? "FastDds" : "CycloneDds";
+INSTANTIATE_TEST_SUITE_P(Vendors, StarRun,
+                         testing::Values(Vendors{Vendor::kFastDds, Vendor::kFastDds},
+                                         Vendors{Vendor::kCycloneDds, Vendor::kFastDds},
+                                         Vendors{Vendor::kFastDds, Vendor::kCycloneDds}),
+                         [](const auto& vendors) {
+                           const bool fast_agents = vendors.param.agents == Vendor::kFastDds;
+                           const bool fast_planner = vendors.param.planner == Vendor::kFastDds;
+                           return std::string(fast_agents ? "FastAgents" : "CycloneAgents") +
+                                  (fast_planner ? "FastPlanner" : "CyclonePlanner");
                          });
 
 TEST_P(StarRun, EveryoneHearsPlannerAndLauncherAndNobodyElse) {
@@ -151,6 +164,7 @@ TEST_P(StarRun, AgentsFindAPlannerThatCameBack) {
 }
 
 TEST_P(StarRun, RefusesAHubWhosePortIsTaken) {
+  if (GetParam().planner == Vendor::kCycloneDds) GTEST_SKIP() << "one process has one port";
   const auto second = join_as_planner(meeting, 1);
 
   ASSERT_FALSE(second);

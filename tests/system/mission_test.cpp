@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
 // A mission from the file to the audited report, with real processes on real DDS.
+#include <csignal>
+
 #include "flown_run.hpp"
 
 namespace swarm::test {
@@ -42,7 +44,7 @@ TEST(Mission, FliesAndIsAudited) {
 
 // Cyclone's default configuration counts participants of a machine up to ten.
 TEST(Mission, IsFlownByMoreCycloneProcessesThanItsDefaultsAllow) {
-  FlownRun run({"--channel", "groups", "--agent-dds", "cyclonedds"});
+  FlownRun run({"--channel", "groups", "--agent-dds", "cyclonedds", "--planner-dds", "cyclonedds"});
 
   ASSERT_EQ(run.launcher().wait(), 0) << run.launcher().err();
 
@@ -50,6 +52,20 @@ TEST(Mission, IsFlownByMoreCycloneProcessesThanItsDefaultsAllow) {
   EXPECT_EQ(summary["processes"], 12);
   EXPECT_EQ(summary["arrived"], 12);
   EXPECT_EQ(summary["collisions_robot"], 0);
+}
+
+TEST(Mission, IsFlownWithRobotsOfAnotherMakeBehindAGateway) {
+  FlownRun run({"--channel", "groups", "--by-gateway", "4"});
+  ASSERT_TRUE(run.mission_started()) << run.launcher().err();
+  const auto gateways = children_of(run.launcher().pid(), "swarm_launcher");
+  ASSERT_EQ(gateways.size(), 1U);
+
+  ::kill(gateways[0], SIGKILL);  // one that comes back is found again
+
+  EXPECT_EQ(run.launcher().wait(), 0) << run.launcher().err();
+  EXPECT_TRUE(has_event(run.dir(), "gateway-exit"));
+  EXPECT_EQ(run.summary()["arrived"], 12);
+  EXPECT_EQ(run.summary()["collisions_robot"], 0);
 }
 
 TEST(Mission, AuditOfItsDirectoryAgreesWithTheSummary) {

@@ -1,0 +1,76 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "swarm_launcher/gateway.hpp"
+
+#include <csignal>
+#include <cstdio>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "swarm_core/base/clock.hpp"
+#include "swarm_core/mission/mission_file.hpp"
+#include "swarm_core/shell/run_directory.hpp"
+#include "swarm_core/shell/stop_signal.hpp"
+#include "swarm_launcher/child_process.hpp"
+#include "swarm_link/gateway.hpp"
+#include "swarm_link/join.hpp"
+
+namespace swarm::launcher {
+namespace {
+
+constexpr Duration kPatience = std::chrono::milliseconds(5);
+
+}  // namespace
+
+Result<ExitCode> run_gateway(const GatewayCommandOptions& options) {
+  const auto mission = load_mission(options.run_dir / shell::kMissionFile);
+  if (!mission) return tl::unexpected(mission.error());
+  const auto run = shell::read_run_info(options.run_dir);
+  if (!run) return tl::unexpected(run.error());
+  if (run->channel != Channel::kGroups) {
+    return fail(ErrorCode::kBadInput, "this run's states go by topics: no gateway is needed");
+  }
+  const auto participant = link::join_as_gateway(
+      {.domain = run->domain, .hubs = run->hubs, .host = run->host, .interface = run->interface});
+  if (!participant) return tl::unexpected(participant.error());
+  const auto gateway =
+      link::make_gateway(**participant, {.domain = run->domain,
+                                         .topic_cell_size_m = mission->link.cell_size_m,
+                                         .group_cell_size_m = mission->link.group_cell_size_m,
+                                         .interface = run->interface,
+                                         .limits = link::wire_limits(*mission)});
+  if (!gateway) return tl::unexpected(gateway.error());
+  while (
+      shell::stop_requests() == 0 &&
+      (options.parent_pid == 0 || static_cast<std::uint32_t>(::getppid()) == options.parent_pid)) {
+    (*gateway)->relay(kPatience, utc_now());
+  }
+  std::fprintf(stderr, "%llu states to topics, %llu to groups, %llu refused\n",
+               static_cast<unsigned long long>((*gateway)->to_topics()),
+               static_cast<unsigned long long>((*gateway)->to_groups()),
+               static_cast<unsigned long long>((*gateway)->refused().total()));
+  return ExitCode::kOk;
+}
+
+GatewayKeeper::~GatewayKeeper() {
+  if (pid_ > 0) ::kill(pid_, SIGTERM);
+}
+
+Result<void> GatewayKeeper::start() {
+  const auto pid = start_process({sibling_program("swarm_launcher"), "gateway", run_dir_.string(),
+                                  "--parent", fmt::format("{}", ::getpid())},
+                                 run_dir_ / shell::kLogsFolder / "gateway.log");
+  if (!pid) return tl::unexpected(pid.error());
+  pid_ = *pid;
+  return {};
+}
+
+std::optional<std::string> GatewayKeeper::on_exit(pid_t pid) {
+  if (pid != pid_) return std::nullopt;
+  pid_ = 0;
+  const auto started = start();
+  return "the gateway ended" + (started ? "; started again" : ": " + started.error().message);
+}
+
+}  // namespace swarm::launcher
