@@ -26,7 +26,7 @@ std::string config_of(const CycloneOptions& options) {
       fmt::format("<ParticipantIndex>{}</ParticipantIndex>",
                   options.index ? fmt::format("{}", *options.index) : std::string("none"));
   if (!options.peer_ports.empty()) {
-    discovery += "<SPDPInterval>1.5 s</SPDPInterval><Peers>";
+    discovery += "<SPDPInterval>0.8 s</SPDPInterval><Peers>";
     for (const std::uint16_t port : options.peer_ports) {
       discovery += fmt::format("<Peer address=\"{}:{}\"/>", options.peer_host, port);
     }

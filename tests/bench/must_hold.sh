@@ -27,12 +27,15 @@ fly() {
   report "$name" "$code"
 }
 
-# start NAME: a run in the background, until its mission has started and SECONDS have passed
+# start NAME SECONDS [OPTIONS …]: a run in the background, until its mission has started and SECONDS have passed
 start() {
-  "$bin/swarm_launcher" run "$mission" --out "$out/$1" --json >/dev/null 2>"$out/$1.log" &
+  name=$1
+  seconds=$2
+  shift 2
+  "$bin/swarm_launcher" run "$mission" --out "$out/$name" --json "$@" >/dev/null 2>"$out/$name.log" &
   launcher=$!
-  until grep -qs '"text":"start"' "$out/$1/events.jsonl"; do sleep 0.2; done
-  sleep "$2"
+  until grep -qs '"text":"start"' "$out/$name/events.jsonl"; do sleep 0.2; done
+  sleep "$seconds"
 }
 
 # finish NAME: waits for it
@@ -87,18 +90,20 @@ for case in ${*:-plan seeds more replan lost planner stop interrupt restarts}; d
           "left=$left, $(grep -o '"outcome": "[a-z_]*"' "$out/interrupt$after/summary.json")"
       done
       ;;
-    restarts) # planner and agents killed one by one, every one of them comes back
+    restarts) # planner, agents and gateway killed one by one, every one of them comes back
       { cat "$mission" && printf 'launcher:\n  respawn_agent_max: 3\n  respawn_planner_max: 9\n'; } >"$out/restarts.yaml"
-      mission=$out/restarts.yaml start restarts 20
+      mission=$out/restarts.yaml start restarts 20 --channel groups --by-gateway 5
       for robot in 11 31 51 71 91; do
         children planner_service | xargs kill -9
         sleep 8
         children robot_agent | sed -n "${robot}p" | xargs kill -9
-        sleep 8
+        sleep 4
+        children swarm_launcher | xargs kill -9
+        sleep 4
       done
       finish restarts
       awk '{ match($0, /[0-9]+/); t = substr($0, RSTART, RLENGTH) / 1e9 }
-        /"(agent|planner)-exit"/ { exits++; gone = t }
+        /"(agent|planner|gateway)-exit"/ { exits++; gone = t }
         /"planner-silent"/ { silent++ }
         /"planner-heard"/ && gone && t - gone < 8 && t - gone > back { back = t - gone }
         END { printf "restarts: %d, back after %.2f s at most, robots that missed the planner: %d\n", exits, back, silent }' \
