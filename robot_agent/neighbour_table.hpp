@@ -31,7 +31,7 @@ struct Neighbour {
   Vec2 velocity_mps = Vec2::Zero();
   double radius_m = 0.0;  ///< its radius, grown while it is silent for longer than it should be
   /// How old our knowledge of its motion is: the time a word takes, since it would have spoken had
-  /// it turned; on a poor link, the time since its last.
+  /// it turned; on a poor link, of one that moves near us, the time since its last.
   double stale_s = 0.0;
   /// For how long it may have stood by now, had its process stalled after its last word.
   double stalled_s = 0.0;

@@ -29,7 +29,7 @@ bool SayPolicy::must_say(const SayInput& input) const {
   const Vec2 soon_off_m = off_m + period_s * (last_->velocity_mps - input.velocity_mps);
   // Where robots touch each other almost, a few centimetres decide who may move.
   const double error_m =
-      std::clamp(kOfGap * input.listeners.nearest_gap_m, kLeastError_m, options_.error_m);
+      std::min(std::max(kOfGap * input.listeners.nearest_gap_m, kLeastError_m), options_.error_m);
   return std::max(off_m.norm(), soon_off_m.norm()) > error_m;
 }
 

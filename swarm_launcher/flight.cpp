@@ -26,7 +26,6 @@ namespace {
 
 constexpr Duration kStep = std::chrono::milliseconds(20);
 constexpr std::uint32_t kPlannerStrength = 100;
-constexpr Duration kBoxesPatience = std::chrono::minutes(3);
 
 }  // namespace
 
@@ -54,7 +53,8 @@ Result<std::unique_ptr<Flight>> Flight::make(FlightOptions options, FlightObserv
   }
   if (options.remote > 0) options.channel = Channel::kGroups;
   if (options.remote > options.mission.robots.count ||
-      (options.mission.robots.count - options.remote) % options.per_process != 0) {
+      (options.remote > 0 &&
+       (options.mission.robots.count - options.remote) % options.per_process != 0)) {
     return fail(ErrorCode::kBadInput,
                 fmt::format("--remote {}: of {} robots that many must be there, and what is left "
                             "must be whole processes of {}",
@@ -154,38 +154,6 @@ Result<void> Flight::join() {
     if (auto started = gateway_->start(); !started) return started;
   }
   return options_.remote > 0 ? open_to_hosts(run) : Result<void>{};
-}
-
-Result<void> Flight::open_to_hosts(const shell::RunInfo& run) {
-  auto server = LineServer::listen({options_.interface, options_.join_port});
-  if (!server) return tl::unexpected(server.error());
-  const std::uint32_t first = options_.mission.robots.count - options_.remote;
-  hosts_.emplace(std::move(*server),
-                 HostOffer{.run = run,
-                           .first_robot = first,
-                           .robots = options_.remote,
-                           .per_process = options_.per_process,
-                           .first_process = first / options_.per_process,
-                           .mission_yaml = to_yaml(options_.mission)},
-                 dir_);
-  std::fprintf(stderr, "%u robots are for other hosts: swarm_launcher join %s:%u\n",
-               options_.remote, options_.interface.c_str(), hosts_->port());
-  return {};
-}
-
-/// The audit needs what happened to the robots of other hosts.
-void Flight::bring_boxes_home() {
-  const auto until = std::chrono::steady_clock::now() + kBoxesPatience;
-  while (hosts_ && !hosts_->collect() && std::chrono::steady_clock::now() < until) {
-    progress_.show("ending", fmt::format("{} black boxes on their way", hosts_->missing_boxes()));
-    std::this_thread::sleep_for(kStep);
-  }
-  if (hosts_ && hosts_->missing_boxes() > 0) {
-    log({.warning = true,
-         .code = "boxes-missing",
-         .text =
-             fmt::format("{} black boxes of other hosts did not come", hosts_->missing_boxes())});
-  }
 }
 
 Result<void> Flight::start(ProcessIndex process) {
@@ -324,6 +292,7 @@ void Flight::serve(const ControlServer::Request& request, SteadyTime now) {
        {CommandKind::kStart, CommandKind::kPause, CommandKind::kResume, CommandKind::kStop}) {
     if (word != to_string(kind)) continue;
     supervisor_->on_command(kind, now);
+    if (hosts_) hosts_->on_user_command(kind);
     if (kind == CommandKind::kStop) {
       stopping_.push_back(request.client);
     } else {

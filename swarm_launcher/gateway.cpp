@@ -20,6 +20,7 @@ namespace swarm::launcher {
 namespace {
 
 constexpr Duration kPatience = std::chrono::milliseconds(5);
+constexpr int kMostRestarts = 10;
 
 }  // namespace
 
@@ -69,6 +70,7 @@ Result<void> GatewayKeeper::start() {
 std::optional<std::string> GatewayKeeper::on_exit(pid_t pid) {
   if (pid != pid_) return std::nullopt;
   pid_ = 0;
+  if (restarts_++ == kMostRestarts) return "the gateway ended too often: see logs/gateway.log";
   const auto started = start();
   return "the gateway ended" + (started ? "; started again" : ": " + started.error().message);
 }

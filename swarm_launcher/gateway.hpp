@@ -37,6 +37,7 @@ class GatewayKeeper {
  private:
   std::filesystem::path run_dir_;
   pid_t pid_ = 0;
+  int restarts_ = 0;
 };
 
 }  // namespace swarm::launcher

@@ -79,6 +79,7 @@ Supervisor::Supervisor(const SupervisorOptions& options, SteadyTime now)
       last_start_(now) {}
 
 std::pair<RobotId, std::uint32_t> Supervisor::robots_of(ProcessIndex process) const {
+  if (process == kPlanner) return {RobotId(0), 0};
   const std::uint32_t first = (process.value() - 1) * options_.per_process;
   return {RobotId(first), std::min(options_.per_process, options_.robots - first)};
 }
@@ -94,6 +95,8 @@ void Supervisor::on_joined(ProcessIndex first, std::uint32_t count, SteadyTime n
     Process& p = processes_.at(i);
     p.alive = p.started = true;
     p.started_at = last_start_ = now;
+    const auto [robot, robots] = robots_of(ProcessIndex(i));
+    for (std::uint32_t r = robot.value(); r < robot.value() + robots; ++r) robots_[r].lost = false;
   }
 }
 
@@ -101,6 +104,12 @@ void Supervisor::on_exit(ProcessIndex process, const ProcessExit& exit, SteadyTi
   Process& p = processes_.at(process.value());
   p.alive = false;
   if (stage_ == Stage::kEnding || stage_ == Stage::kDone) return;
+  const auto [first, count] = robots_of(process);
+  if (is_remote(process) && stage_ != Stage::kRunning) {  // another host may still come
+    p.started = false;
+    for (std::uint32_t r = first.value(); r < first.value() + count; ++r) robots_[r].heard = false;
+    return;
+  }
 
   const bool is_planner = process == kPlanner;
   const std::string who = is_planner ? "planner" : fmt::format("agent process {}", process.value());
@@ -121,7 +130,6 @@ void Supervisor::on_exit(ProcessIndex process, const ProcessExit& exit, SteadyTi
     begin_ending(Outcome::kPlannerFailed, now);
     return;
   }
-  const auto [first, count] = robots_of(process);
   for (std::uint32_t i = 0; i < count; ++i) robots_[first.value() + i].lost = true;
 }
 

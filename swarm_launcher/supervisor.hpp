@@ -92,7 +92,7 @@ class Supervisor {
   Supervisor(const SupervisorOptions& options, SteadyTime now);
 
   std::uint32_t processes() const { return static_cast<std::uint32_t>(processes_.size()); }
-  /// First robot and number of robots of an agent process.
+  /// First robot and number of robots of an agent process; of the planner none.
   std::pair<RobotId, std::uint32_t> robots_of(ProcessIndex process) const;
 
   void on_status(RobotId robot, const RobotReport& report);

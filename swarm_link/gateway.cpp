@@ -51,7 +51,11 @@ class ChannelGateway final : public Gateway {
     }
     heard_.clear();
     fresh_.clear();
-    if (tap_) tap_->take(patience, heard_);
+    if (tap_) {
+      tap_->take(patience, heard_);
+    } else {
+      std::this_thread::sleep_for(patience);
+    }
     take_fresh(now);
     const std::size_t from_groups = fresh_.size();
     heard_.clear();

@@ -24,7 +24,8 @@ struct GatewayOptions {
 
 /// Carries robot states between the two channels: what is said by groups becomes samples of the
 /// ordinary cell topics, for monitors and robots of other makes, and what those say goes to the
-/// groups and to each other. Everything is checked as an agent would; a state goes on once.
+/// groups and to each other. Everything is checked as an agent would; a state goes on once. Of the
+/// groups it hears those that somebody on its machine has joined, as robots do around them.
 class Gateway {
  public:
   virtual ~Gateway() = default;

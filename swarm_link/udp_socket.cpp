@@ -65,6 +65,9 @@ int open_receive_socket(const sockaddr_in& address, int buffer_bytes, bool share
   if (const int yes = 1; shared || is_multicast(address.sin_addr)) {
     ::setsockopt(fd, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
   }
+  if (const int no = 0; is_multicast(address.sin_addr)) {  // what others joined is theirs
+    ::setsockopt(fd, IPPROTO_IP, IP_MULTICAST_ALL, &no, sizeof no);
+  }
   if (::bind(fd, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0) return fd;
   ::close(fd);
   return -1;

@@ -51,8 +51,9 @@ struct Listeners {
 ///    (with β = 0), however late their ticks are: a command closes at most γ (gap − m) in its life
 ///    of 2Δt, half of what is left above m for each, γ ≤ ½. With knowledge that is τ old the pair
 ///    is the delayed system ẋ = −(γ/T) x(t − τ) for x = gap − m, which does not overshoot as long
-///    as γτ/T ≤ 1/e: that is what a ≥ eγ is for. β lets a robot follow one that moves away, as far
-///    as what is given up when that one stops at once, β v_max τ, is below 0.9 m.
+///    as γτ/T ≤ 1/e: that is what a ≥ eγ is for. β, 0 for those known from before 3.5 Δt, lets a
+///    robot follow one that moves away, as far as what is given up when that one stops at once, β
+///    v_max τ, is below 0.9 m.
 /// 3. From a robot that obeys nobody, heard at every tick and no faster than v_max, a robot
 ///    withdraws before contact: the second line asks for u at least as fast as the other comes once
 ///    the gap is down to a third of m. It is met whenever there is room to go to. One that stalled

@@ -10,11 +10,12 @@
 
 namespace swarm::launcher {
 
-/// Whether another host can be heard, by the statuses of its robots: each says one a second.
+/// Whether another host can be heard, by the statuses of its robots.
 class HostWatch {
  public:
-  explicit HostWatch(std::uint32_t robots)
-      : patience_(std::chrono::milliseconds(1000 + 1500 / std::max(1U, robots))) {}
+  /// So many messages come in every period of so many hertz; one in two may be late by a period.
+  HostWatch(std::uint32_t messages, double status_hz)
+      : patience_(from_seconds((1.0 + 1.5 / std::max(1U, messages)) / status_hz)) {}
 
   void on_status(SteadyTime now) { heard_at_ = now; }
 
@@ -27,7 +28,11 @@ class HostWatch {
   }
 
   bool cut() const { return cut_; }
-  Duration silence(SteadyTime now) const { return heard_at_ ? now - *heard_at_ : Duration::zero(); }
+  /// It has been silent for so long that it will not be back.
+  bool lost(SteadyTime now) const {
+    constexpr Duration kLeast = std::chrono::seconds(30);
+    return heard_at_ && now - *heard_at_ > std::max(kLeast, 10 * patience_);
+  }
 
  private:
   Duration patience_;

@@ -93,6 +93,7 @@ class Crew {
         fmt::format("{}", offer_.first_process + robot / offer_.per_process),
         "--parent",
         fmt::format("{}", ::getpid())};
+    if (!offer_.fault.empty()) command_line.insert(command_line.end(), {"--fault", offer_.fault});
     if (cyclone_) command_line.insert(command_line.end(), {"--dds", "cyclonedds"});
     const auto pid =
         start_process(command_line, dir_ / shell::kLogsFolder / fmt::format("agent-{:05}.log", id));
@@ -140,6 +141,13 @@ Result<void> fly(Crew& crew, LineSocket& socket, Progress& progress) {
   return {};
 }
 
+/// What is still said to us no longer matters; but unread it would cut off what we say.
+void drain(LineSocket& socket) {
+  socket.receive();
+  while (!socket.bytes(1U << 16U).empty()) {
+  }
+}
+
 /// Black boxes go home one after the other.
 void send_boxes(const HostOffer& offer, const std::filesystem::path& dir, LineSocket& socket,
                 Progress& progress) {
@@ -157,9 +165,21 @@ void send_boxes(const HostOffer& offer, const std::filesystem::path& dir, LineSo
     while (socket.unsent() > 0 && !socket.gone()) {
       socket.flush();
       socket.wait(kStep_ms);
+      drain(socket);
       progress.show("ending", fmt::format("{} of {} black boxes sent", i, offer.robots));
     }
   }
+}
+
+/// Until the launcher has read everything.
+bool part(LineSocket& socket) {
+  if (socket.gone()) return false;
+  socket.finish();
+  for (const SteadyTime until = now() + kAnswerPatience; now() < until && !socket.gone();) {
+    socket.wait(kStep_ms);
+    drain(socket);
+  }
+  return true;
 }
 
 }  // namespace
@@ -169,12 +189,11 @@ Result<ExitCode> join_host(const JoinOptions& options) {
   if (!to) return tl::unexpected(to.error());
   auto socket = LineSocket::connect(*to);
   if (!socket) return tl::unexpected(socket.error());
+  const auto dir = make_run_dir(options.out, "joined");
+  if (!dir) return tl::unexpected(dir.error());
   auto offer = ask(*socket, options.robots);
   if (!offer) return tl::unexpected(offer.error());
   offer->run.interface = options.interface.empty() ? socket->own_address() : options.interface;
-
-  const auto dir = make_run_dir(options.out, "joined");
-  if (!dir) return tl::unexpected(dir.error());
   const auto mission_file = *dir / shell::kMissionFile;
   if (auto written = shell::write_file(mission_file, offer->mission_yaml); !written) {
     return tl::unexpected(written.error());
@@ -195,7 +214,7 @@ Result<ExitCode> join_host(const JoinOptions& options) {
     if (auto flown = fly(crew, *socket, progress); !flown) return tl::unexpected(flown.error());
   }
   send_boxes(*offer, *dir, *socket, progress);
-  if (socket->gone()) {
+  if (!part(*socket)) {
     return fail(ErrorCode::kEnvironment,
                 "the launcher is gone; the black boxes are in " + dir->string());
   }

@@ -23,10 +23,9 @@
 namespace swarm::launcher {
 namespace {
 
-constexpr std::size_t kMaxLine = 16U << 20U;  // a mission with its drawing
-constexpr std::size_t kMaxHeld = 2 * kMaxLine;
 constexpr int kConnect_ms = 10'000;
 constexpr int kUnreachable_ms = 60'000;
+constexpr int kAlive_s = 10;  // one that is silent for longer is asked whether it is there
 
 using Addresses = std::unique_ptr<addrinfo, decltype(&::freeaddrinfo)>;
 
@@ -70,6 +69,8 @@ LineSocket::LineSocket(int fd) : fd_(fd) {
   ::fcntl(fd_, F_SETFL, ::fcntl(fd_, F_GETFL) | O_NONBLOCK);
   ::setsockopt(fd_, IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
   ::setsockopt(fd_, SOL_SOCKET, SO_KEEPALIVE, &yes, sizeof yes);
+  ::setsockopt(fd_, IPPROTO_TCP, TCP_KEEPIDLE, &kAlive_s, sizeof kAlive_s);
+  ::setsockopt(fd_, IPPROTO_TCP, TCP_KEEPINTVL, &kAlive_s, sizeof kAlive_s);
   ::setsockopt(fd_, IPPROTO_TCP, TCP_USER_TIMEOUT, &unreachable, sizeof unreachable);
 }
 
@@ -133,11 +134,11 @@ void LineSocket::flush() {
   }
 }
 
-void LineSocket::receive() {
+void LineSocket::receive(std::size_t held) {
   in_.erase(0, read_);
   read_ = 0;
   std::array<char, 65'536> buffer;
-  while (!gone_ && in_.size() - read_ < kMaxHeld) {
+  while (!gone_ && in_.size() - read_ < held) {
     const ssize_t n = ::recv(fd_, buffer.data(), buffer.size(), 0);
     if (n > 0) {
       in_.append(buffer.data(), static_cast<std::size_t>(n));
@@ -148,10 +149,10 @@ void LineSocket::receive() {
   }
 }
 
-std::optional<std::string> LineSocket::line() {
+std::optional<std::string> LineSocket::line(std::size_t most) {
   const std::size_t end = in_.find('\n', read_);
   if (end == std::string::npos) {
-    gone_ = gone_ || in_.size() - read_ > kMaxLine;
+    gone_ = gone_ || in_.size() - read_ > most;
     return std::nullopt;
   }
   std::string out = in_.substr(read_, end - read_);
@@ -173,7 +174,18 @@ std::string LineSocket::own_address() const {
   return ::inet_ntop(AF_INET, &own.sin_addr, text.data(), text.size());
 }
 
+void LineSocket::finish() { ::shutdown(fd_, SHUT_WR); }
+
+void LineSocket::close() {
+  if (fd_ >= 0) ::close(std::exchange(fd_, -1));
+  gone_ = true;
+}
+
 void LineSocket::wait(int at_most_ms) const {
+  if (gone_) {  // or it would return at once
+    ::poll(nullptr, 0, at_most_ms);
+    return;
+  }
   const auto events = static_cast<short>(POLLIN | (unsent() > 0 ? POLLOUT : 0));
   pollfd waiting{.fd = fd_, .events = events, .revents = 0};
   ::poll(&waiting, 1, at_most_ms);

@@ -39,13 +39,18 @@ class LineSocket {
   std::size_t unsent() const { return out_.size() - sent_; }
   void flush();
 
-  /// Takes what has arrived, at most so much that memory stays bounded.
-  void receive();
-  /// The next line without its end, if one is there.
-  std::optional<std::string> line();
+  static constexpr std::size_t kMaxLine = 16U << 20U;  // a mission with its drawing
+
+  /// Takes what has arrived, as long as less than `held` waits to be read.
+  void receive(std::size_t held = 2 * kMaxLine);
+  /// The next line without its end, if one is there. A longer one than `most` is not for us.
+  std::optional<std::string> line(std::size_t most = kMaxLine);
   /// Up to `most` of the bytes that have arrived.
   std::string bytes(std::size_t most);
 
+  /// Nothing more will be said; the other end reads what was.
+  void finish();
+  void close();
   /// The other end closed, broke off, or sent a line that is too long.
   bool gone() const { return gone_; }
   /// Our address on the way to the other end.

@@ -25,6 +25,7 @@ std::string to_line(const HostOffer& offer) {
                         {"robots", offer.robots},
                         {"per_process", offer.per_process},
                         {"first_process", offer.first_process},
+                        {"fault", offer.fault},
                         {"mission", offer.mission_yaml}}
       .dump();
 }
@@ -54,6 +55,7 @@ Result<HostOffer> parse_offer(const std::string& line) {
         .robots = json.at("robots").get<std::uint32_t>(),
         .per_process = json.at("per_process").get<std::uint32_t>(),
         .first_process = json.at("first_process").get<std::uint32_t>(),
+        .fault = json.at("fault").get<std::string>(),
         .mission_yaml = json.at("mission").get<std::string>()};
     const bool plausible = offer.run.domain < 230 && offer.run.hubs >= 1 &&
                            offer.run.hubs <= 1000 && offer.robots >= 1 &&

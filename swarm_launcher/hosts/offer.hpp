@@ -18,7 +18,8 @@ struct HostOffer {
   std::uint32_t robots = 0;
   std::uint32_t per_process = 1;
   std::uint32_t first_process = 0;  ///< number of its first agent process in the run, from 0
-  std::string mission_yaml;         ///< resolved
+  std::string fault{};       ///< a bad network for its robots, as parse_link_faults() reads it
+  std::string mission_yaml;  ///< resolved
 };
 
 /// One line of JSON. Another host's is checked as hostile.

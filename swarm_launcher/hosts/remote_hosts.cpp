@@ -3,6 +3,8 @@
 #include "swarm_launcher/hosts/remote_hosts.hpp"
 
 #include <algorithm>
+#include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -13,11 +15,24 @@ namespace swarm::launcher {
 namespace {
 
 constexpr std::size_t kMaxHosts = 256;
+constexpr std::size_t kMaxLine = 4096;  // of what hosts say
+constexpr std::size_t kMaxHeld = 4U << 20U;
+constexpr int kLinesAtOnce = 64;
 constexpr std::uint64_t kMaxBoxBytes = 1ULL << 30U;
-constexpr Duration kLostAfter = std::chrono::seconds(30);
+constexpr std::uint32_t kRobotsPerStatus = 100;
+constexpr Duration kAskPatience = std::chrono::seconds(10);
 
 std::string describe(std::uint32_t first_robot, std::uint32_t robots) {
   return fmt::format("host of robots {}-{}", first_robot, first_robot + robots - 1);
+}
+
+/// A field that is a whole number from 0 to `most`.
+std::optional<std::uint64_t> number(const nlohmann::json& json, const char* key,
+                                    std::uint64_t most) {
+  const auto field = json.find(key);
+  if (field == json.end() || !field->is_number_unsigned()) return std::nullopt;
+  const auto value = field->get<std::uint64_t>();
+  return value <= most ? std::optional(value) : std::nullopt;
 }
 
 }  // namespace
@@ -28,98 +43,119 @@ void RemoteHosts::on_status(RobotId robot, SteadyTime now) {
   }
 }
 
-/// The next robots that are nobody's yet, at most as many as it wants.
-void RemoteHosts::answer(Host& host, std::uint32_t robots) {
-  const std::uint32_t per = offer_.per_process;
-  const std::uint32_t wanted = (std::min(robots, offer_.robots) + per - 1) / per * per;
-  const std::uint32_t given = std::min(wanted, offer_.robots - given_);
-  if (begun_ || given == 0) {
-    host.socket.send(nlohmann::json{
-        {"refused", begun_ ? "the mission has begun" : "it has all the robots it needs"}}
-                         .dump());
-    return;
-  }
-  HostOffer part = offer_;
-  part.first_robot = host.first_robot = offer_.first_robot + given_;
-  part.robots = host.robots = given;
-  part.first_process = offer_.first_process + given_ / per;
-  host.first_process = ProcessIndex(1 + part.first_process);
-  host.processes = (given + per - 1) / per;
-  host.watch = HostWatch(given);
-  given_ += given;
-  joined_.push_back(static_cast<std::size_t>(&host - hosts_.data()));
-  host.socket.send(to_line(part));
+void RemoteHosts::on_user_command(CommandKind kind) {
+  if (kind == CommandKind::kPause) paused_ = false;
 }
 
-/// False if it is no line of a host that joins.
+/// The next robots that are nobody's yet, at most as many as it wants. False if there are none.
+bool RemoteHosts::answer(Host& host, std::uint32_t robots) {
+  if (begun_ || free_.empty()) {
+    const char* const why = begun_ ? "the mission has begun" : "it has all the robots it needs";
+    host.socket.send(nlohmann::json{{"refused", why}}.dump());
+    return false;
+  }
+  const std::uint32_t per = offer_.per_process;
+  Block& block = free_.front();
+  const std::uint32_t given = std::min((robots + per - 1) / per * per, block.robots);
+  HostOffer part = offer_;
+  part.first_robot = host.first_robot = offer_.first_robot + block.first;
+  part.robots = host.robots = given;
+  part.first_process = offer_.first_process + block.first / per;
+  host.first_process = ProcessIndex(1 + part.first_process);
+  host.processes = (given + per - 1) / per;
+  host.watch =
+      HostWatch(host.processes * ((std::min(per, given) + kRobotsPerStatus - 1) / kRobotsPerStatus),
+                status_hz_);
+  block.first += given;
+  block.robots -= given;
+  if (block.robots == 0) free_.erase(free_.begin());
+  joined_.push_back(static_cast<std::size_t>(&host - hosts_.data()));
+  host.socket.send(to_line(part));
+  return true;
+}
+
+/// False if it is no line of a host that joins, or one that may not.
 bool RemoteHosts::take_line(Host& host, const std::string& line) {
   const auto json = nlohmann::json::parse(line, nullptr, false);
   if (!json.is_object()) return false;
-  if (const auto join = json.find("join"); join != json.end() && host.robots == 0) {
-    if (!join->is_number_unsigned() || *join == 0U) return false;
-    answer(host, static_cast<std::uint32_t>(
-                     std::min<std::uint64_t>(join->get<std::uint64_t>(), offer_.robots)));
-    return true;
+  if (host.robots == 0) {
+    const auto wanted = number(json, "join", 1'000'000);
+    return wanted && *wanted > 0 &&
+           answer(host,
+                  static_cast<std::uint32_t>(std::min<std::uint64_t>(*wanted, offer_.robots)));
   }
-  if (host.robots == 0) return false;
   if (json.contains("over")) {
     host.over = true;
     return true;
   }
   if (json.contains("bye")) {
-    host.left = host.over = true;
+    drop(host);
     return true;
   }
-  const auto robot = json.value<std::uint32_t>("box", offer_.first_robot + offer_.robots);
-  const auto bytes = json.value<std::uint64_t>("bytes", kMaxBoxBytes + 1);
-  if (robot - host.first_robot >= host.robots || bytes > kMaxBoxBytes) return false;
-  host.box =
-      std::ofstream(blackbox::file_of(dir_, RobotId(robot)), std::ios::binary | std::ios::trunc);
-  host.box_bytes = bytes;
-  ++host.boxes;
+  const auto robot = number(json, "box", offer_.first_robot + offer_.robots);
+  const auto bytes = number(json, "bytes", kMaxBoxBytes);
+  if (!robot || !bytes || *bytes == 0) return false;
+  host.box_robot = static_cast<std::uint32_t>(*robot);
+  if (host.box_robot - host.first_robot >= host.robots) return false;
+  host.box = std::ofstream(blackbox::file_of(dir_, RobotId(host.box_robot)),
+                           std::ios::binary | std::ios::trunc);
+  host.box_bytes = *bytes;
   return host.box.good();
+}
+
+void RemoteHosts::take_box(Host& host) {
+  const std::string bytes = host.socket.bytes(host.box_bytes);
+  host.box.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  host.box_bytes -= bytes.size();
+  if (host.box_bytes > 0) return;
+  host.box.close();
+  if (host.box.good()) home_[host.box_robot - offer_.first_robot] = true;
 }
 
 void RemoteHosts::take(Host& host) {
   host.socket.flush();
-  host.socket.receive();
-  while (!host.left) {
+  host.socket.receive(host.robots > 0 ? kMaxHeld : kMaxLine);
+  for (int lines = 0; !host.left && lines < kLinesAtOnce; ++lines) {
     if (host.box_bytes > 0) {
-      const std::string bytes = host.socket.bytes(host.box_bytes);
-      if (bytes.empty()) break;
-      host.box.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-      host.box_bytes -= bytes.size();
-      if (host.box_bytes == 0) host.box.close();
+      take_box(host);
+      if (host.box_bytes > 0) break;
       continue;
     }
-    const auto line = host.socket.line();
+    const auto line = host.socket.line(kMaxLine);
     if (!line) break;
-    bool fits = false;
-    try {
-      fits = take_line(host, *line);
-    } catch (const nlohmann::json::exception&) {
-      // a field of another type than it should be
-    }
-    if (!fits) drop(host);
+    if (!take_line(host, *line)) drop(host);
   }
   if (host.socket.gone()) drop(host);
 }
 
-void RemoteHosts::drop(Host& host) { host.left = host.over = true; }
+/// It hears that as the end, and ends its robots.
+void RemoteHosts::drop(Host& host) {
+  host.left = host.over = true;
+  host.socket.close();
+}
 
 std::vector<LogEvent> RemoteHosts::step(Supervisor& supervisor, SteadyTime now) {
   begun_ = supervisor.stage() > Supervisor::Stage::kGathering;
+  // Who came and did not become a host leaves no trace.
+  std::erase_if(hosts_, [](const Host& host) { return host.robots == 0 && host.left; });
   while (hosts_.size() < kMaxHosts) {
     auto socket = server_.accept();
     if (!socket) break;
-    hosts_.push_back({.socket = std::move(*socket)});
+    hosts_.push_back({.socket = std::move(*socket), .came = now});
   }
   std::vector<LogEvent> log;
+  for (Host& host : hosts_) {
+    if (!host.left) take(host);
+    if (host.robots == 0 && now - host.came > kAskPatience) drop(host);
+  }
+  for (const std::size_t i : std::exchange(joined_, {})) {
+    const Host& host = hosts_[i];
+    supervisor.on_joined(host.first_process, host.processes, now);
+    log.push_back({.code = "host-joined", .text = describe(host.first_robot, host.robots)});
+  }
   bool cut = false;
   for (Host& host : hosts_) {
-    const bool was_over = host.over;
-    if (!host.left) take(host);
-    if (host.robots == 0 || was_over) continue;
+    if (host.robots == 0 || host.counted) continue;
     const std::string who = describe(host.first_robot, host.robots);
     const auto change = host.watch.step(now);
     if (change && !host.over) {
@@ -129,34 +165,41 @@ std::vector<LogEvent> RemoteHosts::step(Supervisor& supervisor, SteadyTime now) 
            .code = lost_it ? "host-silent" : "host-back",
            .text = who + (lost_it ? " is not heard: the others pause" : " is heard again")});
     }
-    if (host.watch.silence(now) > kLostAfter) drop(host);
+    if (host.watch.lost(now)) drop(host);
     cut = cut || (host.watch.cut() && !host.over);
     if (!host.over) continue;
+    host.counted = true;
     for (std::uint32_t i = 0; i < host.processes; ++i) {
       supervisor.on_exit(ProcessIndex(host.first_process.value() + i), {}, now);
     }
-    log.push_back({.warning = begun_ && supervisor.stage() == Supervisor::Stage::kRunning,
+    if (!begun_) free_.push_back({host.first_robot - offer_.first_robot, host.robots});
+    log.push_back({.warning = supervisor.stage() != Supervisor::Stage::kEnding,
                    .code = "host-over",
                    .text = who + " has ended"});
   }
-  for (const std::size_t i : std::exchange(joined_, {})) {
-    const Host& host = hosts_[i];
-    supervisor.on_joined(host.first_process, host.processes, now);
-    log.push_back({.code = "host-joined", .text = describe(host.first_robot, host.robots)});
+  pause_or_resume(cut, supervisor, now);
+  return log;
+}
+
+/// Whoever resumes all the same is obeyed until the next time.
+void RemoteHosts::pause_or_resume(bool cut, Supervisor& supervisor, SteadyTime now) {
+  if (paused_ && supervisor.phase() == MissionPhase::kRunning) {
+    paused_ = false;
+    overruled_ = cut;
   }
-  if (cut && supervisor.phase() == MissionPhase::kRunning) {
+  overruled_ = overruled_ && cut;
+  if (cut && !overruled_ && supervisor.phase() == MissionPhase::kRunning) {
     supervisor.on_command(CommandKind::kPause, now);
     paused_ = true;
-  } else if (!cut && paused_ && supervisor.phase() == MissionPhase::kPaused) {
+  } else if (!cut && paused_) {
     supervisor.on_command(CommandKind::kResume, now);
     paused_ = false;
   }
-  return log;
 }
 
 void RemoteHosts::end(ProcessIndex process, EndSignal signal) {
   for (Host& host : hosts_) {
-    if (process.value() - host.first_process.value() >= host.processes) continue;
+    if (process.value() - host.first_process.value() >= host.processes || host.counted) continue;
     if (static_cast<int>(signal) <= host.told) return;
     host.told = static_cast<int>(signal);
     host.socket.send(nlohmann::json{{"end", host.told}}.dump());
@@ -177,7 +220,11 @@ bool RemoteHosts::collect() {
 
 std::uint32_t RemoteHosts::missing_boxes() const {
   std::uint32_t missing = 0;
-  for (const Host& host : hosts_) missing += host.robots - std::min(host.robots, host.boxes);
+  for (const Host& host : hosts_) {
+    for (std::uint32_t i = 0; i < host.robots; ++i) {
+      missing += home_[host.first_robot - offer_.first_robot + i] ? 0 : 1;
+    }
+  }
   return missing;
 }
 

@@ -22,12 +22,20 @@ namespace swarm::launcher {
 class RemoteHosts {
  public:
   /// `offer`: all robots that are for other hosts. `dir`: the run's directory.
-  RemoteHosts(LineServer server, HostOffer offer, std::filesystem::path dir)
-      : server_(std::move(server)), offer_(std::move(offer)), dir_(std::move(dir)) {}
+  RemoteHosts(LineServer server, HostOffer offer, double status_hz, std::filesystem::path dir)
+      : server_(std::move(server)),
+        offer_(std::move(offer)),
+        status_hz_(status_hz),
+        dir_(std::move(dir)),
+        free_({{0, offer_.robots}}),
+        home_(offer_.robots, false) {}
 
   std::uint16_t port() const { return server_.port(); }
 
   void on_status(RobotId robot, SteadyTime now);
+
+  /// What people command is theirs: we do not take it back.
+  void on_user_command(CommandKind kind);
 
   /// Takes what came, and tells the supervisor. Returns what there is to log.
   std::vector<LogEvent> step(Supervisor& supervisor, SteadyTime now);
@@ -43,30 +51,41 @@ class RemoteHosts {
  private:
   struct Host {
     LineSocket socket;
-    HostWatch watch{1};
+    SteadyTime came;
+    HostWatch watch{1, 1.0};
     std::uint32_t first_robot = 0, robots = 0;  // none: it has not asked yet
     ProcessIndex first_process{};
     std::uint32_t processes = 0;
-    int told = -1;      // strongest signal sent
-    bool over = false;  // its processes have ended
-    bool left = false;  // it said good-bye, or is out of reach
+    int told = -1;         // strongest signal sent
+    bool over = false;     // its processes have ended …
+    bool counted = false;  // … and the supervisor knows
+    bool left = false;     // it said good-bye, or is out of reach
     std::ofstream box{};
+    std::uint32_t box_robot = 0;
     std::uint64_t box_bytes = 0;  // still to come
-    std::uint32_t boxes = 0;
+  };
+  struct Block {  // of offer_'s robots
+    std::uint32_t first;
+    std::uint32_t robots;
   };
 
   void take(Host& host);
   bool take_line(Host& host, const std::string& line);
-  void answer(Host& host, std::uint32_t robots);
+  bool answer(Host& host, std::uint32_t robots);
+  void take_box(Host& host);
   void drop(Host& host);
+  void pause_or_resume(bool cut, Supervisor& supervisor, SteadyTime now);
 
   LineServer server_;
   HostOffer offer_;
+  double status_hz_;
   std::filesystem::path dir_;
   std::vector<Host> hosts_;
   std::vector<std::size_t> joined_;  // since the last step: indices of hosts_
-  std::uint32_t given_ = 0;          // robots
+  std::vector<Block> free_;          // nobody's yet
+  std::vector<bool> home_;           // black boxes
   bool paused_ = false;              // by us
+  bool overruled_ = false;           // somebody resumed all the same
   bool begun_ = false;
 };
 

@@ -12,11 +12,19 @@ a=swarmflow-a-$$
 b=swarmflow-b-$$
 echo "runs in $out" >&2
 
+launcher=
+joined=
+failed=0
+
 clean() {
+  exec 3>&-
+  # shellcheck disable=SC2086
+  kill $launcher $joined 2>/dev/null || true
   ip netns del "$a" 2>/dev/null || true
   ip netns del "$b" 2>/dev/null || true
 }
 trap clean EXIT
+trap 'exit 130' INT TERM
 
 # host NAMESPACE INTERFACE ADDRESS
 host() {
@@ -39,7 +47,10 @@ fly() {
   ip netns exec "$a" "$bin/swarm_launcher" run "$mission" --robots "$robots" --out "$out/$1" --json \
     --interface 10.77.0.1 --remote $((robots / 2)) --join-port 7000 >/dev/null 2>"$out/$1.log" &
   launcher=$!
-  until grep -qs 'swarm_launcher join' "$out/$1.log"; do sleep 0.2; done
+  until grep -qs 'swarm_launcher join' "$out/$1.log"; do
+    kill -0 "$launcher"
+    sleep 0.2
+  done
   ip netns exec "$b" "$bin/swarm_launcher" join 10.77.0.1:7000 --robots $((robots / 2)) --out "$out/$1-b" \
     2>"$out/$1-b.log" &
   joined=$!
@@ -51,6 +62,7 @@ finish() {
   wait "$launcher" || code=$?
   joined_code=0
   wait "$joined" || joined_code=$?
+  [ "$code$joined_code" = 00 ] || failed=1
   jq -c --arg name "$1" --argjson exit "[$code, $joined_code]" '{name: $name, exit: $exit, arrived, lost, collisions_robot,
     collisions_obstacle, min_robot_gap_m, path_ratio, mission_s, discovery_s, states_hz, state_age_ms, belief_error_cm}' \
     "$out/$1/summary.json"
@@ -60,7 +72,10 @@ finish() {
 for case in ${*:-lossy cut}; do
   fly "$case"
   if [ "$case" = cut ]; then
-    until grep -qs '"text":"start"' "$out/$case/events.jsonl"; do sleep 0.2; done
+    until grep -qs '"text":"start"' "$out/$case/events.jsonl"; do
+      kill -0 "$launcher"
+      sleep 0.2
+    done
     sleep 60
     echo 1 >&3
     sleep 10
@@ -68,3 +83,4 @@ for case in ${*:-lossy cut}; do
   fi
   finish "$case"
 done
+exit "$failed"

@@ -13,7 +13,7 @@ using std::chrono::milliseconds;
 SteadyTime at(int ms) { return SteadyTime(milliseconds(ms)); }
 
 TEST(HostWatch, TellsOnceThatAHostIsCutOffAndOnceThatItIsBack) {
-  HostWatch sut(50);
+  HostWatch sut(50, 1.0);
   EXPECT_FALSE(sut.step(at(5000))) << "one that was never heard is not cut off";
 
   sut.on_status(at(5000));
@@ -28,10 +28,15 @@ TEST(HostWatch, TellsOnceThatAHostIsCutOffAndOnceThatItIsBack) {
 }
 
 TEST(HostWatch, WaitsLongerForOneRobotThanForMany) {
-  HostWatch one(1);
+  HostWatch one(1, 1.0);
   one.on_status(at(0));
   EXPECT_FALSE(one.step(at(2400)));
   EXPECT_TRUE(one.step(at(2600)));
+  HostWatch rare(1, 0.2);
+  rare.on_status(at(0));
+  EXPECT_FALSE(rare.step(at(12'400)));
+  EXPECT_FALSE(rare.lost(at(100'000)));
+  EXPECT_TRUE(rare.lost(at(130'000)));
 }
 
 TEST(HostPort, IsReadOrRefused) {

@@ -1,0 +1,53 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+// What a flight does for robots that other hosts start.
+#include <cstdio>
+#include <thread>
+
+#include <fmt/format.h>
+
+#include "swarm_core/mission/mission_file.hpp"
+#include "swarm_launcher/flight.hpp"
+
+namespace swarm::launcher {
+namespace {
+
+constexpr Duration kStep = std::chrono::milliseconds(20);
+constexpr Duration kBoxesPatience = std::chrono::minutes(3);
+
+}  // namespace
+
+Result<void> Flight::open_to_hosts(const shell::RunInfo& run) {
+  auto server = LineServer::listen({options_.interface, options_.join_port});
+  if (!server) return tl::unexpected(server.error());
+  const std::uint32_t first = options_.mission.robots.count - options_.remote;
+  hosts_.emplace(std::move(*server),
+                 HostOffer{.run = run,
+                           .first_robot = first,
+                           .robots = options_.remote,
+                           .per_process = options_.per_process,
+                           .first_process = first / options_.per_process,
+                           .fault = options_.fault,
+                           .mission_yaml = to_yaml(options_.mission)},
+                 options_.mission.link.status_hz, dir_);
+  std::fprintf(stderr, "%u robots are for other hosts: swarm_launcher join %s:%u\n",
+               options_.remote, options_.interface.c_str(), hosts_->port());
+  return {};
+}
+
+/// The audit needs what happened to the robots of other hosts.
+void Flight::bring_boxes_home() {
+  const auto until = std::chrono::steady_clock::now() + kBoxesPatience;
+  while (hosts_ && !hosts_->collect() && std::chrono::steady_clock::now() < until) {
+    progress_.show("ending", fmt::format("{} black boxes on their way", hosts_->missing_boxes()));
+    std::this_thread::sleep_for(kStep);
+  }
+  if (hosts_ && hosts_->missing_boxes() > 0) {
+    log({.warning = true,
+         .code = "boxes-missing",
+         .text =
+             fmt::format("{} black boxes of other hosts did not come", hosts_->missing_boxes())});
+  }
+}
+
+}  // namespace swarm::launcher

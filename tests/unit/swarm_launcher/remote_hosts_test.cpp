@@ -1,0 +1,203 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+// The launcher's side of other hosts, against hosts that behave and hosts that do not.
+#include "swarm_launcher/hosts/remote_hosts.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <optional>
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+namespace swarm::launcher {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+constexpr std::uint32_t kRobots = 4;  // two of them remote
+
+struct Bench {
+  Bench() {
+    std::filesystem::create_directories(dir / "blackbox");
+    for (int i = 0; i < 20; ++i) {
+      supervisor.step(now);
+      now += milliseconds(50);
+    }
+  }
+  ~Bench() { std::filesystem::remove_all(dir); }
+
+  void step(int times = 3) {
+    for (int i = 0; i < times; ++i) {
+      // What is sent through the loopback is there at once.
+      for (const LogEvent& event : hosts.step(supervisor, now)) log.push_back(event.code);
+      for (const Action& action : supervisor.step(now)) {
+        if (const auto* signal = std::get_if<SignalProcess>(&action)) {
+          if (signal->process.value() > kRobots - 2) {
+            hosts.end(signal->process, signal->signal);
+          } else {
+            supervisor.on_exit(signal->process, {}, now);
+          }
+        }
+      }
+      now += milliseconds(50);
+    }
+  }
+
+  LineSocket connect() { return *LineSocket::connect({"127.0.0.1", hosts.port()}); }
+  LineSocket join(int robots) {
+    LineSocket socket = connect();
+    socket.send("{\"join\":" + std::to_string(robots) + "}");
+    step();
+    return socket;
+  }
+  std::string answer(LineSocket& socket) {
+    socket.wait(1000);
+    socket.receive();
+    return socket.line().value_or("");
+  }
+  void start_mission() {
+    for (std::uint32_t i = 0; i < kRobots; ++i) {
+      supervisor.on_status(RobotId(i), {true, true, RobotMode::kMoving, false});
+      hosts.on_status(RobotId(i), now);
+    }
+    step();
+  }
+  bool logged(const std::string& code) const {
+    return std::find(log.begin(), log.end(), code) != log.end();
+  }
+
+  std::filesystem::path dir =
+      std::filesystem::temp_directory_path() / ("swarmflow-hosts-" + std::to_string(::getpid()));
+  SteadyTime now{seconds(100)};
+  Supervisor supervisor{{.robots = kRobots, .remote_processes = 2, .launcher = {}, .script = {}},
+                        now};
+  RemoteHosts hosts{*LineServer::listen({"127.0.0.1", 0}),
+                    {.run = {.domain = 1, .hubs = 1},
+                     .first_robot = 2,
+                     .robots = 2,
+                     .first_process = 2,
+                     .mission_yaml = "x"},
+                    1.0,
+                    dir};
+  std::vector<std::string> log;
+};
+
+TEST(RemoteHosts, GivesEachHostTheNextRobots) {
+  Bench bench;
+  LineSocket first = bench.join(1);
+  LineSocket second = bench.join(5);
+  LineSocket third = bench.join(1);
+
+  EXPECT_EQ(parse_offer(bench.answer(first))->first_robot, 2U);
+  const auto rest = parse_offer(bench.answer(second));
+  EXPECT_EQ(rest->first_robot, 3U);
+  EXPECT_EQ(rest->robots, 1U);
+  EXPECT_NE(bench.answer(third).find("refused"), std::string::npos);
+}
+
+TEST(RemoteHosts, GivesTheRobotsOfOneThatFailedAtTheStartToTheNext) {
+  Bench bench;
+  { LineSocket failing = bench.join(2); }
+  bench.step();
+  EXPECT_TRUE(bench.logged("host-over"));
+
+  LineSocket again = bench.join(2);
+  EXPECT_EQ(parse_offer(bench.answer(again))->robots, 2U);
+  bench.start_mission();
+  EXPECT_EQ(bench.supervisor.stage(), Supervisor::Stage::kRunning);
+  EXPECT_TRUE(bench.supervisor.lost().empty());
+}
+
+TEST(RemoteHosts, OneThatComesAndGoesAtOnceHoldsNobodyUp) {
+  Bench bench;
+  {
+    LineSocket hasty = bench.connect();
+    hasty.send(R"({"join":2})");
+  }
+  bench.step();
+  bench.supervisor.on_interrupt();
+  bench.step(10);
+
+  EXPECT_EQ(bench.supervisor.stage(), Supervisor::Stage::kDone);
+}
+
+TEST(RemoteHosts, OneThatDoesNotEndIsGivenUp) {
+  Bench bench;
+  LineSocket frozen = bench.join(2);
+  bench.start_mission();
+  bench.supervisor.on_interrupt();
+  bench.step(10);
+  EXPECT_EQ(bench.supervisor.stage(), Supervisor::Stage::kEnding);
+
+  bench.supervisor.on_interrupt();
+  bench.step(10);
+
+  EXPECT_EQ(bench.supervisor.stage(), Supervisor::Stage::kDone);
+  EXPECT_EQ(bench.hosts.missing_boxes(), 2U);
+}
+
+TEST(RemoteHosts, PausesTheOthersWhileAHostIsSilentUnlessSomebodyResumes) {
+  Bench bench;
+  LineSocket host = bench.join(2);
+  bench.start_mission();
+  ASSERT_EQ(bench.supervisor.phase(), MissionPhase::kRunning);
+
+  bench.step(50);
+  EXPECT_TRUE(bench.logged("host-silent"));
+  EXPECT_EQ(bench.supervisor.phase(), MissionPhase::kPaused);
+  bench.supervisor.on_command(CommandKind::kResume, bench.now);
+  bench.step(5);
+  EXPECT_EQ(bench.supervisor.phase(), MissionPhase::kRunning);
+
+  bench.start_mission();  // heard again
+  bench.step(60);         // and silent again
+  EXPECT_EQ(bench.supervisor.phase(), MissionPhase::kPaused);
+  bench.hosts.on_user_command(CommandKind::kPause);
+  bench.start_mission();
+  EXPECT_EQ(bench.supervisor.phase(), MissionPhase::kPaused) << "somebody wants it so";
+}
+
+TEST(RemoteHosts, TakesBlackBoxesHome) {
+  Bench bench;
+  LineSocket host = bench.join(2);
+  host.send(R"({"over":true})");
+  host.send(R"({"box":2,"bytes":3})");
+  host.send_bytes("abc");
+  host.send(R"({"box":3,"bytes":5})");
+  host.send_bytes("de");  // and no more
+  host.flush();
+  bench.step();
+  EXPECT_EQ(bench.hosts.missing_boxes(), 1U);
+  EXPECT_EQ(std::filesystem::file_size(bench.dir / "blackbox" / "robot-00002.bbox"), 3U);
+
+  host.close();
+  bench.step();
+  EXPECT_TRUE(bench.hosts.collect());
+  EXPECT_EQ(bench.hosts.missing_boxes(), 1U);
+}
+
+TEST(RemoteHosts, DropsWhoeverSaysSomethingElse) {
+  Bench bench;
+  for (const std::string line :
+       {"GET / HTTP/1.1", "[]", R"({"join":0})", R"({"join":-1})", R"({"join":1e300})",
+        R"({"join":"two"})", R"({"box":2,"bytes":1})", R"({"over":true})"}) {
+    LineSocket stranger = bench.connect();
+    stranger.send(line);
+    bench.step();
+    stranger.wait(1000);
+    stranger.receive();
+    EXPECT_TRUE(stranger.gone()) << line;
+  }
+  LineSocket host = bench.join(2);
+  bench.answer(host);
+  host.send(R"({"box":9,"bytes":1e300})");
+  bench.step();
+  host.wait(1000);
+  host.receive();
+  EXPECT_TRUE(host.gone());
+}
+
+}  // namespace
+}  // namespace swarm::launcher
