@@ -13,6 +13,7 @@ namespace {
 // After a start the launcher's scene is due at once; a bus that does not bring it must not keep a
 // mission from flying.
 constexpr Duration kScenePatience = std::chrono::seconds(3);
+constexpr double kFew = 0.05;  // of the robots: no plan of their own
 // A planner that comes back in mid-flight waits this long for robots it does not hear.
 constexpr Duration kHearPatience = std::chrono::milliseconds(1500);
 // Robots that stand for this long are stuck; escapes of their own have not helped by then.
@@ -100,12 +101,16 @@ void PlanKeeper::keep_planned(SteadyTime now, UtcTime utc, Step& step) {
   }
 }
 
+/// ROVER plans anew at every step, but not for the last few: to one robot each plan gives another
+/// goal, whichever lacks a share, and it would fly to and fro for good.
 bool PlanKeeper::is_step_due(SteadyTime now) const {
   if (mission_.planner.method != "rover" || phase_ != MissionPhase::kRunning) return false;
   const double step_s = mission_.planner.transport_radius_m / mission_.planner.speed_mps;
   if (now - tried_at_ < from_seconds(step_s)) return false;
   const std::vector<HeardRobot> heard = robots_.fresh(now);
-  return std::any_of(heard.begin(), heard.end(), [](const HeardRobot& r) { return !r.arrived; });
+  const auto left =
+      std::count_if(heard.begin(), heard.end(), [](const HeardRobot& r) { return !r.arrived; });
+  return static_cast<double>(left) > std::max(1.0, kFew * static_cast<double>(heard.size()));
 }
 
 /// CRoPS: where many are stuck the guide becomes dear, and may lead another way.

@@ -15,14 +15,14 @@ constexpr std::uint32_t kGroupsPerProcessMax = 4;
 Result<ChannelChoice> choose_channel(const ChannelQuestion& question) {
   const auto& [wanted, agents, robots_per_process, multicast] = question;
   if (wanted == Channel::kGroups && !multicast) {
-    return fail(ErrorCode::kEnvironment,
-                "--channel groups: the loopback interface carries no multicast; let firewalls pass "
-                "239.255.0.0/16 on lo, or use --channel topics");
+    return fail(
+        ErrorCode::kEnvironment,
+        "--channel groups: the interface (lo, or that of --interface) is not there or carries "
+        "no multicast; let firewalls pass 239.255.0.0/16, or use --channel topics");
   }
   if (wanted) return ChannelChoice{*wanted, "as asked"};
   if (!multicast) {
-    return ChannelChoice{Channel::kTopics,
-                         "this machine carries no multicast on its loopback interface"};
+    return ChannelChoice{Channel::kTopics, "the interface carries no multicast"};
   }
   if (agents <= kTopicsAgentsMax) {
     return ChannelChoice{Channel::kTopics,

@@ -20,7 +20,7 @@ struct ChannelQuestion {
   std::optional<Channel> wanted{};  ///< obeyed, or refused where it cannot work
   std::uint32_t agents = 0;         ///< processes
   std::uint32_t robots_per_process = 1;
-  bool multicast = true;  ///< whether the machine carries it on its loopback interface
+  bool multicast = true;  ///< whether the interface carries it
 };
 
 /// The state channel of a run, and why. Beyond 32 processes the endpoints of moving robots cost

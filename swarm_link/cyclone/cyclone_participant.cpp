@@ -234,8 +234,8 @@ Result<std::unique_ptr<Participant>> make_cyclone_participant(const CycloneOptio
   auto domain = domain_of(options);
   if (domain->get() < 0) {
     return fail(ErrorCode::kEnvironment,
-                fmt::format("Cyclone DDS refused domain {}: {}; is the loopback interface up?",
-                            options.domain, dds_strretcode(domain->get())));
+                fmt::format("Cyclone DDS refused domain {} on {}: {}; is that interface up?",
+                            options.domain, options.interface, dds_strretcode(domain->get())));
   }
   const QosPtr qos(dds_create_qos());
   dds_qset_entity_name(qos.get(), options.name.c_str());
