@@ -1,6 +1,6 @@
 #!/bin/sh
 # How discovery, latency and CPU grow with the number of one-robot processes: the rows of docs/BENCHMARKS.md, by soak.
-# About a minute a row.   tests/bench/scale.sh CHANNEL N …      CHANNEL: groups or topics
+# Needs jq. About a minute a row.   tests/bench/scale.sh CHANNEL N …      CHANNEL: groups or topics
 set -eu
 root=$(cd "$(dirname "$0")/../.." && pwd)
 bin=${SWARM_BIN:-$root/build/release/bin}

@@ -1,5 +1,6 @@
 #!/bin/sh
 # One mission by two hosts, each a network namespace of this machine, with 5 % loss and 20 ms of delay between them; as root.
+# Needs iproute2, jq and python3.
 # One JSON line a case on stdout. About eight minutes.   tests/bench/two_hosts.sh [CASE …]
 #   cases: lossy cut      (default: both; cut: the link is cut for 10 s in mid-flight)
 set -eu

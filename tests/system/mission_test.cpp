@@ -56,11 +56,14 @@ TEST(Mission, IsFlownByMoreCycloneProcessesThanItsDefaultsAllow) {
 
 TEST(Mission, IsFlownWithRobotsOfAnotherMakeBehindAGateway) {
   FlownRun run({"--channel", "groups", "--by-gateway", "4"});
-  ASSERT_TRUE(run.mission_started()) << run.launcher().err();
-  const auto gateways = children_of(run.launcher().pid(), "swarm_launcher");
-  ASSERT_EQ(gateways.size(), 1U);
+  std::vector<pid_t> gateways;
+  ASSERT_TRUE(eventually([&] {
+    gateways = children_of(run.launcher().pid(), "swarm_launcher");
+    return gateways.size() == 1;
+  })) << run.launcher().err();
 
-  ::kill(gateways[0], SIGKILL);  // one that comes back is found again
+  // One that comes back is found again: the mission begins when everyone hears those around it.
+  ::kill(gateways[0], SIGKILL);
 
   EXPECT_EQ(run.launcher().wait(), 0) << run.launcher().err();
   EXPECT_TRUE(has_event(run.dir(), "gateway-exit"));

@@ -5,7 +5,11 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <optional>
+#include <functional>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -30,7 +34,6 @@ struct Bench {
 
   void step(int times = 3) {
     for (int i = 0; i < times; ++i) {
-      // What is sent through the loopback is there at once.
       for (const LogEvent& event : hosts.step(supervisor, now)) log.push_back(event.code);
       for (const Action& action : supervisor.step(now)) {
         if (const auto* signal = std::get_if<SignalProcess>(&action)) {
@@ -45,17 +48,31 @@ struct Bench {
     }
   }
 
+  /// Steps until it is so; the limit guards against hanging.
+  bool until(const std::function<bool()>& condition) {
+    for (int i = 0; i < 2000 && !condition(); ++i) {
+      step(1);
+      std::this_thread::sleep_for(milliseconds(1));
+    }
+    return condition();
+  }
+
   LineSocket connect() { return *LineSocket::connect({"127.0.0.1", hosts.port()}); }
   LineSocket join(int robots) {
     LineSocket socket = connect();
     socket.send("{\"join\":" + std::to_string(robots) + "}");
-    step();
+    until([&] {
+      socket.receive();
+      if (auto line = socket.line()) answer = *line;
+      return !answer.empty() || socket.gone();
+    });
     return socket;
   }
-  std::string answer(LineSocket& socket) {
-    socket.wait(1000);
-    socket.receive();
-    return socket.line().value_or("");
+  bool is_dropped(LineSocket& socket) {
+    return until([&] {
+      socket.receive();
+      return socket.gone();
+    });
   }
   void start_mission() {
     for (std::uint32_t i = 0; i < kRobots; ++i) {
@@ -82,29 +99,29 @@ struct Bench {
                     1.0,
                     dir};
   std::vector<std::string> log;
+  std::string answer;  // to the last join
 };
 
 TEST(RemoteHosts, GivesEachHostTheNextRobots) {
   Bench bench;
   LineSocket first = bench.join(1);
+  EXPECT_EQ(parse_offer(std::exchange(bench.answer, ""))->first_robot, 2U);
   LineSocket second = bench.join(5);
-  LineSocket third = bench.join(1);
-
-  EXPECT_EQ(parse_offer(bench.answer(first))->first_robot, 2U);
-  const auto rest = parse_offer(bench.answer(second));
+  const auto rest = parse_offer(std::exchange(bench.answer, ""));
   EXPECT_EQ(rest->first_robot, 3U);
   EXPECT_EQ(rest->robots, 1U);
-  EXPECT_NE(bench.answer(third).find("refused"), std::string::npos);
+  LineSocket third = bench.join(1);
+  EXPECT_NE(bench.answer.find("refused"), std::string::npos);
 }
 
 TEST(RemoteHosts, GivesTheRobotsOfOneThatFailedAtTheStartToTheNext) {
   Bench bench;
-  { LineSocket failing = bench.join(2); }
-  bench.step();
-  EXPECT_TRUE(bench.logged("host-over"));
+  bench.join(2).close();
+  EXPECT_TRUE(bench.until([&] { return bench.logged("host-over"); }));
 
+  bench.answer.clear();
   LineSocket again = bench.join(2);
-  EXPECT_EQ(parse_offer(bench.answer(again))->robots, 2U);
+  EXPECT_EQ(parse_offer(bench.answer)->robots, 2U);
   bench.start_mission();
   EXPECT_EQ(bench.supervisor.stage(), Supervisor::Stage::kRunning);
   EXPECT_TRUE(bench.supervisor.lost().empty());
@@ -116,7 +133,7 @@ TEST(RemoteHosts, OneThatComesAndGoesAtOnceHoldsNobodyUp) {
     LineSocket hasty = bench.connect();
     hasty.send(R"({"join":2})");
   }
-  bench.step();
+  ASSERT_TRUE(bench.until([&] { return bench.logged("host-over"); }));
   bench.supervisor.on_interrupt();
   bench.step(10);
 
@@ -168,14 +185,13 @@ TEST(RemoteHosts, TakesBlackBoxesHome) {
   host.send(R"({"box":3,"bytes":5})");
   host.send_bytes("de");  // and no more
   host.flush();
-  bench.step();
-  EXPECT_EQ(bench.hosts.missing_boxes(), 1U);
+  EXPECT_TRUE(bench.until([&] { return bench.hosts.missing_boxes() == 1; }));
   EXPECT_EQ(std::filesystem::file_size(bench.dir / "blackbox" / "robot-00002.bbox"), 3U);
+  EXPECT_FALSE(bench.hosts.collect());
 
   host.close();
-  bench.step();
-  EXPECT_TRUE(bench.hosts.collect());
-  EXPECT_EQ(bench.hosts.missing_boxes(), 1U);
+  EXPECT_TRUE(bench.until([&] { return bench.hosts.collect(); }));
+  EXPECT_EQ(bench.hosts.missing_boxes(), 1U) << "half a box is none";
 }
 
 TEST(RemoteHosts, DropsWhoeverSaysSomethingElse) {
@@ -185,18 +201,11 @@ TEST(RemoteHosts, DropsWhoeverSaysSomethingElse) {
         R"({"join":"two"})", R"({"box":2,"bytes":1})", R"({"over":true})"}) {
     LineSocket stranger = bench.connect();
     stranger.send(line);
-    bench.step();
-    stranger.wait(1000);
-    stranger.receive();
-    EXPECT_TRUE(stranger.gone()) << line;
+    EXPECT_TRUE(bench.is_dropped(stranger)) << line;
   }
   LineSocket host = bench.join(2);
-  bench.answer(host);
   host.send(R"({"box":9,"bytes":1e300})");
-  bench.step();
-  host.wait(1000);
-  host.receive();
-  EXPECT_TRUE(host.gone());
+  EXPECT_TRUE(bench.is_dropped(host));
 }
 
 }  // namespace
