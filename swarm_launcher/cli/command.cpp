@@ -1,0 +1,39 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "swarm_launcher/command.hpp"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "swarm_launcher/cli/commands.hpp"
+
+namespace swarm::launcher::cli {
+
+Command add_command(CLI::App& program) {
+  struct Options {
+    std::filesystem::path run_dir;
+    std::vector<std::string> words;
+  };
+  const auto o = std::make_shared<Options>();
+  CLI::App* const command = program.add_subcommand(
+      "command",
+      "Command a running mission: start, pause, resume, stop (an emergency stop), or a change:\n"
+      "  add_obstacle 'circle_m: {center: [100, 60], radius: 4}'    (or polygon_m: [[x, y], "
+      "...])\n"
+      "  move_obstacle 'obstacle: 6, by_m: [10, 0], over_s: 20'\n"
+      "  remove_obstacle 'obstacle: 6'\n"
+      "  goto 'goal: [{mean_m: [20, 20], covariance_m2: [[9, 0], [0, 9]], weight: 1}]'\n"
+      "  risk 'alpha: 0.15'");
+  command->add_option("run_dir", o->run_dir, "Its run directory")->required()->type_name("RUN_DIR");
+  command->add_option("words", o->words, "The command and its keys, as in a script")
+      ->required()
+      ->type_name("WORD [KEYS]");
+  return {command,
+          [o] { return command_mission(o->run_dir, fmt::format("{}", fmt::join(o->words, " "))); }};
+}
+
+}  // namespace swarm::launcher::cli

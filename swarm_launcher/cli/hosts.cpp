@@ -1,0 +1,37 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include <memory>
+
+#include "swarm_launcher/cli/commands.hpp"
+#include "swarm_launcher/gateway.hpp"
+#include "swarm_launcher/hosts/join_host.hpp"
+
+namespace swarm::launcher::cli {
+
+Command add_join(CLI::App& program) {
+  const auto o = std::make_shared<JoinOptions>();
+  CLI::App* const join =
+      program.add_subcommand("join", "Fly robots of a run that another host's launcher leads");
+  join->add_option("launcher", o->launcher, "As that launcher says it")
+      ->required()
+      ->type_name("HOST:PORT");
+  join->add_option("--robots", o->robots, "So many, if there are as many left")
+      ->check(CLI::Range(1, kMostRobots));
+  join->add_option("--interface", o->interface,
+                   "IPv4 address to meet them on (default: of the way to the launcher)")
+      ->check(CLI::ValidIPV4);
+  join->add_flag("--cyclonedds", o->cyclone, "The agents speak Cyclone DDS");
+  join->add_option("--out", o->out, "Run directory (default: runs/joined-<time>)");
+  return {join, [o] { return join_host(*o); }};
+}
+
+Command add_gateway(CLI::App& program) {
+  const auto o = std::make_shared<GatewayCommandOptions>();
+  CLI::App* const gateway = program.add_subcommand(
+      "gateway", "Carry the robot states of a run between groups and DDS topics");
+  gateway->add_option("run", o->run_dir, "Run directory")->required()->type_name("RUN_DIR");
+  gateway->add_option("--parent", o->parent_pid, "End when this process is no longer our parent");
+  return {gateway, [o] { return run_gateway(*o); }};
+}
+
+}  // namespace swarm::launcher::cli

@@ -1,0 +1,24 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "swarm_launcher/plan.hpp"
+
+#include <memory>
+
+#include "swarm_launcher/cli/commands.hpp"
+
+namespace swarm::launcher::cli {
+
+Command add_plan(CLI::App& program) {
+  const auto o = std::make_shared<PlanCommandOptions>();
+  CLI::App* const plan = program.add_subcommand("plan", "Plan a mission without flying it");
+  plan->add_option("mission", o->mission_file, "Mission file")
+      ->required()
+      ->type_name("MISSION.yaml");
+  plan->add_option("--seed", o->seed, "First seed");
+  plan->add_option("--repeat", o->repeat, "Number of seeds")->check(CLI::Range(1, 100000));
+  plan->add_option("--out", o->out, "Directory for plan.json and plan.svg");
+  plan->add_flag("--json", o->json, "Print the result as JSON");
+  return {plan, [o] { return plan_mission(*o); }};
+}
+
+}  // namespace swarm::launcher::cli

@@ -1,0 +1,78 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "swarm_launcher/run.hpp"
+
+#include <map>
+#include <memory>
+#include <string>
+
+#include "swarm_launcher/cli/commands.hpp"
+
+namespace swarm::launcher::cli {
+
+void add_channel(CLI::App& command, std::optional<Channel>& channel) {
+  static const std::map<std::string, std::optional<Channel>> kChannels = {
+      {"auto", std::nullopt}, {"topics", Channel::kTopics}, {"groups", Channel::kGroups}};
+  command
+      .add_option_function<std::string>(
+          "--channel", [&channel](const std::string& name) { channel = kChannels.at(name); },
+          "What carries robot states: DDS topics, multicast groups, or auto")
+      ->check(CLI::IsMember(kChannels));
+}
+
+void add_domain(CLI::App& command, int& domain) {
+  command.add_option("--domain", domain, "DDS domain (default: a free one)")
+      ->check(CLI::Range(0, 229));
+}
+
+Command add_run(CLI::App& program) {
+  const auto o = std::make_shared<RunOptions>();
+  CLI::App* const run = program.add_subcommand("run", "Fly a mission with one process per robot");
+  run->add_option("mission", o->mission_file, "Mission file")
+      ->required()
+      ->type_name("MISSION.yaml");
+  run->add_option("--robots", o->robots, "Number of robots, instead of the mission's")
+      ->check(CLI::Range(1, kMostRobots));
+  auto* const per_process =
+      run->add_option("--per-process", o->per_process, "Robots hosted by one agent process")
+          ->check(CLI::Range(1, kMostRobots));
+  run->add_option_function<std::string>(
+         "--processes",
+         [o](const std::string& n) {
+           o->processes = n == "auto" ? 0U : static_cast<std::uint32_t>(std::stoul(n));
+         },
+         "Agent processes, or auto: one a robot while the machine carries that, else few")
+      ->check(CLI::IsMember({"auto"}) | CLI::Range(1, kMostRobots))
+      ->type_name("N|auto")
+      ->excludes(per_process);
+  run->add_option("--seed", o->seed, "Seed of placement, plan and robots");
+  run->add_option("--out", o->out, "Run directory (default: runs/<mission>-<time>)");
+  add_domain(*run, o->domain);
+  add_channel(*run, o->channel);
+  const std::map<std::string, AgentDds> agent_dds = {{"fastdds", AgentDds::kFastDds},
+                                                     {"cyclonedds", AgentDds::kCycloneDds},
+                                                     {"half", AgentDds::kHalf}};
+  run->add_option("--agent-dds", o->agent_dds, "Whose DDS the agents speak (groups channel)")
+      ->transform(CLI::CheckedTransformer(agent_dds));
+  run->add_option("--by-gateway", o->by_gateway,
+                  "The first N agent processes speak Cyclone DDS and say their states by\n"
+                  "topics, through a gateway to the others' groups");
+  run->add_option_function<std::string>(
+         "--planner-dds",
+         [o](const std::string& name) { o->cyclone_planner = name == "cyclonedds"; },
+         "Whose DDS the planner speaks (groups channel)")
+      ->check(CLI::IsMember({"fastdds", "cyclonedds"}));
+  run->add_option("--fault", o->fault,
+                  "A bad network for what planner and robots receive, like\n"
+                  "loss=0.2,delay-ms=150,jitter-ms=50,from=10,to=60")
+      ->type_name("FAULT");
+  run->add_option("--interface", o->interface, "IPv4 address to meet other hosts on")
+      ->check(CLI::ValidIPV4);
+  run->add_option("--remote", o->remote, "Robots, the last ones, that other hosts start: see join");
+  run->add_option("--join-port", o->join_port,
+                  "TCP port where those come to (default: a free one)");
+  run->add_flag("--json", o->json, "Print the summary as JSON");
+  return {run, [o] { return run_mission(*o); }};
+}
+
+}  // namespace swarm::launcher::cli
