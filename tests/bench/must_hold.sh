@@ -6,7 +6,7 @@ set -eu
 root=$(cd "$(dirname "$0")/../.." && pwd)
 bin=${SWARM_BIN:-$root/build/release/bin}
 mission=$root/deploy/missions/swarmprm_standin.yaml
-out=$(mktemp -d "${TMPDIR:-/tmp}/swarmflow-must-hold-XXXXXX")
+out=$(mktemp -d)
 echo "runs in $out" >&2
 
 # report NAME EXIT: the interesting keys of a run's summary on one line

@@ -6,7 +6,7 @@ root=$(cd "$(dirname "$0")/../.." && pwd)
 bin=${SWARM_BIN:-$root/build/release/bin}
 channel=$1
 shift
-out=$(mktemp -d "${TMPDIR:-/tmp}/swarmflow-scale-XXXXXX")
+out=$(mktemp -d)
 echo "runs in $out" >&2
 echo '| channel, processes | discovery s | written → received ms p50 / p99 / p99.9 | → used ms p50 / p99 | sent, lost | late ticks % | CPU s | memory MB each | outcome |'
 echo '|---|---|---|---|---|---|---|---|---|'

@@ -8,7 +8,7 @@ root=$(cd "$(dirname "$0")/../.." && pwd)
 bin=${SWARM_BIN:-$root/build/release/bin}
 mission=$root/deploy/missions/swarmprm_standin.yaml
 robots=${ROBOTS:-100}
-out=$(mktemp -d "${TMPDIR:-/tmp}/swarmflow-two-hosts-XXXXXX")
+out=$(mktemp -d)
 a=swarmflow-a-$$
 b=swarmflow-b-$$
 echo "runs in $out" >&2
