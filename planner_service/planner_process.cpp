@@ -19,7 +19,7 @@
 #include "swarm_core/plan/plan_json.hpp"
 #include "swarm_core/shell/run_directory.hpp"
 #include "swarm_core/shell/stop_signal.hpp"
-#include "swarm_link/join.hpp"
+#include "swarm_link/run_meeting.hpp"
 #include "swarm_link/topics.hpp"
 #include "swarm_link/validation.hpp"
 
@@ -93,18 +93,10 @@ Result<void> PlannerProcess::Impl::plan_first() {
 }
 
 Result<void> PlannerProcess::Impl::join(const shell::RunInfo& run) {
-  auto made = link::join_as_planner(
-      link::Meeting{
-          .domain = run.domain,
-          .server = {run.discovery_host, run.discovery_port},
-          .hubs = run.hubs,
-          .planner = run.cyclone_planner ? link::Vendor::kCycloneDds : link::Vendor::kFastDds,
-          .host = run.host,
-          .interface = run.interface,
-          .faults = link::ReceptionFaults{.faults = options.faults,
-                                          .seed = mix_seed(run.seed, kFaultSeed),
-                                          .run_began = run.began}},
-      options.ownership_strength);
+  auto made = link::join_as_planner(link::meeting_of(run, {.faults = options.faults,
+                                                           .seed = mix_seed(run.seed, kFaultSeed),
+                                                           .run_began = run.began}),
+                                    options.ownership_strength);
   if (!made) return tl::unexpected(made.error());
   participant = std::move(*made);
   auto plans = participant->make_writer(link::plan_topic());

@@ -24,7 +24,7 @@
 #include "swarm_core/shell/run_directory.hpp"
 #include "swarm_core/shell/stop_signal.hpp"
 #include "swarm_link/groups/group_channel.hpp"
-#include "swarm_link/join.hpp"
+#include "swarm_link/run_meeting.hpp"
 #include "swarm_link/topics.hpp"
 
 namespace swarm::agent {
@@ -106,17 +106,9 @@ Result<void> AgentProcess::Impl::join(const shell::RunInfo& run) {
       .faults = options.faults,
       .seed = mix_seed(mix_seed(run.seed, kFaultSeed), options.number + 1),
       .run_began = run.began};
-  auto made =
-      link::join_as_agent(link::Meeting{.domain = run.domain,
-                                        .server = {run.discovery_host, run.discovery_port},
-                                        .hubs = run.hubs,
-                                        .planner = run.cyclone_planner ? link::Vendor::kCycloneDds
-                                                                       : link::Vendor::kFastDds,
-                                        .host = run.host,
-                                        .interface = run.interface,
-                                        .faults = faults},
-                          options.number, fmt::format("robot_agent_{}", options.first.value()),
-                          options.vendor, options.by_gateway);
+  auto made = link::join_as_agent(link::meeting_of(run, faults), options.number,
+                                  fmt::format("robot_agent_{}", options.first.value()),
+                                  options.vendor, options.by_gateway);
   if (!made) return tl::unexpected(made.error());
   participant = std::move(*made);
 

@@ -19,13 +19,32 @@
 #include "swarm_core/shell/stop_signal.hpp"
 #include "swarm_launcher/child_process.hpp"
 #include "swarm_launcher/run_dir.hpp"
+#include "swarm_link/run_meeting.hpp"
 #include "swarm_link/udp_socket.hpp"
+#include "swarm_link/vendor.hpp"
 
 namespace swarm::launcher {
 namespace {
 
 constexpr Duration kStep = std::chrono::milliseconds(20);
 constexpr std::uint32_t kPlannerStrength = 100;
+
+Result<void> vendors_fit(const FlightOptions& options, Channel channel) {
+  const bool cyclone = options.agent_dds != AgentDds::kFastDds || options.cyclone_launcher ||
+                       options.cyclone_planner || options.by_gateway > 0;
+  if (cyclone && channel != Channel::kGroups) {
+    return fail(ErrorCode::kBadInput,
+                "Cyclone DDS joins without a discovery server; add --channel groups");
+  }
+  if (cyclone && !link::built_with(link::Vendor::kCycloneDds)) {
+    return fail(ErrorCode::kBadInput, "this program was built without Cyclone DDS");
+  }
+  if (options.by_gateway > 0 && !link::built_with(link::Vendor::kFastDds)) {
+    return fail(ErrorCode::kBadInput,
+                "--by-gateway: the gateway speaks Fast DDS, which this program was built without");
+  }
+  return {};
+}
 
 }  // namespace
 
@@ -60,18 +79,18 @@ Result<std::unique_ptr<Flight>> Flight::make(FlightOptions options, FlightObserv
                             "must be whole processes of {}",
                             options.remote, options.mission.robots.count, options.per_process));
   }
+  if (!link::built_with(link::Vendor::kFastDds)) {
+    options.agent_dds = AgentDds::kCycloneDds;
+    options.cyclone_launcher = options.cyclone_planner = true;
+    if (!options.channel) options.channel = Channel::kGroups;
+  }
   auto channel = choose_channel({.wanted = options.channel,
                                  .agents = agents,
                                  .robots_per_process = options.per_process,
                                  .multicast = link::carries_multicast(options.interface)});
   if (!channel) return tl::unexpected(channel.error());
-  if ((options.agent_dds != AgentDds::kFastDds || options.cyclone_planner ||
-       options.by_gateway > 0) &&
-      channel->channel != Channel::kGroups) {
-    return fail(ErrorCode::kBadInput,
-                "--agent-dds, --planner-dds, --by-gateway: Cyclone DDS joins without a discovery "
-                "server; add "
-                "--channel groups");
+  if (const auto fits = vendors_fit(options, channel->channel); !fits) {
+    return tl::unexpected(fits.error());
   }
   const std::uint32_t hubs = channel->channel == Channel::kGroups ? link::hubs_for(agents) : 0;
   auto lock = DomainLock::take(options.domain, link::participants_for({.hubs = hubs}, agents));
@@ -93,22 +112,18 @@ Flight::~Flight() {
 }
 
 Result<void> Flight::join() {
-  link::Meeting meeting{
-      .domain = lock_.domain(),
-      .hubs = hubs_,
-      .planner = options_.cyclone_planner ? link::Vendor::kCycloneDds : link::Vendor::kFastDds,
-      .host = options_.interface,
-      .interface = options_.interface};
+  link::DiscoveryAddress meeting_place;
   if (hubs_ == 0) {
     auto server = link::make_discovery_server(lock_.domain(), 0);
     if (!server) return tl::unexpected(server.error());
     server_ = std::move(*server);
-    meeting.server = server_->address();
+    meeting_place = server_->address();
   }
-  const shell::RunInfo run{.domain = meeting.domain,
-                           .discovery_host = meeting.server.host,
-                           .discovery_port = meeting.server.port,
-                           .hubs = meeting.hubs,
+  const shell::RunInfo run{.domain = lock_.domain(),
+                           .discovery_host = meeting_place.host,
+                           .discovery_port = meeting_place.port,
+                           .hubs = hubs_,
+                           .cyclone_launcher = options_.cyclone_launcher,
                            .cyclone_planner = options_.cyclone_planner,
                            .host = options_.interface,
                            .interface = options_.interface,
@@ -116,7 +131,7 @@ Result<void> Flight::join() {
                            .seed = options_.seed,
                            .began = utc_now()};
   if (auto written = shell::write_run_info(dir_, run); !written) return written;
-  auto participant = link::join_as_launcher(meeting);
+  auto participant = link::join_as_launcher(link::meeting_of(run));
   if (!participant) return tl::unexpected(participant.error());
   participant_ = std::move(*participant);
   auto status = participant_->make_reader(link::status_topic());

@@ -43,6 +43,7 @@ struct FlightOptions {
   int domain = -1;                   ///< DDS domain; negative: a free one
   std::optional<Channel> channel{};  ///< empty: choose_channel() decides
   AgentDds agent_dds = AgentDds::kFastDds;
+  bool cyclone_launcher = false;
   bool cyclone_planner = false;
   std::uint32_t by_gateway = 0;  ///< agent processes, the first ones, whose states go by topics
   std::string interface = "127.0.0.1";  ///< address of the network's interface

@@ -14,7 +14,7 @@
 #include "swarm_core/shell/stop_signal.hpp"
 #include "swarm_launcher/child_process.hpp"
 #include "swarm_link/gateway.hpp"
-#include "swarm_link/join.hpp"
+#include "swarm_link/run_meeting.hpp"
 
 namespace swarm::launcher {
 namespace {
@@ -32,8 +32,7 @@ Result<ExitCode> run_gateway(const GatewayCommandOptions& options) {
   if (run->channel != Channel::kGroups) {
     return fail(ErrorCode::kBadInput, "this run's states go by topics: no gateway is needed");
   }
-  const auto participant = link::join_as_gateway(
-      {.domain = run->domain, .hubs = run->hubs, .host = run->host, .interface = run->interface});
+  const auto participant = link::join_as_gateway(link::meeting_of(*run));
   if (!participant) return tl::unexpected(participant.error());
   const auto gateway =
       link::make_gateway(**participant, {.domain = run->domain,

@@ -44,6 +44,7 @@ Result<ExitCode> run_mission(const RunOptions& options) {
                                     .domain = options.domain,
                                     .channel = options.channel,
                                     .agent_dds = options.agent_dds,
+                                    .cyclone_launcher = options.cyclone_launcher,
                                     .cyclone_planner = options.cyclone_planner,
                                     .by_gateway = options.by_gateway,
                                     .interface = options.interface,

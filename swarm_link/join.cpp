@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "swarm_link/announcement_port.hpp"
 #include "swarm_link/cyclone/cyclone_participant.hpp"
 #include "swarm_link/hub.hpp"
 
@@ -16,9 +17,11 @@ namespace {
 
 constexpr std::uint32_t kAgentsPerHub = 25;
 
-// Participant indices: the launcher's, the planner's, the gateway's, then the agents'.
-std::uint32_t launcher_index(std::uint32_t hub) { return hub; }
-/// All participants of a Cyclone process share their port: such a planner is one hub.
+// Participant indices: the launcher's, the planner's, the gateway's, then the agents'. All
+// participants of a Cyclone process share their port: such a launcher or planner is one hub.
+std::uint32_t launcher_index(const Meeting& m, std::uint32_t hub) {
+  return m.launcher == Vendor::kCycloneDds ? 0 : hub;
+}
 std::uint32_t planner_index(const Meeting& m, std::uint32_t hub) {
   return std::max(1U, m.hubs) + (m.planner == Vendor::kCycloneDds ? 0 : hub);
 }
@@ -43,6 +46,16 @@ Result<std::unique_ptr<Participant>> make_checked(const FastDdsOptions& options)
   return made;
 }
 
+CycloneOptions cyclone_hub(const Meeting& meeting, std::string name, std::uint32_t index,
+                           std::uint32_t peer) {
+  return {.name = std::move(name),
+          .domain = meeting.domain,
+          .peer_ports = {announcement_port(meeting.domain, peer)},
+          .peer_host = meeting.host,
+          .index = index,
+          .interface = meeting.interface};
+}
+
 tl::unexpected<Error> no_server_for_cyclone(const char* option) {
   return fail(ErrorCode::kBadInput,
               fmt::format("{} cyclonedds: a discovery server of Fast DDS is not for Cyclone DDS; "
@@ -60,10 +73,19 @@ std::uint32_t participants_for(const Meeting& meeting, std::uint32_t agents) {
   return agent_index(meeting, agents);
 }
 
+bool built_with(Vendor vendor) {
+  return vendor == Vendor::kFastDds ? SWARM_WITH_FASTDDS : SWARM_WITH_CYCLONEDDS;
+}
+
 Result<std::unique_ptr<Participant>> join_as_launcher(const Meeting& meeting) {
+  if (meeting.launcher == Vendor::kCycloneDds) {
+    if (meeting.hubs == 0) return no_server_for_cyclone("--launcher-dds");
+    return make_cyclone_participant(cyclone_hub(
+        meeting, "swarm_launcher", launcher_index(meeting, 0), planner_index(meeting, 0)));
+  }
   std::vector<std::unique_ptr<Participant>> hubs;
   for (std::uint32_t hub = 0; hub < std::max(1U, meeting.hubs); ++hub) {
-    FastDdsOptions options = member(meeting, "swarm_launcher", launcher_index(hub));
+    FastDdsOptions options = member(meeting, "swarm_launcher", launcher_index(meeting, hub));
     if (meeting.hubs > 0) options.star = Star{.is_hub = true};
     auto made = make_checked(options);
     if (!made) return made;
@@ -76,14 +98,10 @@ Result<std::unique_ptr<Participant>> join_as_planner(const Meeting& meeting,
                                                      std::uint32_t ownership_strength) {
   if (meeting.planner == Vendor::kCycloneDds) {
     if (meeting.hubs == 0) return no_server_for_cyclone("--planner-dds");
-    return make_cyclone_participant(
-        {.name = "planner_service",
-         .domain = meeting.domain,
-         .ownership_strength = ownership_strength,
-         .peer_ports = {announcement_port(meeting.domain, launcher_index(0))},
-         .peer_host = meeting.host,
-         .index = planner_index(meeting, 0),
-         .interface = meeting.interface});
+    CycloneOptions options = cyclone_hub(meeting, "planner_service", planner_index(meeting, 0),
+                                         launcher_index(meeting, 0));
+    options.ownership_strength = ownership_strength;
+    return make_cyclone_participant(options);
   }
   std::vector<std::unique_ptr<Participant>> hubs;
   for (std::uint32_t hub = 0; hub < std::max(1U, meeting.hubs); ++hub) {
@@ -92,7 +110,7 @@ Result<std::unique_ptr<Participant>> join_as_planner(const Meeting& meeting,
     if (meeting.hubs > 0) options.star = Star{.is_hub = true};
     // Of all its hubs one is enough for what launcher and planner have to tell each other.
     if (meeting.hubs > 0 && hub == 0) {
-      options.star->peers = {launcher_index(0)};
+      options.star->peers = {launcher_index(meeting, 0)};
       options.star->host = meeting.host;
     }
     auto made = make_checked(options);
@@ -115,7 +133,7 @@ Result<std::unique_ptr<Participant>> join_as_agent(const Meeting& meeting, std::
   std::vector<std::uint32_t> hubs;
   if (meeting.hubs > 0) {
     const std::uint32_t hub = number % meeting.hubs;
-    hubs = {launcher_index(hub), planner_index(meeting, hub)};
+    hubs = {launcher_index(meeting, hub), planner_index(meeting, hub)};
     if (by_gateway) hubs.push_back(gateway_index(meeting));
   }
   if (vendor == Vendor::kCycloneDds) {

@@ -20,7 +20,8 @@ struct Meeting {
   std::uint32_t domain = 0;
   DiscoveryAddress server{};  ///< used when `hubs` is 0
   std::uint32_t hubs = 0;
-  Vendor planner = Vendor::kFastDds;    ///< whose DDS it speaks; Cyclone's only in a star
+  Vendor launcher = Vendor::kFastDds;   ///< whose DDS it speaks; Cyclone's only in a star
+  Vendor planner = Vendor::kFastDds;    ///< as the launcher
   std::string host = "127.0.0.1";       ///< where launcher and planner are
   std::string interface = "127.0.0.1";  ///< of whoever joins: the address of its interface
   ReceptionFaults faults{};             ///< of whoever joins

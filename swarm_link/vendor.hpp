@@ -9,4 +9,8 @@ namespace swarm::link {
 /// Whose DDS a process speaks; they understand each other.
 enum class Vendor : std::uint8_t { kFastDds, kCycloneDds };
 
+/// Either may be left out of a build (SWARM_WITH_FASTDDS, SWARM_WITH_CYCLONEDDS); what would make
+/// its participants then fails.
+bool built_with(Vendor vendor);
+
 }  // namespace swarm::link

@@ -30,8 +30,9 @@ struct RunInfo {
   std::uint32_t domain = 0;
   std::string discovery_host = "127.0.0.1";
   std::uint16_t discovery_port = 0;
-  std::uint32_t hubs = 0;        ///< of launcher and planner each; 0: everyone meets at the server
-  bool cyclone_planner = false;  ///< whose DDS the planner speaks
+  std::uint32_t hubs = 0;         ///< of launcher and planner each; 0: everyone meets at the server
+  bool cyclone_launcher = false;  ///< whose DDS the launcher speaks
+  bool cyclone_planner = false;   ///< whose DDS the planner speaks
   std::string host = "127.0.0.1";       ///< where launcher and planner are
   std::string interface = "127.0.0.1";  ///< address of the interface robots here speak on
   Channel channel = Channel::kTopics;

@@ -58,6 +58,11 @@ Command add_run(CLI::App& program) {
                   "The first N agent processes speak Cyclone DDS and say their states by\n"
                   "topics, through a gateway to the others' groups");
   run->add_option_function<std::string>(
+         "--launcher-dds",
+         [o](const std::string& name) { o->cyclone_launcher = name == "cyclonedds"; },
+         "Whose DDS the launcher speaks (groups channel)")
+      ->check(CLI::IsMember({"fastdds", "cyclonedds"}));
+  run->add_option_function<std::string>(
          "--planner-dds",
          [o](const std::string& name) { o->cyclone_planner = name == "cyclonedds"; },
          "Whose DDS the planner speaks (groups channel)")

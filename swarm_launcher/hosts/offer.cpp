@@ -8,7 +8,7 @@
 namespace swarm::launcher {
 namespace {
 
-constexpr int kVersion = 1;
+constexpr int kVersion = 2;
 constexpr std::uint32_t kMaxRobots = 20'000;
 
 }  // namespace
@@ -18,6 +18,7 @@ std::string to_line(const HostOffer& offer) {
                         {"domain", offer.run.domain},
                         {"hubs", offer.run.hubs},
                         {"host", offer.run.host},
+                        {"cyclone_launcher", offer.run.cyclone_launcher},
                         {"cyclone_planner", offer.run.cyclone_planner},
                         {"seed", offer.run.seed},
                         {"began_utc_ns", offer.run.began.time_since_epoch().count()},
@@ -46,6 +47,7 @@ Result<HostOffer> parse_offer(const std::string& line) {
     HostOffer offer{
         .run = {.domain = json.at("domain").get<std::uint32_t>(),
                 .hubs = json.at("hubs").get<std::uint32_t>(),
+                .cyclone_launcher = json.at("cyclone_launcher").get<bool>(),
                 .cyclone_planner = json.at("cyclone_planner").get<bool>(),
                 .host = json.at("host").get<std::string>(),
                 .channel = Channel::kGroups,

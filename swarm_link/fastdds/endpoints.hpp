@@ -36,7 +36,7 @@ class FastDdsWriter final : public Writer<M> {
 
   bool write(const M& message) override {
     try {
-      return to_wire(message, wire_) && writer_->write(&wire_);
+      return cdr::to_wire(message, wire_) && writer_->write(&wire_);
     } catch (const std::exception&) {
       return false;
     }
@@ -53,7 +53,7 @@ class FastDdsWriter final : public Writer<M> {
   eprosima::fastdds::dds::DataWriter* writer_;
   TopicRegistry& topics_;
   std::string topic_;
-  typename WireOf<M>::Type wire_;  // kept for its memory
+  typename cdr::WireOf<M>::Type wire_;  // kept for its memory
 };
 
 /// A reader's hold on the multicast group it listens to.
@@ -98,7 +98,7 @@ class FastDdsReader final : public Reader<M> {
       eprosima::fastdds::dds::SampleInfo info;
       while (reader_->take_next_sample(&wire_, &info) == ReturnCode_t::RETCODE_OK) {
         if (!info.valid_data) continue;  // a writer went away
-        from_wire(wire_, out.emplace_back());
+        cdr::from_wire(wire_, out.emplace_back());
       }
     } catch (const std::exception&) {
       ++undecodable_in_thread;
@@ -121,7 +121,7 @@ class FastDdsReader final : public Reader<M> {
   TopicRegistry& topics_;
   std::string topic_;
   std::unique_ptr<GroupMembership> group_;  // null: hears at the participant's own address
-  typename WireOf<M>::Type wire_;           // kept for its memory
+  typename cdr::WireOf<M>::Type wire_;      // kept for its memory
   std::uint64_t undecodable_ = 0;
 };
 

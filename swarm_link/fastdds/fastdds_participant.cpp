@@ -152,10 +152,6 @@ class FastDdsParticipant final : public TypedParticipant<FastDdsParticipant> {
 }  // namespace
 }  // namespace fastdds
 
-std::uint16_t announcement_port(std::uint32_t domain, std::uint32_t index) {
-  return fastdds::metatraffic_port(domain, index);
-}
-
 Result<std::unique_ptr<Participant>> make_fastdds_participant(const FastDdsOptions& options) {
   using namespace fastdds;
   const auto ports = first_ports(options.domain, options.index);

@@ -29,9 +29,6 @@ struct Star {
   std::string host = "127.0.0.1";      ///< where those are
 };
 
-/// Where a hub of this index listens for announcements, at its host.
-std::uint16_t announcement_port(std::uint32_t domain, std::uint32_t index);
-
 struct FastDdsOptions {
   std::string name;  ///< participant name, seen in DDS tools
   std::uint32_t domain = 0;

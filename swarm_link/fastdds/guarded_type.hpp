@@ -4,30 +4,31 @@
 
 #include <cstdint>
 #include <exception>
+#include <span>
 
-#include "swarm_link/fastdds/conversion.hpp"
+#include "swarmPubSubTypes.h"
+#include "swarm_link/cdr/conversion.hpp"
+#include "swarm_link/cdr/lengths_fit.hpp"
 
 namespace swarm::link::fastdds {
 
-/// Whether every sequence in a serialized sample could fit into its bytes. The generated code makes
-/// room for as many elements as a sample says before it reads the first: one corrupt length would
-/// exhaust memory. Throws what the vendor's decoder throws.
-template <class Wire>
-bool lengths_fit(const eprosima::fastrtps::rtps::SerializedPayload_t& payload);
+/// Generated type support of a message.
+template <class M>
+struct SupportOf;
 template <>
-bool lengths_fit<wire::FlowPlan>(const eprosima::fastrtps::rtps::SerializedPayload_t& payload);
+struct SupportOf<PlanMessage> : wire::FlowPlanPubSubType {};
 template <>
-bool lengths_fit<wire::Scene>(const eprosima::fastrtps::rtps::SerializedPayload_t& payload);
+struct SupportOf<SceneMessage> : wire::ScenePubSubType {};
 template <>
-bool lengths_fit<wire::Heartbeat>(const eprosima::fastrtps::rtps::SerializedPayload_t& payload);
+struct SupportOf<HeartbeatMessage> : wire::HeartbeatPubSubType {};
 template <>
-bool lengths_fit<wire::CellStates>(const eprosima::fastrtps::rtps::SerializedPayload_t& payload);
+struct SupportOf<CellStatesMessage> : wire::CellStatesPubSubType {};
 template <>
-bool lengths_fit<wire::Command>(const eprosima::fastrtps::rtps::SerializedPayload_t& payload);
+struct SupportOf<CommandMessage> : wire::CommandPubSubType {};
 template <>
-bool lengths_fit<wire::Status>(const eprosima::fastrtps::rtps::SerializedPayload_t& payload);
+struct SupportOf<StatusMessage> : wire::StatusPubSubType {};
 template <>
-bool lengths_fit<wire::Event>(const eprosima::fastrtps::rtps::SerializedPayload_t& payload);
+struct SupportOf<EventMessage> : wire::EventPubSubType {};
 
 /// Samples that did not decode in this thread. Decoding happens inside take(), in the thread that
 /// calls it, so a reader can tell its own failures from others'.
@@ -35,9 +36,9 @@ inline thread_local std::uint64_t undecodable_in_thread = 0;
 
 /// The generated type support, safe against bytes that are not a sample.
 template <class M>
-class GuardedType final : public WireOf<M>::Support {
+class GuardedType final : public SupportOf<M> {
  public:
-  using Wire = typename WireOf<M>::Type;
+  using Wire = typename cdr::WireOf<M>::Type;
 
   GuardedType() {
     // Types are compared by name; their descriptions would only make discovery heavier.
@@ -47,8 +48,9 @@ class GuardedType final : public WireOf<M>::Support {
 
   bool deserialize(eprosima::fastrtps::rtps::SerializedPayload_t* payload, void* data) override {
     try {
-      if (is_plain_cdr(*payload) && lengths_fit<Wire>(*payload) &&
-          WireOf<M>::Support::deserialize(payload, data)) {
+      const std::span bytes(reinterpret_cast<std::byte*>(payload->data), payload->length);
+      if (cdr::is_plain(bytes) && cdr::lengths_fit<Wire>(bytes) &&
+          SupportOf<M>::deserialize(payload, data)) {
         return true;
       }
     } catch (const std::exception&) {
@@ -56,11 +58,6 @@ class GuardedType final : public WireOf<M>::Support {
     }
     ++undecodable_in_thread;
     return false;
-  }
-
- private:
-  static bool is_plain_cdr(const eprosima::fastrtps::rtps::SerializedPayload_t& payload) {
-    return payload.length >= 4 && payload.data[0] == 0 && payload.data[1] <= 1;
   }
 };
 

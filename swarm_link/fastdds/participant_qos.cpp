@@ -10,6 +10,7 @@
 #include <fastrtps/xmlparser/XMLProfileManager.h>
 #include <fmt/format.h>
 
+#include "swarm_link/announcement_port.hpp"
 #include "swarm_link/fastdds/cached_thread_id.hpp"
 
 namespace swarm::link::fastdds {
@@ -60,15 +61,11 @@ void announce_to(const Star& star, std::uint32_t domain, rtps::BuiltinAttributes
                                                    ? eprosima::fastrtps::Duration_t{3, 0}
                                                    : eprosima::fastrtps::Duration_t{0, 800'000'000};
   for (const std::uint32_t peer : star.peers) {
-    builtin.initialPeersList.push_back(locator(star.host, metatraffic_port(domain, peer)));
+    builtin.initialPeersList.push_back(locator(star.host, announcement_port(domain, peer)));
   }
 }
 
 }  // namespace
-
-std::uint16_t metatraffic_port(std::uint32_t domain, std::uint32_t index) {
-  return static_cast<std::uint16_t>(7410 + 250 * domain + 2 * index);
-}
 
 Result<Ports> first_ports(std::uint32_t domain, std::uint32_t index) {
   const std::uint64_t metatraffic = 7410 + 250ULL * domain + 2ULL * index;

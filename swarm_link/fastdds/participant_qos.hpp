@@ -19,7 +19,6 @@ struct Ports {
   std::uint16_t metatraffic = 0;
   std::uint16_t data = 0;
 };
-std::uint16_t metatraffic_port(std::uint32_t domain, std::uint32_t index);
 Result<Ports> first_ports(std::uint32_t domain, std::uint32_t index);
 
 /// GUID prefix of the discovery server at a port: clients know it without asking.

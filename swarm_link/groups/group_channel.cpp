@@ -10,8 +10,8 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include "swarm_link/cdr/codec.hpp"
 #include "swarm_link/cell_traffic.hpp"
-#include "swarm_link/fastdds/cell_states_cdr.hpp"
 #include "swarm_link/groups/rtps_datagram.hpp"
 #include "swarm_link/udp_socket.hpp"
 
@@ -135,7 +135,7 @@ class GroupChannel final : public StateChannel, private DatagramSink {
   GroupChannelOptions options_;
   CellInterest interest_;
   CellBatches batches_;
-  CellStatesCdr cdr_;
+  Codec<CellStatesMessage> cdr_;
   GuidPrefix prefix_;
   std::uint64_t sequence_number_ = 0;
   in_addr interface_;

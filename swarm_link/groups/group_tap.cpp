@@ -6,7 +6,7 @@
 #include <poll.h>
 #include <unistd.h>
 
-#include "swarm_link/fastdds/cell_states_cdr.hpp"
+#include "swarm_link/cdr/codec.hpp"
 #include "swarm_link/groups/rtps_datagram.hpp"
 #include "swarm_link/udp_socket.hpp"
 
@@ -43,7 +43,7 @@ class SocketTap final : public GroupTap, private DatagramSink {
   }
 
   int fd_;
-  CellStatesCdr cdr_;
+  Codec<CellStatesMessage> cdr_;
   DatagramDrain drain_;
   std::vector<CellStatesMessage>* taking_ = nullptr;
   std::uint64_t undecodable_ = 0;

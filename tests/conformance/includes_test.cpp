@@ -26,7 +26,7 @@ bool may_include_vendor(const std::string& file) {
       file == "swarm_link/cyclone/cyclone_participant.hpp") {
     return false;  // their public faces
   }
-  return file.starts_with("swarm_link/fastdds/") || file.starts_with("swarm_link/cyclone/") ||
+  return file.starts_with("swarm_link/cdr/") || file.starts_with("swarm_link/fastdds/") || file.starts_with("swarm_link/cyclone/") ||
          file.starts_with("tests/conformance/hostile/");
 }
 

@@ -44,7 +44,8 @@ TEST(Mission, FliesAndIsAudited) {
 
 // Cyclone's default configuration counts participants of a machine up to ten.
 TEST(Mission, IsFlownByMoreCycloneProcessesThanItsDefaultsAllow) {
-  FlownRun run({"--channel", "groups", "--agent-dds", "cyclonedds", "--planner-dds", "cyclonedds"});
+  FlownRun run({"--channel", "groups", "--agent-dds", "cyclonedds", "--planner-dds", "cyclonedds",
+                "--launcher-dds", "cyclonedds"});
 
   ASSERT_EQ(run.launcher().wait(), 0) << run.launcher().err();
 

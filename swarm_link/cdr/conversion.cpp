@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-#include "swarm_link/fastdds/conversion.hpp"
+#include "swarm_link/cdr/conversion.hpp"
 
 #include "swarm_link/wire_bounds.hpp"
 
-namespace swarm::link::fastdds {
+namespace swarm::link::cdr {
 
 static_assert(kMaxPlanNodes == wire::MAX_PLAN_NODES && kMaxPlanLegs == wire::MAX_PLAN_LEGS &&
               kMaxCellStates == wire::MAX_CELL_STATES && kMaxPlanRobots == wire::MAX_PLAN_ROBOTS &&
@@ -312,4 +312,4 @@ void from_wire(const wire::Event& in, EventMessage& out) {
   out.text = in.text().to_string();
 }
 
-}  // namespace swarm::link::fastdds
+}  // namespace swarm::link::cdr

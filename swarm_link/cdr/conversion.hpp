@@ -2,51 +2,42 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstddef>
-
-#include "swarmPubSubTypes.h"
+#include "swarm.h"
 #include "swarm_link/messages.hpp"
 
-/// Between our messages and the generated wire types.
-namespace swarm::link::fastdds {
+/// Between our messages and the wire types generated from the IDL for Fast CDR.
+namespace swarm::link::cdr {
 
-/// Generated type and type support of a message.
+/// Generated type of a message.
 template <class M>
 struct WireOf;
 template <>
 struct WireOf<PlanMessage> {
   using Type = wire::FlowPlan;
-  using Support = wire::FlowPlanPubSubType;
 };
 template <>
 struct WireOf<SceneMessage> {
   using Type = wire::Scene;
-  using Support = wire::ScenePubSubType;
 };
 template <>
 struct WireOf<HeartbeatMessage> {
   using Type = wire::Heartbeat;
-  using Support = wire::HeartbeatPubSubType;
 };
 template <>
 struct WireOf<CellStatesMessage> {
   using Type = wire::CellStates;
-  using Support = wire::CellStatesPubSubType;
 };
 template <>
 struct WireOf<CommandMessage> {
   using Type = wire::Command;
-  using Support = wire::CommandPubSubType;
 };
 template <>
 struct WireOf<StatusMessage> {
   using Type = wire::Status;
-  using Support = wire::StatusPubSubType;
 };
 template <>
 struct WireOf<EventMessage> {
   using Type = wire::Event;
-  using Support = wire::EventPubSubType;
 };
 
 /// False when a sequence is longer than the contract allows; `out` is unspecified then. Over-long
@@ -68,4 +59,4 @@ void from_wire(const wire::Command& in, CommandMessage& out);
 void from_wire(const wire::Status& in, StatusMessage& out);
 void from_wire(const wire::Event& in, EventMessage& out);
 
-}  // namespace swarm::link::fastdds
+}  // namespace swarm::link::cdr

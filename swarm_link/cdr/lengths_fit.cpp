@@ -1,15 +1,15 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-#include "swarm_link/fastdds/guarded_type.hpp"
+#include "swarm_link/cdr/lengths_fit.hpp"
 
 #include <fastcdr/Cdr.h>
 #include <fastcdr/FastBuffer.h>
 
-namespace swarm::link::fastdds {
+namespace swarm::link::cdr {
 
 using eprosima::fastcdr::Cdr;
 using eprosima::fastcdr::FastBuffer;
-using Payload = eprosima::fastrtps::rtps::SerializedPayload_t;
+using Payload = std::span<std::byte>;
 
 namespace {
 
@@ -26,10 +26,10 @@ constexpr std::size_t kHistogramBinBytes = 6;
 
 class Walker {
  public:
-  explicit Walker(const Payload& payload)
-      : buffer_(reinterpret_cast<char*>(payload.data), payload.length),
+  explicit Walker(Payload payload)
+      : buffer_(reinterpret_cast<char*>(payload.data()), payload.size()),
         cdr_(buffer_, Cdr::DEFAULT_ENDIAN, Cdr::DDS_CDR),
-        size_(payload.length) {
+        size_(payload.size()) {
     cdr_.read_encapsulation();
   }
 
@@ -68,7 +68,7 @@ class Walker {
 }  // namespace
 
 template <>
-bool lengths_fit<wire::FlowPlan>(const Payload& payload) {
+bool lengths_fit<wire::FlowPlan>(Payload payload) {
   Walker walker(payload);
   walker.skip<std::uint16_t, std::uint32_t, std::uint64_t, std::uint64_t, std::int64_t>();
   const auto nodes = walker.length();
@@ -81,7 +81,7 @@ bool lengths_fit<wire::FlowPlan>(const Payload& payload) {
 }
 
 template <>
-bool lengths_fit<wire::Scene>(const Payload& payload) {
+bool lengths_fit<wire::Scene>(Payload payload) {
   Walker walker(payload);
   walker.skip<std::uint16_t, std::uint64_t, double, std::uint32_t>();
   const auto removed = walker.length();
@@ -100,14 +100,14 @@ bool lengths_fit<wire::Scene>(const Payload& payload) {
 }
 
 template <>
-bool lengths_fit<wire::CellStates>(const Payload& payload) {
+bool lengths_fit<wire::CellStates>(Payload payload) {
   Walker walker(payload);
   walker.skip<std::uint16_t, std::int32_t, std::int32_t>();
   return walker.fits(walker.length(), kRobotStateBytes);
 }
 
 template <>
-bool lengths_fit<wire::Status>(const Payload& payload) {
+bool lengths_fit<wire::Status>(Payload payload) {
   Walker walker(payload);
   walker.skip<std::uint32_t, std::uint16_t, std::uint32_t, std::uint32_t, std::uint64_t,
               std::uint64_t, std::int64_t>();
@@ -125,16 +125,16 @@ bool lengths_fit<wire::Status>(const Payload& payload) {
 
 // Without sequences; strings are checked by the decoder itself.
 template <>
-bool lengths_fit<wire::Heartbeat>(const Payload&) {
+bool lengths_fit<wire::Heartbeat>(Payload) {
   return true;
 }
 template <>
-bool lengths_fit<wire::Command>(const Payload&) {
+bool lengths_fit<wire::Command>(Payload) {
   return true;
 }
 template <>
-bool lengths_fit<wire::Event>(const Payload&) {
+bool lengths_fit<wire::Event>(Payload) {
   return true;
 }
 
-}  // namespace swarm::link::fastdds
+}  // namespace swarm::link::cdr
