@@ -7,110 +7,86 @@
 #include <cstring>
 #include <memory>
 #include <optional>
-#include <span>
-#include <string_view>
 #include <utility>
 
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/stat.h>
 #include <unistd.h>
-#include <zlib.h>
 
 #include "swarm_core/base/assert.hpp"
 #include "swarm_core/blackbox/record_codec.hpp"
+#include "swarm_core/mcap/idl_text.hpp"
 
 namespace swarm::blackbox {
 namespace {
 
-constexpr std::string_view kMagic = "SWBBOX1\n";
-constexpr std::size_t kFrameBytes = 8;
-/// A robot at 10 Hz writes 2 MB an hour; beyond this it is no black box.
-constexpr std::uintmax_t kMaxFileBytes = 1ULL << 32U;
-
-std::uint32_t crc_of(std::span<const unsigned char> payload) {
-  return static_cast<std::uint32_t>(
-      ::crc32(0UL, payload.data(), static_cast<uInt>(payload.size())));
-}
-
-struct Frame {
-  std::uint8_t kind = 0;
-  std::size_t size = 0;
-  std::uint32_t crc = 0;
-};
-
-/// The frame at the front of `bytes`, if it could be one.
-std::optional<Frame> frame_at(std::span<const unsigned char> bytes) {
-  if (bytes.size() < kFrameBytes) return std::nullopt;
-  const Frame frame{
-      .kind = bytes[0],
-      .size = static_cast<std::size_t>(bytes[2]) | static_cast<std::size_t>(bytes[3]) << 8U,
-      .crc = static_cast<std::uint32_t>(bytes[4]) | static_cast<std::uint32_t>(bytes[5]) << 8U |
-             static_cast<std::uint32_t>(bytes[6]) << 16U |
-             static_cast<std::uint32_t>(bytes[7]) << 24U};
-  if (bytes[1] != 0 || !is_plausible(frame.kind, frame.size)) return std::nullopt;
-  return frame;
-}
-
-/// The whole record at the front of `bytes`, if there is one.
-std::optional<Record> record_at(std::span<const unsigned char> bytes, std::size_t& length) {
-  const auto frame = frame_at(bytes);
-  if (!frame || bytes.size() < kFrameBytes + frame->size) return std::nullopt;
-  const auto payload = bytes.subspan(kFrameBytes, frame->size);
-  if (crc_of(payload) != frame->crc) return std::nullopt;
-  length = kFrameBytes + frame->size;
-  return decode(frame->kind, payload);
-}
-
-Result<std::vector<unsigned char>> bytes_of(const std::filesystem::path& file) {
-  const auto error = [&](std::string_view what) {
-    return fail(ErrorCode::kEnvironment,
-                fmt::format("{}: {}: {}", file.string(), what, std::strerror(errno)));
-  };
-  const int fd = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
-  if (fd < 0) return error("cannot be opened");
-  std::vector<unsigned char> bytes;
-  std::size_t used = 0;
-  while (true) {
-    if (used == bytes.size()) bytes.resize(used == 0 ? 1U << 16U : 2 * used);
-    const ssize_t n = ::read(fd, bytes.data() + used, bytes.size() - used);
-    if (n < 0 && errno == EINTR) continue;
-    if (n < 0 || used > kMaxFileBytes) {
-      if (n >= 0) errno = EFBIG;
-      auto failure = error("cannot be read");
-      ::close(fd);
-      return failure;
+/// What a box begins with: its kinds of records.
+const mcap::Bytes& preamble() {
+  static const mcap::Bytes kPreamble = [] {
+    mcap::Bytes out(mcap::kMagic.begin(), mcap::kMagic.end());
+    mcap::append_header(out, "swarmflow " SWARM_VERSION);
+    for (std::size_t i = 0; i < kinds().size(); ++i) {
+      const Kind& kind = kinds()[i];
+      mcap::append_schema(out, {.id = static_cast<std::uint16_t>(i + 1),
+                                .name = std::string(kind.type),
+                                .encoding = "omgidl",
+                                .data = mcap::blackbox_idl(kind.structs)});
+      mcap::append_channel(out, {.id = static_cast<std::uint16_t>(i),
+                                 .schema = static_cast<std::uint16_t>(i + 1),
+                                 .topic = std::string(kind.topic),
+                                 .encoding = "cdr"});
     }
-    if (n == 0) break;
-    used += static_cast<std::size_t>(n);
-  }
-  ::close(fd);
-  bytes.resize(used);
-  return bytes;
+    return out;
+  }();
+  return kPreamble;
 }
 
-/// Appends the framed record to `out`.
-void frame_record(const Record& record, std::vector<unsigned char>& out) {
-  const std::size_t frame = out.size();
-  out.resize(frame + kFrameBytes);
-  const std::uint8_t kind = encode(record, out);
-  const auto payload = std::span<const unsigned char>(out).subspan(frame + kFrameBytes);
-  const std::size_t size = payload.size();
-  const std::uint32_t crc = crc_of(payload);
-  out[frame] = kind;
-  out[frame + 1] = 0;
-  for (std::size_t i = 0; i < 2; ++i) {
-    out[frame + 2 + i] = static_cast<unsigned char>(size >> (8U * i));
+/// A life that came to its end has closed the file: the next one opens it again.
+bool remove_end(int fd) {
+  const mcap::Bytes& end = mcap::plain_end();
+  struct stat status {};
+  if (::fstat(fd, &status) != 0 || !S_ISREG(status.st_mode)) return true;
+  const auto size = static_cast<std::size_t>(status.st_size);
+  if (size < end.size()) return true;
+  mcap::Bytes last(end.size());
+  const auto begin = static_cast<off_t>(size - end.size());
+  if (::pread(fd, last.data(), last.size(), begin) != static_cast<ssize_t>(last.size()) ||
+      last != end) {
+    return true;
   }
-  for (std::size_t i = 0; i < 4; ++i) {
-    out[frame + 4 + i] = static_cast<unsigned char>(crc >> (8U * i));
+  return ::ftruncate(fd, begin) == 0;
+}
+
+std::optional<std::size_t> kind_of(const std::string& topic) {
+  for (std::size_t i = 0; i < kinds().size(); ++i) {
+    if (kinds()[i].topic == topic) return i;
   }
+  return std::nullopt;
 }
 
 }  // namespace
 
 std::filesystem::path file_of(const std::filesystem::path& run_dir, RobotId robot) {
-  return run_dir / "blackbox" / fmt::format("robot-{:05}.bbox", robot.value());
+  return run_dir / "blackbox" / fmt::format("robot-{:05}.mcap", robot.value());
+}
+
+Scribe::Scribe() = default;
+
+void Scribe::add(const Record& record) {
+  if (const auto* header = std::get_if<Header>(&record)) robot_ = header->robot;
+  encode(robot_, record, message_);
+  const std::int64_t stamp_ns = stamp_of(record).time_since_epoch().count();
+  chunk_.add({.channel = static_cast<std::uint16_t>(record.index()),
+              .sequence = sequence_++,
+              .log_time_ns = stamp_ns,
+              .publish_time_ns = stamp_ns,
+              .data = message_});
+}
+
+void Scribe::move_chunk(mcap::Bytes& out, mcap::Compression compression) {
+  if (chunk_.messages > 0) mcap::append_chunk(out, chunk_, compression);
+  chunk_.clear();
 }
 
 Result<Writer> Writer::open(const std::filesystem::path& file, std::uint32_t at_once,
@@ -118,8 +94,8 @@ Result<Writer> Writer::open(const std::filesystem::path& file, std::uint32_t at_
   SWARM_ASSERT(turn < at_once);
   std::error_code error;
   std::filesystem::create_directories(file.parent_path(), error);
-  const int fd = ::open(file.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
-  if (fd < 0) {
+  const int fd = ::open(file.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
+  if (fd < 0 || !remove_end(fd)) {
     return fail(ErrorCode::kEnvironment, fmt::format("black box {} cannot be opened: {}",
                                                      file.string(), std::strerror(errno)));
   }
@@ -133,8 +109,8 @@ Writer& Writer::operator=(Writer&& other) noexcept {
   std::swap(fd_, other.fd_);
   std::swap(at_once_, other.at_once_);
   std::swap(until_written_, other.until_written_);
-  std::swap(waiting_, other.waiting_);
   std::swap(dropped_, other.dropped_);
+  std::swap(scribe_, other.scribe_);
   std::swap(buffer_, other.buffer_);
   return *this;
 }
@@ -142,25 +118,31 @@ Writer& Writer::operator=(Writer&& other) noexcept {
 Writer::~Writer() {
   if (fd_ < 0) return;
   write();
+  struct stat status {};
+  if (::fstat(fd_, &status) == 0 && status.st_size > 0) {
+    const mcap::Bytes& end = mcap::plain_end();
+    [[maybe_unused]] const ssize_t ignored = ::write(fd_, end.data(), end.size());
+  }
   ::close(fd_);
 }
 
 void Writer::append(const Record& record) {
-  frame_record(record, buffer_);
-  ++waiting_;
+  scribe_.add(record);
   if (--until_written_ > 0) return;
   until_written_ = at_once_;
   write();
 }
 
 void Writer::write() {
-  if (waiting_ == 0) return;
-  const std::uint32_t records = std::exchange(waiting_, 0);
+  const std::uint32_t records = scribe_.waiting();
+  if (records == 0) return;
   struct stat before {};
-  bool written = fd_ >= 0 && ::fstat(fd_, &before) == 0;
+  bool written = ::fstat(fd_, &before) == 0;
+  buffer_.clear();
+  // How the file begins goes with the first record that the disk takes, in the same write.
+  if (before.st_size == 0) buffer_ = preamble();
+  scribe_.move_chunk(buffer_, mcap::Compression::kNone);
   if (written) {
-    // The magic goes with the first record that the disk takes, in the same write.
-    if (before.st_size == 0) buffer_.insert(buffer_.begin(), kMagic.begin(), kMagic.end());
     ssize_t bytes = -1;
     do {
       bytes = ::write(fd_, buffer_.data(), buffer_.size());
@@ -172,14 +154,20 @@ void Writer::write() {
       const int ignored = ::ftruncate(fd_, before.st_size);
   }
   if (!written) dropped_ += records;
-  buffer_.clear();
 }
 
-Batch::Batch() : bytes_(kMagic.begin(), kMagic.end()) {}
+Batch::Batch() : bytes_(preamble()) {}
 
-void Batch::append(const Record& record) { frame_record(record, bytes_); }
+void Batch::append(const Record& record) {
+  constexpr std::uint32_t kRecordsAChunk = 10'000;
+  scribe_.add(record);
+  if (scribe_.waiting() >= kRecordsAChunk) scribe_.move_chunk(bytes_, mcap::Compression::kZstd);
+}
 
-Result<void> Batch::write(const std::filesystem::path& file) const {
+Result<void> Batch::write(const std::filesystem::path& file) {
+  scribe_.move_chunk(bytes_, mcap::Compression::kZstd);
+  const mcap::Bytes& end = mcap::plain_end();
+  bytes_.insert(bytes_.end(), end.begin(), end.end());
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(file.c_str(), "wb"),
                                                                &std::fclose);
   if (!stream || std::fwrite(bytes_.data(), 1, bytes_.size(), stream.get()) != bytes_.size() ||
@@ -190,45 +178,25 @@ Result<void> Batch::write(const std::filesystem::path& file) const {
   return {};
 }
 
+std::optional<RobotRecord> decode(const mcap::Message& message, const mcap::Channel& channel) {
+  const auto kind = kind_of(channel.topic);
+  return kind ? decode(*kind, message.data) : std::nullopt;
+}
+
 Result<Damage> read_records(const std::filesystem::path& file,
                             const std::function<void(const Record&)>& take) {
-  const auto bytes = bytes_of(file);
-  if (!bytes) return tl::unexpected(bytes.error());
-  Damage result;
-  std::span<const unsigned char> rest(*bytes);
-  if (rest.empty()) {
-    result.truncated = true;
-    return result;
-  }
-  if (rest.size() < kMagic.size() || std::memcmp(rest.data(), kMagic.data(), kMagic.size()) != 0) {
-    return fail(ErrorCode::kBadInput,
-                fmt::format("{}: no black box: it does not begin with SWBBOX1", file.string()));
-  }
-  rest = rest.subspan(kMagic.size());
-  bool in_damage = false;
-  while (!rest.empty()) {
-    std::size_t length = 0;
-    if (const auto record = record_at(rest, length)) {
-      take(*record);
-      rest = rest.subspan(length);
-      in_damage = false;
-      continue;
-    }
-    if (!in_damage) {
-      const auto frame = frame_at(rest);
-      // Whether a cut or a flipped bit ends the file cannot be told when only a piece is left.
-      const bool ends_inside =
-          rest.size() < kFrameBytes || (frame && rest.size() < kFrameBytes + frame->size);
-      result.truncated = ends_inside;
-      ++result.damaged;
-      in_damage = true;
-    }
-    // The size of a damaged record is not to be believed: look for the next whole one byte by byte.
-    rest = rest.subspan(1);
-  }
-  if (result.truncated && in_damage) --result.damaged;
-  if (!in_damage) result.truncated = false;
-  return result;
+  std::uint64_t malformed = 0;
+  auto damage =
+      mcap::read(file, {.message = [&](const mcap::Message& message, const mcap::Channel& channel,
+                                       const mcap::Schema&) {
+                   if (const auto record = decode(message, channel)) {
+                     take(record->record);
+                   } else {
+                     ++malformed;
+                   }
+                 }});
+  if (damage) damage->damaged += malformed;
+  return damage;
 }
 
 Result<File> read_file(const std::filesystem::path& file) {

@@ -2,22 +2,43 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "swarm_core/base/result.hpp"
 #include "swarm_core/blackbox/record.hpp"
+#include "swarm_core/blackbox/record_codec.hpp"
+#include "swarm_core/mcap/format.hpp"
+#include "swarm_core/mcap/reader.hpp"
 
 namespace swarm::blackbox {
 
-/// `blackbox/robot-00042.bbox` inside a run directory.
+/// `blackbox/robot-00042.mcap` inside a run directory.
 std::filesystem::path file_of(const std::filesystem::path& run_dir, RobotId robot);
 
-/// Appends records to one robot's file, of which it is the only writer. Layout: magic "SWBBOX1\n",
-/// then records of (u8 kind, u8 zero, u16 size, u32 CRC-32 of the payload, payload), little-endian.
-/// Every record is one write(2), so a killed process loses at most the record it was writing. A
-/// failing disk never stops the robot: the record is dropped and counted. A respawned robot's
+/// Makes messages of records and chunks of messages. A robot's first record is its Header.
+class Scribe {
+ public:
+  Scribe();
+  void add(const Record& record);
+  std::uint32_t waiting() const { return chunk_.messages; }
+  /// Appends what waits, as one chunk.
+  void move_chunk(mcap::Bytes& out, mcap::Compression compression);
+
+ private:
+  RobotId robot_{};
+  std::uint32_t sequence_ = 0;
+  mcap::ChunkContent chunk_{};
+  mcap::Bytes message_{};
+};
+
+/// Appends records to one robot's file, of which it is the only writer: an MCAP file, whose
+/// messages idl/blackbox.idl describes, every chunk with a checksum and one write(2). So a killed
+/// process loses at most the record it was writing, and its file lacks an end, which readers take.
+/// A failing disk never stops the robot: the record is dropped and counted. A respawned robot's
 /// process appends to the same file.
 class Writer {
  public:
@@ -40,27 +61,29 @@ class Writer {
   int fd_ = -1;
   std::uint32_t at_once_ = 1;
   std::uint32_t until_written_ = 1;  // records
-  std::uint32_t waiting_ = 0;        // records
   std::uint64_t dropped_ = 0;
-  std::vector<unsigned char> buffer_;
+  Scribe scribe_;
+  mcap::Bytes buffer_;
 };
 
-/// The same file, made in memory and written at once: for what cannot be killed half-way.
+/// The same file, compressed, made in memory and written at once: for what cannot be killed
+/// half-way.
 class Batch {
  public:
   Batch();
   void append(const Record& record);
-  /// Writes the file anew. \pre its folder exists
-  Result<void> write(const std::filesystem::path& file) const;
+  /// Writes the file anew. Once. \pre its folder exists
+  Result<void> write(const std::filesystem::path& file);
 
  private:
-  std::vector<unsigned char> bytes_;
+  Scribe scribe_;
+  mcap::Bytes bytes_;
 };
 
-struct Damage {
-  std::uint64_t damaged = 0;  ///< stretches of bytes that are no record; reading goes on after them
-  bool truncated = false;     ///< the last record is incomplete (the process was killed)
-};
+using Damage = mcap::Damage;
+
+/// The record that a message of any recording holds, or nothing if it is none.
+std::optional<RobotRecord> decode(const mcap::Message& message, const mcap::Channel& channel);
 
 /// Hands over every readable record in turn. Fails only if the file cannot be read or is no black
 /// box at all.
@@ -73,7 +96,6 @@ struct File : Damage {
 
 /// Reads all records at once. A Record is as large as its largest kind (4 kB): for many robots use
 /// read_records().
-
 Result<File> read_file(const std::filesystem::path& file);
 
 }  // namespace swarm::blackbox

@@ -11,22 +11,20 @@
 namespace swarm::blackbox {
 namespace {
 
-enum Kind : std::uint8_t { kHeader = 1, kStep = 2, kLinkStats = 3, kNote = 4, kBelief = 5 };
+constexpr std::size_t kEncapsulationBytes = 4;
+constexpr std::array<unsigned char, kEncapsulationBytes> kPlainLittleEndian = {0, 1, 0, 0};
 
-constexpr std::size_t kHeaderBytes = 4 + 4 + 4 + 8 + 8;
-constexpr std::size_t kStepBytes = 8 + 4 * 8 + 4 + 1 + 1 + 2;
-constexpr std::size_t kBeliefBytes = 8 + 4 + 2 * 8;
-constexpr std::size_t kLeastStatsBytes = 8 + 4 + 4 + 1 + 2;
-constexpr std::size_t kMostStatsBytes = kLeastStatsBytes + 4 * kMaxRefusals + 10 * Histogram::kBins;
-constexpr std::size_t kLeastNoteBytes = 8 + 8 + 2 + 2;
-constexpr std::size_t kMostNoteBytes = kLeastNoteBytes + 2 * kMaxNoteText;
-
+/// Puts values where CDR has them: each at a multiple of its size, counted behind the
+/// encapsulation.
 class Encoder {
  public:
-  explicit Encoder(std::vector<unsigned char>& out) : out_(out) {}
+  explicit Encoder(std::vector<unsigned char>& out) : out_(out) {
+    out_.assign(kPlainLittleEndian.begin(), kPlainLittleEndian.end());
+  }
 
   template <std::unsigned_integral T>
   void put(T value) {
+    while ((out_.size() - kEncapsulationBytes) % sizeof(T) != 0) out_.push_back(0);
     for (std::size_t i = 0; i < sizeof(T); ++i) {
       out_.push_back(static_cast<unsigned char>(value >> (8U * i)));
     }
@@ -39,8 +37,9 @@ class Encoder {
   }
   void put(std::string_view text) {
     text = text.substr(0, kMaxNoteText);
-    put(static_cast<std::uint16_t>(text.size()));
+    put(static_cast<std::uint32_t>(text.size() + 1));
     out_.insert(out_.end(), text.begin(), text.end());
+    out_.push_back(0);
   }
 
  private:
@@ -50,10 +49,15 @@ class Encoder {
 /// Reads what Encoder wrote. Beyond the end everything is 0 and good() is false.
 class Decoder {
  public:
-  explicit Decoder(std::span<const unsigned char> in) : in_(in) {}
+  explicit Decoder(std::span<const unsigned char> in) : size_(in.size()), in_(in) {
+    const auto head = take(kEncapsulationBytes);
+    good_ = good_ && std::equal(head.begin(), head.end(), kPlainLittleEndian.begin());
+  }
 
   template <std::unsigned_integral T>
   T get() {
+    const std::size_t at = size_ - in_.size() - kEncapsulationBytes;
+    take((sizeof(T) - at % sizeof(T)) % sizeof(T));
     const auto bytes = take(sizeof(T));
     T value = 0;
     for (std::size_t i = 0; i < bytes.size(); ++i) {
@@ -72,8 +76,9 @@ class Decoder {
   }
   UtcTime get_time() { return UtcTime(Duration(static_cast<std::int64_t>(get<std::uint64_t>()))); }
   std::string get_text() {
-    const auto bytes = take(get<std::uint16_t>());
-    return {bytes.begin(), bytes.end()};
+    const auto bytes = take(get<std::uint32_t>());
+    good_ = good_ && !bytes.empty() && bytes.back() == 0 && bytes.size() <= kMaxNoteText + 1;
+    return good_ ? std::string(bytes.begin(), bytes.end() - 1) : std::string();
   }
   void refuse() { good_ = false; }
 
@@ -90,45 +95,46 @@ class Decoder {
     return bytes;
   }
 
+  std::size_t size_;
   std::span<const unsigned char> in_;
   bool good_ = true;
 };
 
-Kind put(Encoder& out, const Header& header) {
-  out.put(header.robot.value());
+void put(Encoder& out, RobotId robot, const Header& header) {
+  out.put(header.stamp);
+  out.put(robot.value());
   out.put(header.robots);
   out.put(header.process_id);
   out.put(header.radius_m);
-  out.put(header.stamp);
-  return kHeader;
 }
 
-Kind put(Encoder& out, const Step& step) {
+void put(Encoder& out, RobotId robot, const Step& step) {
   out.put(step.stamp);
+  out.put(robot.value());
+  out.put(static_cast<std::uint32_t>(step.lateness_us));
   out.put(step.position_m);
   out.put(step.velocity_mps);
-  out.put(static_cast<std::uint32_t>(step.lateness_us));
   out.put(step.mode);
   out.put(step.goal);
   out.put(step.neighbours);
-  return kStep;
 }
 
-Kind put(Encoder& out, const Belief& belief) {
+void put(Encoder& out, RobotId robot, const Belief& belief) {
   out.put(belief.stamp);
+  out.put(robot.value());
   out.put(belief.neighbour.value());
   out.put(belief.position_m);
-  return kBelief;
 }
 
-Kind put(Encoder& out, const LinkStats& stats) {
+void put(Encoder& out, RobotId robot, const LinkStats& stats) {
   out.put(stats.stamp);
+  out.put(robot.value());
   out.put(stats.states_sent);
   out.put(stats.states_received);
   const std::size_t refusals = std::min(stats.refused.size(), kMaxRefusals);
-  out.put(static_cast<std::uint8_t>(refusals));
+  out.put(static_cast<std::uint32_t>(refusals));
   for (std::size_t i = 0; i < refusals; ++i) out.put(stats.refused[i]);
-  std::uint16_t bins = 0;
+  std::uint32_t bins = 0;
   for (std::size_t i = 0; i < Histogram::kBins; ++i) {
     if (stats.state_age.bin(i) > 0) ++bins;
   }
@@ -138,56 +144,57 @@ Kind put(Encoder& out, const LinkStats& stats) {
     out.put(static_cast<std::uint16_t>(i));
     out.put(stats.state_age.bin(i));
   }
-  return kLinkStats;
 }
 
-Kind put(Encoder& out, const Note& note) {
+void put(Encoder& out, RobotId robot, const Note& note) {
   out.put(note.stamp);
   out.put(note.caused);
+  out.put(robot.value());
   out.put(std::string_view(note.code));
   out.put(std::string_view(note.text));
-  return kNote;
 }
 
-Header get_header(Decoder& in) {
-  Header header;
+RobotId get(Decoder& in, Header& header) {
+  header.stamp = in.get_time();
   header.robot = RobotId(in.get<std::uint32_t>());
   header.robots = in.get<std::uint32_t>();
   header.process_id = in.get<std::uint32_t>();
   header.radius_m = in.get_double();
-  header.stamp = in.get_time();
-  return header;
+  return header.robot;
 }
 
-Step get_step(Decoder& in) {
-  Step step;
+RobotId get(Decoder& in, Step& step) {
   step.stamp = in.get_time();
+  const RobotId robot(in.get<std::uint32_t>());
+  step.lateness_us = static_cast<std::int32_t>(in.get<std::uint32_t>());
   step.position_m = in.get_vec2();
   step.velocity_mps = in.get_vec2();
-  step.lateness_us = static_cast<std::int32_t>(in.get<std::uint32_t>());
   step.mode = in.get<std::uint8_t>();
   step.goal = in.get<std::uint8_t>();
   step.neighbours = in.get<std::uint16_t>();
-  return step;
+  return robot;
 }
 
-Belief get_belief(Decoder& in) {
-  Belief belief;
+RobotId get(Decoder& in, Belief& belief) {
   belief.stamp = in.get_time();
+  const RobotId robot(in.get<std::uint32_t>());
   belief.neighbour = RobotId(in.get<std::uint32_t>());
   belief.position_m = in.get_vec2();
-  return belief;
+  return robot;
 }
 
-LinkStats get_link_stats(Decoder& in) {
-  LinkStats stats;
+RobotId get(Decoder& in, LinkStats& stats) {
   stats.stamp = in.get_time();
+  const RobotId robot(in.get<std::uint32_t>());
   stats.states_sent = in.get<std::uint32_t>();
   stats.states_received = in.get<std::uint32_t>();
-  stats.refused.resize(in.get<std::uint8_t>());
-  for (std::uint32_t& count : stats.refused) count = in.get<std::uint32_t>();
-  const std::size_t bins = in.get<std::uint16_t>();
-  for (std::size_t i = 0; i < bins && in.good(); ++i) {
+  const auto refusals = in.get<std::uint32_t>();
+  if (refusals > kMaxRefusals) in.refuse();
+  for (std::uint32_t i = 0; i < refusals && in.good(); ++i) {
+    stats.refused.push_back(in.get<std::uint32_t>());
+  }
+  const auto bins = in.get<std::uint32_t>();
+  for (std::uint32_t i = 0; i < bins && in.good(); ++i) {
     const std::size_t bin = in.get<std::uint16_t>();
     const std::uint64_t count = in.get<std::uint64_t>();
     if (bin < Histogram::kBins) {
@@ -196,66 +203,59 @@ LinkStats get_link_stats(Decoder& in) {
       in.refuse();
     }
   }
-  return stats;
+  return robot;
 }
 
-Note get_note(Decoder& in) {
-  Note note;
+RobotId get(Decoder& in, Note& note) {
   note.stamp = in.get_time();
   note.caused = in.get_time();
+  const RobotId robot(in.get<std::uint32_t>());
   note.code = in.get_text();
   note.text = in.get_text();
-  return note;
+  return robot;
+}
+
+template <class R>
+std::optional<RobotRecord> decode_as(std::span<const unsigned char> message) {
+  Decoder in(message);
+  R record;
+  const RobotId robot = get(in, record);
+  if (!in.finished()) return std::nullopt;
+  return RobotRecord{.robot = robot, .record = std::move(record)};
 }
 
 }  // namespace
 
-std::uint8_t encode(const Record& record, std::vector<unsigned char>& out) {
+const std::array<Kind, std::variant_size_v<Record>>& kinds() {
+  static const std::array<Kind, std::variant_size_v<Record>> kKinds = {
+      {{"blackbox/header", "swarm::blackbox::Header", {"Header"}},
+       {"blackbox/step", "swarm::blackbox::Step", {"Step"}},
+       {"blackbox/belief", "swarm::blackbox::Belief", {"Belief"}},
+       {"blackbox/link_stats", "swarm::blackbox::LinkStats", {"HistogramBin", "LinkStats"}},
+       {"blackbox/note", "swarm::blackbox::Note", {"Note"}}}};
+  return kKinds;
+}
+
+void encode(RobotId robot, const Record& record, std::vector<unsigned char>& out) {
   Encoder encoder(out);
-  return std::visit([&](const auto& r) -> std::uint8_t { return put(encoder, r); }, record);
+  std::visit([&](const auto& r) { put(encoder, robot, r); }, record);
 }
 
-bool is_plausible(std::uint8_t kind, std::size_t size) {
+std::optional<RobotRecord> decode(std::size_t kind, std::span<const unsigned char> message) {
   switch (kind) {
-    case kHeader:
-      return size == kHeaderBytes;
-    case kStep:
-      return size == kStepBytes;
-    case kBelief:
-      return size == kBeliefBytes;
-    case kLinkStats:
-      return size >= kLeastStatsBytes && size <= kMostStatsBytes;
-    case kNote:
-      return size >= kLeastNoteBytes && size <= kMostNoteBytes;
-    default:
-      return false;
-  }
-}
-
-std::optional<Record> decode(std::uint8_t kind, std::span<const unsigned char> payload) {
-  Decoder in(payload);
-  Record record;
-  switch (kind) {
-    case kHeader:
-      record = get_header(in);
-      break;
-    case kStep:
-      record = get_step(in);
-      break;
-    case kBelief:
-      record = get_belief(in);
-      break;
-    case kLinkStats:
-      record = get_link_stats(in);
-      break;
-    case kNote:
-      record = get_note(in);
-      break;
+    case 0:
+      return decode_as<Header>(message);
+    case 1:
+      return decode_as<Step>(message);
+    case 2:
+      return decode_as<Belief>(message);
+    case 3:
+      return decode_as<LinkStats>(message);
+    case 4:
+      return decode_as<Note>(message);
     default:
       return std::nullopt;
   }
-  if (!in.finished()) return std::nullopt;
-  return record;
 }
 
 }  // namespace swarm::blackbox

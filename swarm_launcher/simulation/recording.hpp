@@ -40,7 +40,7 @@ class Recording {
 
   /// As a monitor would have read it.
   std::vector<monitor::Track> tracks() const;
-  /// Writes `blackbox/robot-….bbox` into a run directory.
+  /// Writes `blackbox/robot-….mcap` into a run directory.
   Result<void> write(const std::filesystem::path& run_dir) const;
 
  private:

@@ -186,7 +186,7 @@ TEST(RemoteHosts, TakesBlackBoxesHome) {
   host.send_bytes("de");  // and no more
   host.flush();
   EXPECT_TRUE(bench.until([&] { return bench.hosts.missing_boxes() == 1; }));
-  EXPECT_EQ(std::filesystem::file_size(bench.dir / "blackbox" / "robot-00002.bbox"), 3U);
+  EXPECT_EQ(std::filesystem::file_size(bench.dir / "blackbox" / "robot-00002.mcap"), 3U);
   EXPECT_FALSE(bench.hosts.collect());
 
   host.close();

@@ -86,6 +86,19 @@ class BlackBox : public testing::Test {
     for (int i = 0; i < n; ++i) records.emplace_back(step_number(i));
     return records;
   }
+  /// Of a file with one more record of that kind.
+  std::size_t header_bytes() const {
+    return size_of({a_header(), a_header()}) - size_of({a_header()});
+  }
+  std::size_t step_bytes() const { return size_of(steps(1)) - size_of(steps(0)); }
+  std::size_t size_of(const std::vector<Record>& records) const {
+    const auto file = folder_ / "another";
+    std::filesystem::remove(file);
+    auto writer = Writer::open(file);
+    for (const Record& record : records) writer->append(record);
+    writer = Writer::open("/dev/null");
+    return std::filesystem::file_size(file);
+  }
   std::string bytes() const {
     std::ifstream in(file_, std::ios::binary);
     return {std::istreambuf_iterator<char>(in), {}};
@@ -99,7 +112,7 @@ class BlackBox : public testing::Test {
 };
 
 TEST_F(BlackBox, IsNamedByItsRobot) {
-  EXPECT_EQ(file_of("run", RobotId(42)), std::filesystem::path("run/blackbox/robot-00042.bbox"));
+  EXPECT_EQ(file_of("run", RobotId(42)), std::filesystem::path("run/blackbox/robot-00042.mcap"));
 }
 
 TEST_F(BlackBox, ReadsBackEveryKindOfRecord) {
@@ -193,9 +206,11 @@ TEST_F(BlackBox, StaysReadableWhenItsWriterIsKilled) {
 TEST_F(BlackBox, CutAnywhereLosesOnlyTheLastRecord) {
   write(steps(3));
   const std::string whole = bytes();
-  const std::size_t record = (whole.size() - 8 - 36) / 3;  // 8 bytes of magic, 36 of header
-  const std::size_t first_step = whole.size() - 3 * record;
-  for (std::size_t size = first_step; size <= whole.size(); ++size) {
+  const std::size_t end = whole.size() - mcap::plain_end().size();
+  write(steps(4));
+  const std::size_t record = (bytes().size() - whole.size() - header_bytes()) / 4;
+  const std::size_t first_step = end - 3 * record;
+  for (std::size_t size = first_step; size <= end; ++size) {
     set_bytes(whole.substr(0, size));
 
     const auto file = read_file(file_);
@@ -210,7 +225,8 @@ TEST_F(BlackBox, CutAnywhereLosesOnlyTheLastRecord) {
 TEST_F(BlackBox, DetectsEveryFlippedBitAndReadsOn) {
   write(steps(6));
   const std::string whole = bytes();
-  for (std::size_t byte = 8; byte < whole.size(); ++byte) {
+  const std::size_t records = whole.size() - mcap::plain_end().size() - 6 * step_bytes();
+  for (std::size_t byte = records; byte + mcap::plain_end().size() < whole.size(); ++byte) {
     std::string broken = whole;
     broken[byte] = static_cast<char>(broken[byte] ^ (1 << (byte % 8)));
     set_bytes(broken);
@@ -230,10 +246,11 @@ TEST_F(BlackBox, SurvivesGarbage) {
   Rng rng(11);
   for (int round = 0; round < 300; ++round) {
     std::string broken = whole;
+    const std::size_t head = broken.size() - 20 * step_bytes();
     for (int i = 0; i < 1 + round % 20; ++i) {
-      broken[8 + rng() % (broken.size() - 8)] = static_cast<char>(rng());
+      broken[head + rng() % (broken.size() - head)] = static_cast<char>(rng());
     }
-    broken.insert(8 + rng() % (broken.size() - 8), std::string(rng() % 90, '\x02'));
+    broken.insert(head + rng() % (broken.size() - head), std::string(1 + rng() % 90, '\x02'));
     set_bytes(broken);
 
     const auto file = read_file(file_);
@@ -285,11 +302,11 @@ TEST_F(BlackBox, DropsAndCountsWhatAFullDiskRefuses) {
 }
 
 TEST_F(BlackBox, SaysWhyItCannotBeOpened) {
-  const auto writer = Writer::open("/dev/null/robot.bbox");
+  const auto writer = Writer::open("/dev/null/robot.mcap");
 
   ASSERT_FALSE(writer.has_value());
   EXPECT_EQ(writer.error().code, ErrorCode::kEnvironment);
-  EXPECT_NE(writer.error().message.find("/dev/null/robot.bbox"), std::string::npos);
+  EXPECT_NE(writer.error().message.find("/dev/null/robot.mcap"), std::string::npos);
 }
 
 TEST_F(BlackBox, CanBeWrittenManyRecordsAtATime) {

@@ -1,0 +1,134 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+/// MCAP, the container of recordings (https://mcap.dev/spec): records of (u8 opcode, u64 length,
+/// content), little-endian, messages in chunks that carry their CRC-32. What is appended here is
+/// read by Foxglove, rosbag2 and PlotJuggler.
+namespace swarm::mcap {
+
+using Bytes = std::vector<unsigned char>;
+
+inline constexpr std::string_view kMagic = "\x89MCAP0\r\n";
+
+enum class Op : std::uint8_t {
+  kHeader = 0x01,
+  kFooter = 0x02,
+  kSchema = 0x03,
+  kChannel = 0x04,
+  kMessage = 0x05,
+  kChunk = 0x06,
+  kMessageIndex = 0x07,
+  kChunkIndex = 0x08,
+  kAttachment = 0x09,
+  kAttachmentIndex = 0x0A,
+  kStatistics = 0x0B,
+  kMetadata = 0x0C,
+  kMetadataIndex = 0x0D,
+  kSummaryOffset = 0x0E,
+  kDataEnd = 0x0F,
+};
+
+struct Schema {
+  std::uint16_t id = 0;
+  std::string name{};      ///< "swarm::wire::FlowPlan"
+  std::string encoding{};  ///< "omgidl"
+  std::string data{};      ///< the whole IDL
+};
+
+struct Channel {
+  std::uint16_t id = 0;
+  std::uint16_t schema = 0;
+  std::string topic{};
+  std::string encoding{};  ///< "cdr"
+  std::map<std::string, std::string> metadata{};
+};
+
+struct Message {
+  std::uint16_t channel = 0;
+  std::uint32_t sequence = 0;
+  std::int64_t log_time_ns = 0;      ///< UTC, when it was recorded
+  std::int64_t publish_time_ns = 0;  ///< UTC, when it was said
+  std::span<const unsigned char> data{};
+};
+
+struct Attachment {
+  std::int64_t log_time_ns = 0;
+  std::string name{}, media_type{}, data{};
+};
+
+struct Metadata {
+  std::string name{};
+  std::map<std::string, std::string> values{};
+};
+
+enum class Compression : std::uint8_t { kNone, kZstd };
+
+/// A chunk that is being filled: its records and their times.
+struct ChunkContent {
+  Bytes records{};
+  std::int64_t begin_ns = 0, end_ns = 0;
+  std::uint32_t messages = 0;
+  void clear();
+  void add(const Message& message);
+};
+
+void append_header(Bytes& out, std::string_view library);
+void append_schema(Bytes& out, const Schema& schema);
+void append_channel(Bytes& out, const Channel& channel);
+void append_message(Bytes& out, const Message& message);
+void append_chunk(Bytes& out, const ChunkContent& chunk, Compression compression);
+void append_attachment(Bytes& out, const Attachment& attachment);
+void append_metadata(Bytes& out, const Metadata& metadata);
+
+/// What ends a file that has no summary.
+const Bytes& plain_end();
+
+std::uint32_t crc_of(std::span<const unsigned char> bytes);
+
+/// Puts numbers and texts at the end of bytes, little-endian; lengths of maps and records are set
+/// when what they count is complete.
+class Put {
+ public:
+  explicit Put(Bytes& out) : out_(out) {}
+  template <class T>
+  void number(T value) {
+    for (std::size_t i = 0; i < sizeof(T); ++i) {
+      out_.push_back(static_cast<unsigned char>(static_cast<std::uint64_t>(value) >> (8 * i)));
+    }
+  }
+  void text(std::string_view text);
+  void bytes(std::span<const unsigned char> bytes);
+  void map(const std::map<std::string, std::string>& map);
+
+  /// Reserves a length of T; finish() sets it to the bytes that followed.
+  template <class T>
+  std::size_t begin_length() {
+    number(T{0});
+    return out_.size();
+  }
+  template <class T>
+  void end_length(std::size_t begin) {
+    const std::uint64_t length = out_.size() - begin;
+    for (std::size_t i = 0; i < sizeof(T); ++i) {
+      out_[begin - sizeof(T) + i] = static_cast<unsigned char>(length >> (8 * i));
+    }
+  }
+  std::size_t begin_record(Op op) {
+    number(static_cast<std::uint8_t>(op));
+    return begin_length<std::uint64_t>();
+  }
+  void end_record(std::size_t begin) { end_length<std::uint64_t>(begin); }
+
+ private:
+  Bytes& out_;
+};
+
+}  // namespace swarm::mcap

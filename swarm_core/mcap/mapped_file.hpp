@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <utility>
+
+#include "swarm_core/base/result.hpp"
+
+namespace swarm::mcap {
+
+/// A file's bytes, as they were when it was opened.
+class MappedFile {
+ public:
+  static Result<MappedFile> open(const std::filesystem::path& file);
+  MappedFile(MappedFile&& other) noexcept : bytes_(std::exchange(other.bytes_, {})) {}
+  MappedFile& operator=(MappedFile&& other) noexcept {
+    std::swap(bytes_, other.bytes_);
+    return *this;
+  }
+  ~MappedFile();
+
+  std::span<const unsigned char> bytes() const { return bytes_; }
+
+ private:
+  explicit MappedFile(std::span<const unsigned char> bytes) : bytes_(bytes) {}
+  std::span<const unsigned char> bytes_;
+};
+
+}  // namespace swarm::mcap
