@@ -18,7 +18,8 @@
 #include "swarm_core/shell/run_directory.hpp"
 #include "swarm_core/shell/stop_signal.hpp"
 #include "swarm_launcher/child_process.hpp"
-#include "swarm_launcher/run_dir.hpp"
+#include "swarm_core/shell/run_dir.hpp"
+#include "swarm_link/monitor_topics.hpp"
 #include "swarm_link/run_meeting.hpp"
 #include "swarm_link/udp_socket.hpp"
 #include "swarm_link/vendor.hpp"
@@ -49,7 +50,7 @@ Result<void> vendors_fit(const FlightOptions& options, Channel channel) {
 }  // namespace
 
 Flight::Flight(FlightOptions options, FlightObserver* observer, std::filesystem::path dir,
-               DomainLock lock, ChannelChoice channel, std::uint32_t hubs)
+               link::DomainLock lock, ChannelChoice channel, std::uint32_t hubs)
     : options_(std::move(options)),
       observer_(observer),
       channel_(std::move(channel)),
@@ -93,9 +94,10 @@ Result<std::unique_ptr<Flight>> Flight::make(FlightOptions options, FlightObserv
     return tl::unexpected(fits.error());
   }
   const std::uint32_t hubs = channel->channel == Channel::kGroups ? link::hubs_for(agents) : 0;
-  auto lock = DomainLock::take(options.domain, link::participants_for({.hubs = hubs}, agents));
+  auto lock =
+      link::DomainLock::take(options.domain, link::participants_for({.hubs = hubs}, agents));
   if (!lock) return tl::unexpected(lock.error());
-  const auto dir = make_run_dir(options.out, options.mission.name);
+  const auto dir = shell::make_run_dir(options.out, options.mission.name);
   if (!dir) return tl::unexpected(dir.error());
   if (auto written = shell::write_file(*dir / shell::kMissionFile, to_yaml(options.mission));
       !written) {
@@ -119,17 +121,19 @@ Result<void> Flight::join() {
     server_ = std::move(*server);
     meeting_place = server_->address();
   }
-  const shell::RunInfo run{.domain = lock_.domain(),
-                           .discovery_host = meeting_place.host,
-                           .discovery_port = meeting_place.port,
-                           .hubs = hubs_,
-                           .cyclone_launcher = options_.cyclone_launcher,
-                           .cyclone_planner = options_.cyclone_planner,
-                           .host = options_.interface,
-                           .interface = options_.interface,
-                           .channel = channel_.channel,
-                           .seed = options_.seed,
-                           .began = utc_now()};
+  const shell::RunInfo run{
+      .domain = lock_.domain(),
+      .discovery_host = meeting_place.host,
+      .discovery_port = meeting_place.port,
+      .agents = (options_.mission.robots.count + options_.per_process - 1) / options_.per_process,
+      .hubs = hubs_,
+      .cyclone_launcher = options_.cyclone_launcher,
+      .cyclone_planner = options_.cyclone_planner,
+      .host = options_.interface,
+      .interface = options_.interface,
+      .channel = channel_.channel,
+      .seed = options_.seed,
+      .began = utc_now()};
   if (auto written = shell::write_run_info(dir_, run); !written) return written;
   auto participant = link::join_as_launcher(link::meeting_of(run));
   if (!participant) return tl::unexpected(participant.error());
@@ -145,6 +149,12 @@ Result<void> Flight::join() {
   status_reader_ = std::move(*status);
   event_reader_ = std::move(*event);
   command_writer_ = std::move(*command);
+  auto status_relay = participant_->make_writer(link::relayed_status_topic());
+  auto event_relay = participant_->make_writer(link::relayed_event_topic());
+  if (!status_relay) return tl::unexpected(status_relay.error());
+  if (!event_relay) return tl::unexpected(event_relay.error());
+  status_relay_ = std::move(*status_relay);
+  event_relay_ = std::move(*event_relay);
   scene_.emplace(options_.mission.world, dir_, std::move(*scene));
   auto control = ControlServer::listen(dir_);
   if (!control) return tl::unexpected(control.error());
@@ -161,7 +171,7 @@ Result<void> Flight::join() {
       std::chrono::steady_clock::now());
   const std::string told =
       fmt::format("robot states go by {}: {}", to_string(channel_.channel), channel_.reason);
-  events_.write(utc_now(), "launcher", link::Severity::kInfo, "channel", told);
+  note(link::Severity::kInfo, "channel", told);
   std::fprintf(stderr, "%s\n", told.c_str());
   view_ = SwarmView(options_.mission.robots.count, options_.mission.link.hear_radius_m);
   if (options_.by_gateway > 0) {
@@ -207,23 +217,17 @@ Result<void> Flight::start(ProcessIndex process) {
   return {};
 }
 
-void Flight::send(CommandKind kind) {
-  const std::int64_t stamp = utc_now().time_since_epoch().count();
-  command_writer_->write(
-      {.kind = kind, .command_id = static_cast<std::uint64_t>(stamp), .stamp_utc_ns = stamp});
-}
-
 Result<std::string> Flight::change(const SceneChange& change) {
   const UtcTime now = utc_now();
   const std::string what = fmt::format("{} {}", name_of(change), keys_of(change));
   auto changed = scene_->change(change, now);
   if (!changed) {
-    events_.write(now, "launcher", link::Severity::kWarning, "scene-refused",
-                  fmt::format("{}: {}", what, changed.error().message));
+    note(link::Severity::kWarning, "scene-refused",
+         fmt::format("{}: {}", what, changed.error().message));
     return changed;
   }
   if (std::holds_alternative<GoTo>(change)) supervisor_->on_new_goal(scene_->scene().version);
-  events_.write(now, "launcher", link::Severity::kInfo, "scene", what);
+  note(link::Severity::kInfo, "scene", what);
   return changed;
 }
 
@@ -246,13 +250,6 @@ Result<void> Flight::act(const Action& action) {
   return {};
 }
 
-void Flight::log(const LogEvent& event) {
-  events_.write(utc_now(), "launcher",
-                event.warning ? link::Severity::kWarning : link::Severity::kInfo, event.code,
-                event.text);
-  if (event.warning) progress_.say(event.text);
-}
-
 void Flight::reap(SteadyTime now) {
   while (const auto child = reap_child()) {
     const auto known = children_.find(child->pid);
@@ -265,38 +262,6 @@ void Flight::reap(SteadyTime now) {
     measurements_.max_rss_mb = std::max(measurements_.max_rss_mb, child->max_rss_mb);
     supervisor_->on_exit(known->second, child->exit, now);
     children_.erase(known);
-  }
-}
-
-void Flight::read_bus(SteadyTime now) {
-  participant_->receive();
-  statuses_.clear();
-  status_reader_->take(statuses_);
-  for (const link::StatusMessage& status : statuses_) {
-    if (const auto ok = link::check_status(status, limits_); !ok) {
-      refused_.count(ok.error());
-      continue;
-    }
-    if (observer_ != nullptr) observer_->on_status(status);
-    for (const link::RobotStatusMessage& robot : status.robots) {
-      view_.take(robot);
-      if (hosts_) hosts_->on_status(RobotId(robot.robot_id), now);
-      supervisor_->on_status(RobotId(robot.robot_id),
-                             {.has_plan = status.plan_version > 0,
-                              .hears_neighbours = view_.hears_neighbours(robot.robot_id),
-                              .mode = robot.mode,
-                              .settled = robot.settled,
-                              .scene_version = status.plan_scene_version});
-    }
-  }
-  heard_events_.clear();
-  event_reader_->take(heard_events_);
-  for (const link::EventMessage& event : heard_events_) {
-    if (const auto ok = link::check_event(event); !ok) {
-      refused_.count(ok.error());
-      continue;
-    }
-    events_.write(event);
   }
 }
 

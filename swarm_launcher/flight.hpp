@@ -19,7 +19,6 @@
 #include "swarm_launcher/agent_dds.hpp"
 #include "swarm_launcher/channel_choice.hpp"
 #include "swarm_launcher/control_socket.hpp"
-#include "swarm_launcher/domain_lock.hpp"
 #include "swarm_launcher/event_log.hpp"
 #include "swarm_launcher/gateway.hpp"
 #include "swarm_launcher/hosts/remote_hosts.hpp"
@@ -28,6 +27,7 @@
 #include "swarm_launcher/summary.hpp"
 #include "swarm_launcher/supervisor.hpp"
 #include "swarm_launcher/swarm_view.hpp"
+#include "swarm_link/domain_lock.hpp"
 #include "swarm_link/join.hpp"
 #include "swarm_link/messages.hpp"
 #include "swarm_link/validation.hpp"
@@ -86,13 +86,14 @@ class Flight {
 
  private:
   Flight(FlightOptions options, FlightObserver* observer, std::filesystem::path dir,
-         DomainLock lock, ChannelChoice channel, std::uint32_t hubs);
+         link::DomainLock lock, ChannelChoice channel, std::uint32_t hubs);
 
   Result<void> join();
   Result<void> act(const Action& action);
   Result<void> start(ProcessIndex process);
   Result<void> open_to_hosts(const shell::RunInfo& run);
   void log(const LogEvent& event);
+  void note(link::Severity severity, const std::string& code, const std::string& text);
   void bring_boxes_home();
   void send(CommandKind kind);
   Result<std::string> change(const SceneChange& change);
@@ -107,7 +108,7 @@ class Flight {
   ChannelChoice channel_;
   std::uint32_t hubs_;
   std::filesystem::path dir_;
-  DomainLock lock_;
+  link::DomainLock lock_;
   EventLog events_;
   Progress progress_;
   std::unique_ptr<link::DiscoveryServer> server_;  // none where hubs are the meeting place
@@ -115,6 +116,8 @@ class Flight {
   link::ReaderPtr<link::StatusMessage> status_reader_;
   link::ReaderPtr<link::EventMessage> event_reader_;
   link::WriterPtr<link::CommandMessage> command_writer_;
+  link::WriterPtr<link::StatusMessage> status_relay_;  // for monitors
+  link::WriterPtr<link::EventMessage> event_relay_;
   std::optional<ControlServer> control_;
   std::optional<RemoteHosts> hosts_;
   std::optional<GatewayKeeper> gateway_;

@@ -12,12 +12,9 @@
 #include <nlohmann/json.hpp>
 
 #include "swarm_core/metrics/geodesic_bound.hpp"
-#include "swarm_core/shell/run_directory.hpp"
 
 namespace swarm::monitor {
 namespace {
-
-constexpr std::size_t kMaxSummaryBytes = 16U << 20U;
 
 /// `3, 7, 12 and 40 more`
 std::string list(const std::vector<std::string>& words) {
@@ -221,10 +218,8 @@ void judge(const AuditedRun& audited, Audit& audit) {
 }
 
 /// What the launcher measured stays as it said; anything else in its summary is not believed.
-void carry_over(const std::filesystem::path& file, Audit& audit) {
-  const auto text = shell::read_file(file, kMaxSummaryBytes);
-  if (!text) return;
-  const auto json = nlohmann::json::parse(*text, nullptr, false);
+void carry_over(const std::string& summary, Audit& audit) {
+  const auto json = nlohmann::json::parse(summary, nullptr, false);
   if (!json.is_object()) return;
   const auto take = [&](const char* key, std::optional<double>& value) {
     if (const auto it = json.find(key); it != json.end() && it->is_number())
@@ -262,16 +257,16 @@ AuditedRun audit_recorded(RecordedRun recorded) {
   return audited;
 }
 
-Result<AuditedRun> audit_run_fully(const std::filesystem::path& run_dir) {
-  auto run = read_run(run_dir);
+Result<AuditedRun> audit_run_fully(const std::filesystem::path& from) {
+  auto run = read_run(from);
   if (!run) return tl::unexpected(run.error());
   AuditedRun audited = audit_recorded(std::move(*run));
-  carry_over(run_dir / shell::kSummaryFile, audited.audit);
+  carry_over(audited.run.launcher_summary, audited.audit);
   return audited;
 }
 
-Result<Audit> audit_run(const std::filesystem::path& run_dir) {
-  auto audited = audit_run_fully(run_dir);
+Result<Audit> audit_run(const std::filesystem::path& from) {
+  auto audited = audit_run_fully(from);
   if (!audited) return tl::unexpected(audited.error());
   return std::move(audited->audit);
 }

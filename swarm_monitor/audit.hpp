@@ -81,12 +81,12 @@ struct AuditedRun {
 /// The pure part: judges a recorded run.
 AuditedRun audit_recorded(RecordedRun run);
 
-/// Reads a run directory and audits it, with the launcher's measurements if its summary is there.
-Result<AuditedRun> audit_run_fully(const std::filesystem::path& run_dir);
+/// Reads a run directory or a recording and audits it, with the launcher's measurements if its
+/// summary is there.
+Result<AuditedRun> audit_run_fully(const std::filesystem::path& from);
 
-/// The same, without what only the report needs. Fails (kEnvironment) if the directory is
-/// unreadable.
-Result<Audit> audit_run(const std::filesystem::path& run_dir);
+/// The same, without what only the report needs. Fails (kEnvironment) if it is unreadable.
+Result<Audit> audit_run(const std::filesystem::path& from);
 
 /// The audit as a JSON document; unknown values are null.
 std::string to_json(const Audit& audit);

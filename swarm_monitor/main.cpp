@@ -1,53 +1,29 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-#include <cstdio>
-
-#include <CLI/CLI.hpp>
-
 #include "swarm_core/shell/program.hpp"
-#include "swarm_monitor/report.hpp"
-
-namespace {
-
-using swarm::ExitCode;
-using swarm::Result;
-
-Result<ExitCode> audit(const std::filesystem::path& run_dir, bool json) {
-  const auto result = swarm::monitor::audit_run(run_dir);
-  if (!result) return tl::unexpected(result.error());
-  std::fputs((json ? to_json(*result) : to_text(*result)).c_str(), stdout);
-  return result->ok() ? ExitCode::kOk : ExitCode::kCriteriaNotMet;
-}
-
-Result<ExitCode> report(const std::filesystem::path& run_dir) {
-  const auto result = swarm::monitor::write_report(run_dir);
-  if (!result) return tl::unexpected(result.error());
-  std::printf("%s\n%s\n", (run_dir / "report.html").c_str(), (run_dir / "paths.svg").c_str());
-  return ExitCode::kOk;
-}
-
-}  // namespace
+#include "swarm_core/shell/stop_signal.hpp"
+#include "swarm_monitor/cli/commands.hpp"
 
 int main(int argc, char** argv) {
-  return swarm::shell::run_main("swarm_monitor", [&]() -> Result<ExitCode> {
+  using namespace swarm;
+  return shell::run_main("swarm_monitor", [&]() -> Result<ExitCode> {
     CLI::App app(
-        "Judges a flown mission by the robots' black boxes.\n"
+        "Looks at a swarm that flies or has flown, records it and judges it.\n"
         "  swarm_monitor audit RUN_DIR    exits with 0 if the mission met its criteria, else 1\n"
         "  swarm_monitor report RUN_DIR   writes report.html and paths.svg into it",
         "swarm_monitor");
     app.require_subcommand(1);
-    swarm::shell::add_common_options(app);
-    std::filesystem::path run_dir;
-    bool json = false;
-    CLI::App* audit_command = app.add_subcommand("audit", "Recompute all results of a run");
-    audit_command->add_option("run_dir", run_dir, "Directory of the run")->required();
-    audit_command->add_flag("--json", json, "Print a JSON document");
-    CLI::App* report_command = app.add_subcommand("report", "Write the run's report and map");
-    report_command->add_option("run_dir", run_dir, "Directory of the run")->required();
-
-    const auto done = swarm::shell::parse(app, argc, argv);
+    shell::add_common_options(app);
+    using namespace monitor::cli;
+    const Command commands[] = {add_audit(app), add_report(app), add_record(app), add_merge(app),
+                                add_replay(app)};
+    const auto done = shell::parse(app, argc, argv);
     if (!done) return tl::unexpected(done.error());
     if (*done) return **done;
-    return report_command->parsed() ? report(run_dir) : audit(run_dir, json);
+    shell::catch_stop_signals();
+    for (const Command& command : commands) {
+      if (command.app->parsed()) return command.act();
+    }
+    return ExitCode::kUsage;
   });
 }

@@ -4,14 +4,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <map>
 #include <numeric>
 #include <sstream>
+#include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "swarm_core/blackbox/blackbox_file.hpp"
+#include "swarm_core/mcap/reader.hpp"
 #include "swarm_core/mission/mission_file.hpp"
 #include "swarm_core/mission/scene_log.hpp"
 #include "swarm_core/plan/plan_json.hpp"
@@ -20,19 +25,15 @@
 namespace swarm::monitor {
 namespace {
 
+constexpr std::size_t kMaxMissionBytes = 16U << 20U;
+constexpr std::size_t kMaxSummaryBytes = 1U << 20U;
 constexpr std::size_t kMaxEventsBytes = 256U << 20U;
 constexpr std::size_t kMaxPlanBytes = 64U << 20U;
 constexpr std::size_t kMaxSceneBytes = 64U << 20U;
 
-UtcTime stamp_of(const blackbox::Record& record) {
-  return std::visit([](const auto& r) { return r.stamp; }, record);
-}
-
-std::vector<RunEvent> read_events(const std::filesystem::path& file, UtcTime begin) {
+std::vector<RunEvent> read_events(const std::string& text, UtcTime begin) {
   std::vector<RunEvent> events;
-  const auto text = shell::read_file(file, kMaxEventsBytes);
-  if (!text) return events;
-  std::istringstream lines(*text);
+  std::istringstream lines(text);
   for (std::string line; std::getline(lines, line);) {
     // The last line of a killed launcher may be cut: what is no event is left out.
     const auto json = nlohmann::json::parse(line, nullptr, false);
@@ -106,54 +107,152 @@ const Mixture& RecordedRun::goal() const {
   return scenes.empty() || !scenes.back().goal ? mission.goal : *scenes.back().goal;
 }
 
-Result<RecordedRun> read_run(const std::filesystem::path& run_dir) {
-  auto mission = load_mission(run_dir / shell::kMissionFile);
-  if (!mission) {
-    return fail(ErrorCode::kEnvironment, fmt::format("{} is no run directory:\n{}",
-                                                     run_dir.string(), mission.error().message));
+namespace {
+
+/// The files of a run beside its black boxes, by name.
+using Texts = std::map<std::string, std::string, std::less<>>;
+
+const std::string& text_of(const Texts& texts, std::string_view name) {
+  static const std::string kNone;
+  const auto it = texts.find(name);
+  return it == texts.end() ? kNone : it->second;
+}
+
+/// Tracks in the making, by robot, with times since any stamp near the run: seconds since 1970
+/// would be too coarse.
+class TrackTable {
+ public:
+  explicit TrackTable(std::uint32_t robots) : makers_(robots) {}
+
+  void add(RobotId robot, const blackbox::Record& record) {
+    if (robot.value() >= makers_.size()) return;
+    if (!origin_) origin_ = blackbox::stamp_of(record);
+    auto& maker = makers_[robot.value()];
+    if (!maker) maker.emplace(robot, *origin_);
+    maker->add(record);
   }
-  RecordedRun run{.mission = std::move(*mission)};
-  std::optional<UtcTime> origin;  // any stamp near the run: seconds since 1970 would be too coarse
-  for (std::uint32_t i = 0; i < run.mission.robots.count; ++i) {
-    std::optional<TrackMaker> maker;
-    const auto damage =
-        blackbox::read_records(blackbox::file_of(run_dir, RobotId(i)), [&](const auto& record) {
-          if (!origin) origin = stamp_of(record);
-          if (!maker) maker.emplace(RobotId(i), *origin);
-          maker->add(record);
-        });
-    Track track = maker ? maker->finish() : Track{.robot = RobotId(i)};
-    if (damage) {
-      track.damaged += damage->damaged;
-    } else {
-      track.unreadable = damage.error().message;
+
+  /// Makes `run.begin` the first step. False if there is none.
+  bool finish(RecordedRun& run) {
+    double begin_s = std::numeric_limits<double>::infinity();
+    for (std::uint32_t i = 0; i < makers_.size(); ++i) {
+      Track track = makers_[i] ? makers_[i]->finish() : Track{.robot = RobotId(i)};
+      // A box without a header tells no radius: take the mission's.
+      if (track.processes.empty()) track.radius_m = run.mission.robots.radius_m;
+      if (!track.points.empty()) begin_s = std::min(begin_s, track.points.front().time_s);
+      run.tracks.push_back(std::move(track));
     }
-    // A box without a header tells no radius: take the mission's.
-    if (track.processes.empty()) track.radius_m = run.mission.robots.radius_m;
-    run.tracks.push_back(std::move(track));
+    if (!std::isfinite(begin_s)) return false;
+    // In whole nanoseconds, so that it does not matter which record was read first.
+    const Duration begin = from_seconds(begin_s);
+    const auto since_begin = [begin](double time_s) {
+      return to_seconds(from_seconds(time_s) - begin);
+    };
+    for (Track& track : run.tracks) {
+      for (TrackPoint& point : track.points) point.time_s = since_begin(point.time_s);
+      for (BeliefPoint& belief : track.beliefs) belief.time_s = since_begin(belief.time_s);
+    }
+    run.begin = *origin_ + begin;
+    return true;
   }
-  double begin_s = std::numeric_limits<double>::infinity();
-  for (const Track& track : run.tracks) {
-    if (!track.points.empty()) begin_s = std::min(begin_s, track.points.front().time_s);
+
+ private:
+  std::vector<std::optional<TrackMaker>> makers_;
+  std::optional<UtcTime> origin_;
+};
+
+Result<RecordedRun> with_mission(const std::string& yaml, const std::filesystem::path& from) {
+  auto mission = parse_mission(yaml, std::string(shell::kMissionFile));
+  if (!mission) {
+    return fail(ErrorCode::kEnvironment,
+                fmt::format("{} is no recorded run:\n{}", from.string(), mission.error().message));
   }
-  if (!std::isfinite(begin_s)) {
-    return fail(
-        ErrorCode::kEnvironment,
-        fmt::format("{}: no black box holds a step; did any robot start?", run_dir.string()));
+  return RecordedRun{.mission = std::move(*mission)};
+}
+
+Result<RecordedRun> finished(RecordedRun run, TrackTable& tracks, const Texts& texts,
+                             const std::filesystem::path& from) {
+  if (!tracks.finish(run)) {
+    return fail(ErrorCode::kEnvironment,
+                fmt::format("{}: no black box holds a step; did any robot start?", from.string()));
   }
-  for (Track& track : run.tracks) {
-    for (TrackPoint& point : track.points) point.time_s -= begin_s;
-    for (BeliefPoint& belief : track.beliefs) belief.time_s -= begin_s;
-  }
-  run.begin = *origin + from_seconds(begin_s);
-  if (const auto text = shell::read_file(run_dir / shell::kPlanFile, kMaxPlanBytes)) {
-    if (auto plan = plan_from_json(*text)) run.plan = std::move(*plan);
-  }
-  run.scenes =
-      replay_scene_log(shell::read_file(run_dir / shell::kSceneFile, kMaxSceneBytes).value_or(""),
-                       run.mission.world);
-  run.events = read_events(run_dir / shell::kEventsFile, run.begin);
+  if (auto plan = plan_from_json(text_of(texts, shell::kPlanFile))) run.plan = std::move(*plan);
+  run.scenes = replay_scene_log(text_of(texts, shell::kSceneFile), run.mission.world);
+  run.events = read_events(text_of(texts, shell::kEventsFile), run.begin);
+  run.launcher_summary = text_of(texts, shell::kSummaryFile);
   return run;
+}
+
+Result<RecordedRun> read_directory(const std::filesystem::path& run_dir) {
+  Texts texts;
+  for (const auto& [name, limit] : {std::pair{shell::kMissionFile, kMaxMissionBytes},
+                                    {shell::kPlanFile, kMaxPlanBytes},
+                                    {shell::kSceneFile, kMaxSceneBytes},
+                                    {shell::kEventsFile, kMaxEventsBytes},
+                                    {shell::kSummaryFile, kMaxSummaryBytes}}) {
+    if (auto text = shell::read_file(run_dir / name, limit)) texts[std::string(name)] = *text;
+  }
+  auto run = with_mission(text_of(texts, shell::kMissionFile), run_dir);
+  if (!run) return run;
+  TrackTable tracks(run->mission.robots.count);
+  std::vector<Result<blackbox::Damage>> damages;
+  for (std::uint32_t i = 0; i < run->mission.robots.count; ++i) {
+    damages.push_back(
+        blackbox::read_records(blackbox::file_of(run_dir, RobotId(i)),
+                               [&](const auto& record) { tracks.add(RobotId(i), record); }));
+  }
+  run = finished(std::move(*run), tracks, texts, run_dir);
+  if (!run) return run;
+  for (std::size_t i = 0; i < damages.size(); ++i) {
+    if (damages[i]) {
+      run->tracks[i].damaged += damages[i]->damaged;
+    } else {
+      run->tracks[i].unreadable = damages[i].error().message;
+    }
+  }
+  return run;
+}
+
+Result<RecordedRun> read_recording(const std::filesystem::path& file) {
+  Texts texts;
+  std::optional<TrackTable> tracks;
+  std::optional<Result<RecordedRun>> run;
+  const auto damage = mcap::read(
+      file,
+      {.message =
+           [&](const mcap::Message& message, const mcap::Channel& channel, const mcap::Schema&) {
+             if (!tracks) return;
+             if (const auto record = blackbox::decode(message, channel)) {
+               tracks->add(record->robot, record->record);
+             }
+           },
+       .attachment =
+           [&](const mcap::Attachment& attachment) {
+             texts[attachment.name] = attachment.data;
+             if (attachment.name != shell::kMissionFile || run) return;
+             run = with_mission(attachment.data, file);
+             if (*run) tracks.emplace((*run)->mission.robots.count);
+           }});
+  if (!damage) return tl::unexpected(damage.error());
+  if (!run) {
+    return fail(ErrorCode::kEnvironment, fmt::format("{} holds no {}: is it a recording of a run?",
+                                                     file.string(), shell::kMissionFile));
+  }
+  if (!*run) return *run;
+  run = finished(std::move(**run), *tracks, texts, file);
+  if (!*run) return *run;
+  // Which robots' records these were cannot be told.
+  if (damage->damaged > 0) (*run)->tracks.front().damaged += damage->damaged;
+  for (Track& track : (*run)->tracks) {
+    if (track.points.empty()) track.unreadable = "the recording holds nothing of this robot";
+  }
+  return *run;
+}
+
+}  // namespace
+
+Result<RecordedRun> read_run(const std::filesystem::path& from) {
+  return std::filesystem::is_regular_file(from) ? read_recording(from) : read_directory(from);
 }
 
 }  // namespace swarm::monitor

@@ -55,22 +55,24 @@ struct RunEvent {
   std::string source, severity, code, text;
 };
 
-/// A run directory, read. Audits and reports are pure functions of it.
+/// A run, read. Audits and reports are pure functions of it.
 struct RecordedRun {
   Mission mission;
   std::optional<FlowPlan> plan{};
   UtcTime begin{};              ///< first step in any black box
   std::vector<Track> tracks{};  ///< by robot id, mission.robots.count of them
   std::vector<RunEvent> events{};
-  std::vector<Scene> scenes{};  ///< the first as in the mission file
+  std::vector<Scene> scenes{};     ///< the first as in the mission file
+  std::string launcher_summary{};  ///< summary.json as it was then
 
   /// Where the swarm was to be in the end.
   const Mixture& goal() const;
 };
 
-/// Fails (kEnvironment) if there is no readable mission or no black box at all. What single robots
-/// lack is told by their tracks; a missing plan or event log is no error.
-Result<RecordedRun> read_run(const std::filesystem::path& run_dir);
+/// Of a run directory, or of a recording of one. Fails (kEnvironment) if there is no readable
+/// mission or no black box at all. What single robots lack is told by their tracks; a missing plan
+/// or event log is no error.
+Result<RecordedRun> read_run(const std::filesystem::path& from);
 
 /// Makes a track of the records of one black box, with times since `origin`.
 class TrackMaker {

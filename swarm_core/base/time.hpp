@@ -20,7 +20,7 @@ using MissionTime = std::chrono::duration<double>;
 inline double to_seconds(Duration d) { return std::chrono::duration<double>(d).count(); }
 
 inline Duration from_seconds(double s) {
-  return std::chrono::duration_cast<Duration>(std::chrono::duration<double>(s));
+  return std::chrono::round<Duration>(std::chrono::duration<double>(s));
 }
 
 }  // namespace swarm

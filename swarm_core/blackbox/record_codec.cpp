@@ -29,6 +29,8 @@ class Encoder {
       out_.push_back(static_cast<unsigned char>(value >> (8U * i)));
     }
   }
+  /// RTPS carries multiples of four bytes: so is what is recorded, or a replay would change it.
+  void finish() { out_.resize((out_.size() + 3) / 4 * 4); }
   void put(double value) { put(std::bit_cast<std::uint64_t>(value)); }
   void put(UtcTime stamp) { put(static_cast<std::uint64_t>(stamp.time_since_epoch().count())); }
   void put(const Vec2& v) {
@@ -82,8 +84,8 @@ class Decoder {
   }
   void refuse() { good_ = false; }
 
-  /// Whether everything read was there and well-formed, and nothing is left over.
-  bool finished() const { return good_ && in_.empty(); }
+  /// Whether everything read was there and well-formed, and nothing but padding is left over.
+  bool finished() const { return good_ && in_.size() < 4; }
   bool good() const { return good_; }
 
  private:
@@ -239,6 +241,7 @@ const std::array<Kind, std::variant_size_v<Record>>& kinds() {
 void encode(RobotId robot, const Record& record, std::vector<unsigned char>& out) {
   Encoder encoder(out);
   std::visit([&](const auto& r) { put(encoder, robot, r); }, record);
+  encoder.finish();
 }
 
 std::optional<RobotRecord> decode(std::size_t kind, std::span<const unsigned char> message) {

@@ -30,6 +30,7 @@ struct RunInfo {
   std::uint32_t domain = 0;
   std::string discovery_host = "127.0.0.1";
   std::uint16_t discovery_port = 0;
+  std::uint32_t agents = 0;       ///< processes
   std::uint32_t hubs = 0;         ///< of launcher and planner each; 0: everyone meets at the server
   bool cyclone_launcher = false;  ///< whose DDS the launcher speaks
   bool cyclone_planner = false;   ///< whose DDS the planner speaks

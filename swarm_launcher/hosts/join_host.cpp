@@ -19,7 +19,7 @@
 #include "swarm_launcher/hosts/line_socket.hpp"
 #include "swarm_launcher/hosts/offer.hpp"
 #include "swarm_launcher/progress.hpp"
-#include "swarm_launcher/run_dir.hpp"
+#include "swarm_core/shell/run_dir.hpp"
 
 namespace swarm::launcher {
 namespace {
@@ -189,7 +189,7 @@ Result<ExitCode> join_host(const JoinOptions& options) {
   if (!to) return tl::unexpected(to.error());
   auto socket = LineSocket::connect(*to);
   if (!socket) return tl::unexpected(socket.error());
-  const auto dir = make_run_dir(options.out, "joined");
+  const auto dir = shell::make_run_dir(options.out, "joined");
   if (!dir) return tl::unexpected(dir.error());
   auto offer = ask(*socket, options.robots);
   if (!offer) return tl::unexpected(offer.error());

@@ -17,7 +17,7 @@
 #include "swarm_core/shell/stop_signal.hpp"
 #include "swarm_launcher/event_log.hpp"
 #include "swarm_launcher/progress.hpp"
-#include "swarm_launcher/run_dir.hpp"
+#include "swarm_core/shell/run_dir.hpp"
 #include "swarm_launcher/simulation/simulation.hpp"
 #include "swarm_launcher/summary.hpp"
 
@@ -117,7 +117,7 @@ Result<ExitCode> simulate_mission(const SimulateOptions& options) {
   std::unique_ptr<SimulationObserver> observer = std::make_unique<SimulationObserver>();
   const DirectoryObserver* written = nullptr;
   if (options.record) {
-    const auto made = make_run_dir(options.out, mission->name);
+    const auto made = shell::make_run_dir(options.out, mission->name);
     if (!made) return tl::unexpected(made.error());
     dir = *made;
     std::fprintf(stderr, "run directory: %s\n", dir.c_str());

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "swarm_core/metrics/histogram.hpp"
-#include "swarm_launcher/soak/stream_meter.hpp"
+#include "swarm_link/stream_meter.hpp"
 
 namespace swarm::launcher {
 
@@ -27,9 +27,9 @@ struct SoakSample {
 /// What a soak measured while its mission ran.
 struct SoakMeasurements {
   std::vector<SoakSample> samples{};
-  std::optional<StreamMeter::Counts> heard{};  ///< empty: nobody can listen to this channel
-  Histogram latency{};                         ///< written → received by a waiting listener
-  StreamMeter::Worst worst{};
+  std::optional<link::StreamMeter::Counts> heard{};  ///< empty: nobody can listen to this channel
+  Histogram latency{};                               ///< written → received by a waiting listener
+  link::StreamMeter::Worst worst{};
   Histogram use_latency{};        ///< written → used by a neighbour's controller
   std::uint64_t states_sent = 0;  ///< as the robots count
   std::uint64_t states_used = 0;

@@ -105,7 +105,7 @@ std::vector<std::string> complaints(const SoakResult& result, const SoakCriteria
 std::string to_json(const SoakResult& result, const std::vector<std::string>& complaints) {
   const SoakMeasurements& m = result.measured;
   const Growth rss = growth_of(m.samples, &SoakSample::rss_mb);
-  const auto heard = [&](std::uint64_t StreamMeter::Counts::*count) {
+  const auto heard = [&](std::uint64_t link::StreamMeter::Counts::*count) {
     return m.heard ? Json((*m.heard).*count) : Json();
   };
   Json worst = nullptr;
@@ -124,11 +124,11 @@ std::string to_json(const SoakResult& result, const std::vector<std::string>& co
                      {"use_latency_ms", quantiles(m.use_latency)},
                      {"worst", worst},
                      {"sent", m.heard ? Json(m.heard->sent()) : Json(m.states_sent)},
-                     {"received", heard(&StreamMeter::Counts::received)},
-                     {"lost", heard(&StreamMeter::Counts::lost)},
-                     {"gaps", heard(&StreamMeter::Counts::gaps)},
-                     {"duplicates", heard(&StreamMeter::Counts::duplicates)},
-                     {"reordered", heard(&StreamMeter::Counts::reordered)},
+                     {"received", heard(&link::StreamMeter::Counts::received)},
+                     {"lost", heard(&link::StreamMeter::Counts::lost)},
+                     {"gaps", heard(&link::StreamMeter::Counts::gaps)},
+                     {"duplicates", heard(&link::StreamMeter::Counts::duplicates)},
+                     {"reordered", heard(&link::StreamMeter::Counts::reordered)},
                      {"used", m.states_used},
                      {"receive_drops", m.receive_drops},
                      {"loss", loss_of(m)},

@@ -54,7 +54,7 @@ class SoakWatch final : public FlightObserver {
 
   std::unique_ptr<link::GroupTap> tap_;
   mutable std::mutex mutex_;
-  StreamMeter meter_;  // of the listener
+  link::StreamMeter meter_;  // of the listener
   std::atomic<bool> running_ = false;
   std::atomic<bool> ended_ = false;
   std::thread listener_;

@@ -23,13 +23,21 @@ class SocketTap final : public GroupTap, private DatagramSink {
   SocketTap& operator=(const SocketTap&) = delete;
 
   std::size_t take(Duration patience, std::vector<CellStatesMessage>& out) override {
-    pollfd waiting{.fd = fd_, .events = POLLIN, .revents = 0};
-    const auto ms = std::chrono::duration_cast<std::chrono::milliseconds>(patience).count();
-    if (::poll(&waiting, 1, static_cast<int>(ms)) <= 0) return 0;
+    if (!wait(patience)) return 0;
     taking_ = &out;
     const std::size_t before = out.size();
     drain_.drain(fd_, *this);
+    taking_ = nullptr;
     return out.size() - before;
+  }
+
+  std::size_t take_raw(Duration patience, const RawSink& sink) override {
+    if (!wait(patience)) return 0;
+    sink_ = &sink;
+    sunk_ = 0;
+    drain_.drain(fd_, *this);
+    sink_ = nullptr;
+    return sunk_;
   }
 
   std::uint64_t undecodable() const override { return undecodable_; }
@@ -37,15 +45,28 @@ class SocketTap final : public GroupTap, private DatagramSink {
  private:
   void datagram(std::span<std::byte> bytes, const sockaddr_in&) override {
     const auto payload = decode_rtps(bytes);
-    if (payload && cdr_.decode(*payload, taking_->emplace_back())) return;
-    if (payload) taking_->pop_back();
+    if (payload && sink_ != nullptr) {
+      ++sunk_;
+      (*sink_)(*payload);
+      return;
+    }
+    if (payload && taking_ != nullptr && cdr_.decode(*payload, taking_->emplace_back())) return;
+    if (payload && taking_ != nullptr) taking_->pop_back();
     ++undecodable_;
+  }
+
+  bool wait(Duration patience) const {
+    pollfd waiting{.fd = fd_, .events = POLLIN, .revents = 0};
+    const auto ms = std::chrono::duration_cast<std::chrono::milliseconds>(patience).count();
+    return ::poll(&waiting, 1, static_cast<int>(ms)) > 0;
   }
 
   int fd_;
   Codec<CellStatesMessage> cdr_;
   DatagramDrain drain_;
   std::vector<CellStatesMessage>* taking_ = nullptr;
+  const RawSink* sink_ = nullptr;
+  std::size_t sunk_ = 0;
   std::uint64_t undecodable_ = 0;
 };
 

@@ -4,7 +4,9 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "swarm_core/base/result.hpp"
@@ -22,6 +24,10 @@ class GroupTap {
 
   /// Waits up to `patience` for something to come and appends it. Returns how many batches came.
   virtual std::size_t take(Duration patience, std::vector<CellStatesMessage>& out) = 0;
+
+  /// The same for samples as they are, CDR with its encapsulation; they live as long as the call.
+  using RawSink = std::function<void(std::span<const std::byte>)>;
+  virtual std::size_t take_raw(Duration patience, const RawSink& sink) = 0;
 
   virtual std::uint64_t undecodable() const = 0;
 };

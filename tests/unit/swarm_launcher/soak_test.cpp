@@ -12,7 +12,7 @@
 #include "swarm_launcher/soak/process_sample.hpp"
 #include "swarm_launcher/soak/soak_mission.hpp"
 #include "swarm_launcher/soak/soak_result.hpp"
-#include "swarm_launcher/soak/stream_meter.hpp"
+#include "swarm_link/stream_meter.hpp"
 
 namespace swarm::launcher {
 namespace {
@@ -30,7 +30,7 @@ void hear(StreamMeter& meter, std::uint32_t robot, std::uint32_t number,
 }
 
 TEST(StreamMeter, CountsWhatIsSkipped) {
-  StreamMeter meter(2);
+  link::StreamMeter meter(2);
   for (const std::uint32_t number : {1U, 2U, 5U, 6U, 8U}) hear(meter, 0, number);
   hear(meter, 1, 40);  // begins wherever it is first heard
 
@@ -41,7 +41,7 @@ TEST(StreamMeter, CountsWhatIsSkipped) {
 }
 
 TEST(StreamMeter, TellsWhatComesLateFromWhatComesTwice) {
-  StreamMeter meter(1);
+  link::StreamMeter meter(1);
   for (const std::uint32_t number : {1U, 4U, 2U, 2U, 4U, 3U}) hear(meter, 0, number);
 
   EXPECT_EQ(meter.counts().received, 4U);
@@ -51,7 +51,7 @@ TEST(StreamMeter, TellsWhatComesLateFromWhatComesTwice) {
 }
 
 TEST(StreamMeter, LetsARestartedRobotBeginAnew) {
-  StreamMeter meter(1);
+  link::StreamMeter meter(1);
   hear(meter, 0, 1000);
   hear(meter, 0, 1);
   hear(meter, 0, 2);
@@ -62,7 +62,7 @@ TEST(StreamMeter, LetsARestartedRobotBeginAnew) {
 }
 
 TEST(StreamMeter, IsNotMisledByALongGap) {
-  StreamMeter meter(1);
+  link::StreamMeter meter(1);
   hear(meter, 0, 1);
   hear(meter, 0, 1000);
   hear(meter, 0, 999);
@@ -72,7 +72,7 @@ TEST(StreamMeter, IsNotMisledByALongGap) {
 }
 
 TEST(StreamMeter, MeasuresLatencyInAllAndSinceLastAsked) {
-  StreamMeter meter(3);
+  link::StreamMeter meter(3);
   hear(meter, 0, 1, microseconds(100));
   hear(meter, 2, 1, microseconds(9'000));
   EXPECT_EQ(meter.take_recent_latency().count(), 2U);
@@ -125,7 +125,7 @@ TEST(Growth, IsNoneOfNothingOrOneSample) {
 SoakResult good_result() {
   SoakResult result{.processes = 2, .discovery_s = 0.3, .flown = true};
   result.measured.samples = samples(std::vector<double>(20, 50.0));
-  result.measured.heard = StreamMeter::Counts{.received = 1000};
+  result.measured.heard = link::StreamMeter::Counts{.received = 1000};
   for (int i = 0; i < 1000; ++i) result.measured.latency.add(200);
   result.measured.states_used = 5000;
   return result;

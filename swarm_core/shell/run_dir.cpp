@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-#include "swarm_launcher/run_dir.hpp"
+#include "swarm_core/shell/run_dir.hpp"
 
 #include <chrono>
 #include <system_error>
@@ -10,7 +10,7 @@
 
 #include "swarm_core/shell/run_directory.hpp"
 
-namespace swarm::launcher {
+namespace swarm::shell {
 namespace {
 
 std::filesystem::path default_run_dir(const std::string& mission) {
@@ -30,11 +30,11 @@ Result<std::filesystem::path> make_run_dir(const std::filesystem::path& out,
                                            const std::string& mission) {
   const auto dir = std::filesystem::absolute(out.empty() ? default_run_dir(mission) : out);
   std::error_code error;
-  if (std::filesystem::exists(dir / shell::kRunFile, error)) {
+  if (std::filesystem::exists(dir / kRunFile, error)) {
     return fail(ErrorCode::kBadInput,
                 fmt::format("--out {}: holds a run already; name another directory", dir.string()));
   }
-  for (const auto& folder : {shell::kLogsFolder, shell::kBlackboxFolder}) {
+  for (const auto& folder : {kLogsFolder, kBlackboxFolder}) {
     std::filesystem::create_directories(dir / folder, error);
     if (error) {
       return fail(ErrorCode::kEnvironment,
@@ -44,4 +44,4 @@ Result<std::filesystem::path> make_run_dir(const std::filesystem::path& out,
   return dir;
 }
 
-}  // namespace swarm::launcher
+}  // namespace swarm::shell

@@ -10,7 +10,7 @@
 #include "swarm_core/metrics/histogram.hpp"
 #include "swarm_link/messages.hpp"
 
-namespace swarm::launcher {
+namespace swarm::link {
 
 /// What a listener hears of all robots: whether every state came, once, in order, and how late.
 /// Robots number their states without holes; one that begins anew far below its last number was
@@ -19,7 +19,7 @@ class StreamMeter {
  public:
   explicit StreamMeter(std::uint32_t robots) : streams_(robots) {}
 
-  void hear(const link::RobotStateMessage& state, UtcTime at);
+  void hear(const RobotStateMessage& state, UtcTime at);
 
   struct Counts {
     std::uint64_t received = 0;    ///< states, each once
@@ -58,4 +58,4 @@ class StreamMeter {
   Worst worst_;
 };
 
-}  // namespace swarm::launcher
+}  // namespace swarm::link

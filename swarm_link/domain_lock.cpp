@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-#include "swarm_launcher/domain_lock.hpp"
+#include "swarm_link/domain_lock.hpp"
 
 #include <cerrno>
 #include <cstring>
@@ -12,7 +12,7 @@
 #include <sys/file.h>
 #include <unistd.h>
 
-namespace swarm::launcher {
+namespace swarm::link {
 namespace {
 
 constexpr std::uint32_t kDomains = 230;  // ports of domain 232 end at 65535
@@ -64,4 +64,4 @@ Result<DomainLock> DomainLock::take(int wanted, std::uint32_t participants) {
                                        wanted, block));
 }
 
-}  // namespace swarm::launcher
+}  // namespace swarm::link

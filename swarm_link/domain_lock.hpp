@@ -7,7 +7,7 @@
 
 #include "swarm_core/base/result.hpp"
 
-namespace swarm::launcher {
+namespace swarm::link {
 
 /// Reserves DDS domains on this machine for one run, so that two runs never hear each other and
 /// never compete for ports. A run of many processes overflows the 120 port pairs of its domain into
@@ -29,4 +29,4 @@ class DomainLock {
   std::vector<int> files_;
 };
 
-}  // namespace swarm::launcher
+}  // namespace swarm::link

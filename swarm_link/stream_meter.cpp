@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-#include "swarm_launcher/soak/stream_meter.hpp"
+#include "swarm_link/stream_meter.hpp"
 
 #include <utility>
 
-namespace swarm::launcher {
+namespace swarm::link {
 
-void StreamMeter::hear(const link::RobotStateMessage& state, UtcTime at) {
+void StreamMeter::hear(const RobotStateMessage& state, UtcTime at) {
   if (state.robot_id >= streams_.size()) {
     ++counts_.strange;
     return;
@@ -41,4 +41,4 @@ void StreamMeter::hear(const link::RobotStateMessage& state, UtcTime at) {
 
 Histogram StreamMeter::take_recent_latency() { return std::exchange(recent_, Histogram{}); }
 
-}  // namespace swarm::launcher
+}  // namespace swarm::link

@@ -1,0 +1,64 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+// What a flight says and hears.
+#include "swarm_core/base/clock.hpp"
+#include "swarm_launcher/flight.hpp"
+
+namespace swarm::launcher {
+
+void Flight::send(CommandKind kind) {
+  const std::int64_t stamp = utc_now().time_since_epoch().count();
+  command_writer_->write(
+      {.kind = kind, .command_id = static_cast<std::uint64_t>(stamp), .stamp_utc_ns = stamp});
+}
+
+void Flight::note(link::Severity severity, const std::string& code, const std::string& text) {
+  const UtcTime now = utc_now();
+  events_.write(now, "launcher", severity, code, text);
+  event_relay_->write({.severity = severity,
+                       .source = link::kLauncherSource,
+                       .stamp_utc_ns = now.time_since_epoch().count(),
+                       .code = code,
+                       .text = text});
+}
+
+void Flight::log(const LogEvent& event) {
+  note(event.warning ? link::Severity::kWarning : link::Severity::kInfo, event.code, event.text);
+  if (event.warning) progress_.say(event.text);
+}
+
+void Flight::read_bus(SteadyTime now) {
+  participant_->receive();
+  statuses_.clear();
+  status_reader_->take(statuses_);
+  for (const link::StatusMessage& status : statuses_) {
+    if (const auto ok = link::check_status(status, limits_); !ok) {
+      refused_.count(ok.error());
+      continue;
+    }
+    if (observer_ != nullptr) observer_->on_status(status);
+    status_relay_->write(status);
+    for (const link::RobotStatusMessage& robot : status.robots) {
+      view_.take(robot);
+      if (hosts_) hosts_->on_status(RobotId(robot.robot_id), now);
+      supervisor_->on_status(RobotId(robot.robot_id),
+                             {.has_plan = status.plan_version > 0,
+                              .hears_neighbours = view_.hears_neighbours(robot.robot_id),
+                              .mode = robot.mode,
+                              .settled = robot.settled,
+                              .scene_version = status.plan_scene_version});
+    }
+  }
+  heard_events_.clear();
+  event_reader_->take(heard_events_);
+  for (const link::EventMessage& event : heard_events_) {
+    if (const auto ok = link::check_event(event); !ok) {
+      refused_.count(ok.error());
+      continue;
+    }
+    events_.write(event);
+    event_relay_->write(event);
+  }
+}
+
+}  // namespace swarm::launcher

@@ -1,0 +1,55 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "swarm_link/monitor_topics.hpp"
+
+namespace swarm::link {
+namespace {
+
+/// What many robots say at control rate must all arrive.
+constexpr int kDepth = 10'000;
+
+template <class M>
+MonitorTopic topic(const char* recorded, const Topic<M>& topic, const char* type,
+                   bool keyed = false) {
+  return {recorded,
+          {.name = topic.name,
+           .type = std::string("swarm::wire::") + type,
+           .qos = topic.qos,
+           .keyed = keyed}};
+}
+
+}  // namespace
+
+std::vector<MonitorTopic> monitor_topics() {
+  std::vector<MonitorTopic> topics = {topic("swarm/plan", plan_topic(), "FlowPlan"),
+                                      topic("swarm/scene", scene_topic(), "Scene"),
+                                      topic("swarm/command", command_topic(), "Command"),
+                                      topic("swarm/heartbeat", heartbeat_topic(), "Heartbeat"),
+                                      topic("swarm/status", relayed_status_topic(), "Status", true),
+                                      topic("swarm/event", relayed_event_topic(), "Event")};
+  for (const char* type : {"Header", "Step", "Belief", "LinkStats", "Note"}) {
+    std::string name = "blackbox/";
+    for (const char* c = type; *c != 0; ++c) {
+      if (*c >= 'A' && *c <= 'Z') {
+        if (c != type) name += '_';
+        name += static_cast<char>(*c - 'A' + 'a');
+      } else {
+        name += *c;
+      }
+    }
+    topics.push_back({name,
+                      {.name = name,
+                       .type = std::string("swarm::blackbox::") + type,
+                       .qos = {.reliability = Reliability::kReliable, .depth = kDepth}}});
+  }
+  return topics;
+}
+
+MonitorTopic states_topic() {
+  return {"swarm/cell",
+          {.name = "swarm/relay/states",
+           .type = "swarm::wire::CellStates",
+           .qos = {.reliability = Reliability::kReliable, .depth = kDepth}}};
+}
+
+}  // namespace swarm::link

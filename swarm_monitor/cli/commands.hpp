@@ -1,0 +1,25 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+
+#include <CLI/CLI.hpp>
+
+#include "swarm_core/base/result.hpp"
+
+/// The program's subcommands.
+namespace swarm::monitor::cli {
+
+struct Command {
+  CLI::App* app;                          ///< its options
+  std::function<Result<ExitCode>()> act;  ///< what it does once they are read
+};
+
+Command add_audit(CLI::App& program);
+Command add_report(CLI::App& program);
+Command add_record(CLI::App& program);
+Command add_merge(CLI::App& program);
+Command add_replay(CLI::App& program);
+
+}  // namespace swarm::monitor::cli

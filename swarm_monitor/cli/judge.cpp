@@ -1,0 +1,43 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include <cstdio>
+#include <memory>
+
+#include "swarm_monitor/cli/commands.hpp"
+#include "swarm_monitor/report.hpp"
+
+namespace swarm::monitor::cli {
+
+Command add_audit(CLI::App& program) {
+  struct Options {
+    std::filesystem::path from;
+    bool json = false;
+  };
+  const auto o = std::make_shared<Options>();
+  CLI::App* const audit = program.add_subcommand("audit", "Recompute all results of a run");
+  audit->add_option("run", o->from, "Directory of the run, or a recording of it")
+      ->required()
+      ->type_name("RUN_DIR|FILE");
+  audit->add_flag("--json", o->json, "Print a JSON document");
+  return {audit, [o]() -> Result<ExitCode> {
+            const auto result = audit_run(o->from);
+            if (!result) return tl::unexpected(result.error());
+            std::fputs((o->json ? to_json(*result) : to_text(*result)).c_str(), stdout);
+            return result->ok() ? ExitCode::kOk : ExitCode::kCriteriaNotMet;
+          }};
+}
+
+Command add_report(CLI::App& program) {
+  const auto run_dir = std::make_shared<std::filesystem::path>();
+  CLI::App* const report = program.add_subcommand("report", "Write the run's report and map");
+  report->add_option("run_dir", *run_dir, "Directory of the run")->required();
+  return {report, [run_dir]() -> Result<ExitCode> {
+            const auto result = write_report(*run_dir);
+            if (!result) return tl::unexpected(result.error());
+            std::printf("%s\n%s\n", (*run_dir / "report.html").c_str(),
+                        (*run_dir / "paths.svg").c_str());
+            return ExitCode::kOk;
+          }};
+}
+
+}  // namespace swarm::monitor::cli

@@ -1,0 +1,85 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include <cstdio>
+#include <memory>
+
+#include <unistd.h>
+
+#include "swarm_core/shell/stop_signal.hpp"
+#include "swarm_monitor/cli/commands.hpp"
+#include "swarm_monitor/recording/live_recorder.hpp"
+#include "swarm_monitor/recording/merge.hpp"
+#include "swarm_monitor/recording/replay.hpp"
+
+namespace swarm::monitor::cli {
+namespace {
+
+bool stop_requested() { return shell::stop_requests() > 0; }
+
+}  // namespace
+
+Command add_record(CLI::App& program) {
+  const auto o = std::make_shared<RecordOptions>();
+  o->stop_requested = stop_requested;
+  CLI::App* const record =
+      program.add_subcommand("record", "Record the bus of a run that flies, as it is");
+  record->add_option("run_dir", o->run_dir, "Directory of the run")->required();
+  record->add_option("--out", o->out, "Recording (default: bus.mcap in the run directory)")
+      ->type_name("FILE");
+  record->add_option("--duration-s", o->duration_s, "End after this long (default: with the run)")
+      ->check(CLI::PositiveNumber);
+  return {record, [o]() -> Result<ExitCode> {
+            const auto result = record_bus(*o);
+            if (!result) return tl::unexpected(result.error());
+            std::fputs(to_json(*result).c_str(), stdout);
+            return ExitCode::kOk;
+          }};
+}
+
+Command add_merge(CLI::App& program) {
+  struct Options {
+    std::filesystem::path run_dir, out;
+  };
+  const auto o = std::make_shared<Options>();
+  CLI::App* const merge = program.add_subcommand(
+      "merge", "Make one recording of a run's black boxes, recordings and files");
+  merge->add_option("run_dir", o->run_dir, "Directory of the run")->required();
+  merge->add_option("--out", o->out, "Recording (default: recording.mcap in the run directory)")
+      ->type_name("FILE");
+  return {merge, [o]() -> Result<ExitCode> {
+            const bool live = ::isatty(STDERR_FILENO) != 0;
+            const auto result = merge_run(o->run_dir, o->out, [live](double share) {
+              if (live) std::fprintf(stderr, "\rmerging: %3.0f %%", 100.0 * share);
+            });
+            if (live) std::fputs("\r\x1b[K", stderr);
+            if (!result) return tl::unexpected(result.error());
+            std::fputs(to_json(*result).c_str(), stdout);
+            return ExitCode::kOk;
+          }};
+}
+
+Command add_replay(CLI::App& program) {
+  const auto o = std::make_shared<ReplayOptions>();
+  o->stop_requested = stop_requested;
+  CLI::App* const replay_command = program.add_subcommand(
+      "replay", "Say a recording again on a bus of its own, for whoever joins its run directory");
+  replay_command->add_option("file", o->file, "Recording")->required()->type_name("FILE");
+  replay_command->add_option("--rate", o->rate, "Times as fast")->check(CLI::Range(0.01, 1000.0));
+  replay_command->add_option("--from", o->from_s, "Begin this many seconds after the first message")
+      ->check(CLI::NonNegativeNumber);
+  replay_command
+      ->add_option("--topics", o->topics, "Only topics that begin so, like swarm/,blackbox/step")
+      ->delimiter(',');
+  replay_command->add_option("--wait-s", o->wait_s, "Wait this long for somebody to listen")
+      ->check(CLI::NonNegativeNumber);
+  replay_command->add_option("--domain", o->domain, "DDS domain (default: a free one)")
+      ->check(CLI::Range(0, 229));
+  replay_command->add_option("--out", o->out, "Run directory (default: runs/replay-<time>)");
+  return {replay_command, [o]() -> Result<ExitCode> {
+            const auto done = replay(*o);
+            if (!done) return tl::unexpected(done.error());
+            return ExitCode::kOk;
+          }};
+}
+
+}  // namespace swarm::monitor::cli

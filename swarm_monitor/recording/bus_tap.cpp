@@ -1,0 +1,154 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "swarm_monitor/recording/bus_tap.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "swarm_core/base/clock.hpp"
+#include "swarm_core/blackbox/record_codec.hpp"
+#include "swarm_core/mcap/idl_text.hpp"
+#include "swarm_core/mission/mission_file.hpp"
+#include "swarm_link/groups/group_tap.hpp"
+#include "swarm_link/monitor_topics.hpp"
+#include "swarm_link/run_meeting.hpp"
+
+namespace swarm::monitor {
+namespace {
+
+constexpr std::int64_t kMostCells = 400;
+/// A writer's clock that is this far off is not believed.
+constexpr Duration kMostDelay = std::chrono::seconds(2);
+
+mcap::Schema schema_of(const std::string& type) {
+  std::string idl = mcap::wire_idl();
+  for (const blackbox::Kind& kind : blackbox::kinds()) {
+    if (kind.type == type) idl = mcap::blackbox_idl(kind.structs);
+  }
+  return {.name = type, .encoding = "omgidl", .data = std::move(idl)};
+}
+
+class RunTap final : public BusTap {
+ public:
+  explicit RunTap(std::unique_ptr<link::RawParticipant> participant)
+      : participant_(std::move(participant)) {}
+
+  Result<void> listen(const link::RawTopic& topic, std::uint32_t recorded) {
+    auto reader = participant_->make_reader(topic);
+    if (!reader) return tl::unexpected(reader.error());
+    readers_.push_back({recorded, std::move(*reader)});
+    return {};
+  }
+  void listen(std::unique_ptr<link::GroupTap> groups) { groups_ = std::move(groups); }
+
+  void take(Duration patience, const Sink& sink) override {
+    if (groups_) {
+      groups_->take_raw(patience, [&](std::span<const std::byte> bytes) {
+        const UtcTime now = utc_now();
+        sink({.topic = states_index(), .heard = now, .said = now, .bytes = as_chars(bytes)});
+      });
+    }
+    participant_->receive();
+    const UtcTime now = utc_now();
+    for (const auto& [topic, reader] : readers_) {
+      messages_.clear();
+      reader->take(messages_);
+      for (const link::RawMessage& message : messages_) {
+        const UtcTime said{Duration(message.said_utc_ns)};
+        const bool believed = said <= now && now - said < kMostDelay;
+        sink({.topic = topic,
+              .heard = now,
+              .said = believed ? said : now,
+              .bytes = as_chars(message.bytes)});
+      }
+    }
+  }
+
+  bool hears_somebody() const override {
+    return std::any_of(readers_.begin(), readers_.end(),
+                       [](const auto& reader) { return reader.second->matched() > 0; });
+  }
+
+ private:
+  static std::span<const unsigned char> as_chars(std::span<const std::byte> bytes) {
+    return {reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size()};
+  }
+
+  std::unique_ptr<link::RawParticipant> participant_;
+  std::unique_ptr<link::GroupTap> groups_;  // null: states go by topics
+  std::vector<std::pair<std::uint32_t, std::unique_ptr<link::RawReader>>> readers_;
+  std::vector<link::RawMessage> messages_;
+};
+
+/// Every cell of the map, and those around it.
+Result<void> listen_to_cells(RunTap& tap, const Mission& mission) {
+  const double size = mission.link.cell_size_m;
+  const link::Cell first = link::cell_of(mission.world.bounds_m().min_m - Vec2(size, size), size);
+  const link::Cell last = link::cell_of(mission.world.bounds_m().max_m + Vec2(size, size), size);
+  const std::int64_t cells =
+      (std::int64_t{last.x} - first.x + 1) * (std::int64_t{last.y} - first.y + 1);
+  if (cells > kMostCells) {
+    return fail(ErrorCode::kBadInput,
+                fmt::format("the map has {} cell topics, at most {} can be listened to: make "
+                            "link.cell_size_m larger, or fly with --channel groups",
+                            cells, kMostCells));
+  }
+  for (std::int32_t x = first.x; x <= last.x; ++x) {
+    for (std::int32_t y = first.y; y <= last.y; ++y) {
+      const auto topic = link::cell_topic({x, y});
+      link::RawTopic raw = link::states_topic().wire;
+      raw.name = topic.name;
+      raw.qos = topic.qos;
+      if (auto heard = tap.listen(raw, states_index()); !heard) return heard;
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+const std::vector<RecordedTopic>& recorded_topics() {
+  static const std::vector<RecordedTopic> kTopics = [] {
+    std::vector<RecordedTopic> topics;
+    for (const link::MonitorTopic& topic : link::monitor_topics()) {
+      topics.push_back({topic.recorded, schema_of(topic.wire.type)});
+    }
+    topics.push_back({link::states_topic().recorded, schema_of(link::states_topic().wire.type)});
+    return topics;
+  }();
+  return kTopics;
+}
+
+std::uint32_t states_index() { return static_cast<std::uint32_t>(recorded_topics().size() - 1); }
+
+Result<std::unique_ptr<BusTap>> tap_bus(const std::filesystem::path& run_dir,
+                                        std::uint32_t number) {
+  const auto mission = load_mission(run_dir / shell::kMissionFile);
+  if (!mission) return tl::unexpected(mission.error());
+  const auto run = shell::read_run_info(run_dir);
+  if (!run) return tl::unexpected(run.error());
+  auto participant = link::join_as_monitor(link::meeting_of(*run), run->agents, number);
+  if (!participant) return tl::unexpected(participant.error());
+  auto tap = std::make_unique<RunTap>(std::move(*participant));
+  std::uint32_t index = 0;
+  for (const link::MonitorTopic& topic : link::monitor_topics()) {
+    if (auto heard = tap->listen(topic.wire, index++); !heard) {
+      return tl::unexpected(heard.error());
+    }
+  }
+  if (auto heard = tap->listen(link::states_topic().wire, index); !heard) {
+    return tl::unexpected(heard.error());
+  }
+  if (run->channel == Channel::kGroups) {
+    auto groups = link::make_group_tap(run->domain);
+    if (!groups) return tl::unexpected(groups.error());
+    tap->listen(std::move(*groups));
+  } else if (auto heard = listen_to_cells(*tap, *mission); !heard) {
+    return tl::unexpected(heard.error());
+  }
+  return tap;
+}
+
+}  // namespace swarm::monitor

@@ -1,0 +1,98 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "swarm_monitor/recording/live_recorder.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include "swarm_core/base/clock.hpp"
+#include "swarm_core/mcap/writer.hpp"
+#include "swarm_core/mission/mission_file.hpp"
+#include "swarm_core/shell/run_directory.hpp"
+#include "swarm_link/cdr/codec.hpp"
+#include "swarm_monitor/recording/bus_tap.hpp"
+
+namespace swarm::monitor {
+namespace {
+
+constexpr Duration kPatience = std::chrono::milliseconds(5);
+constexpr Duration kFlushEvery = std::chrono::seconds(1);
+/// A run whose launcher was killed writes no summary: its recording ends when all is silent.
+constexpr Duration kSilence = std::chrono::seconds(20);
+constexpr std::size_t kMaxMissionBytes = 16U << 20U;
+
+std::int64_t ns(UtcTime time) { return time.time_since_epoch().count(); }
+
+}  // namespace
+
+Result<RecordResult> record_bus(const RecordOptions& options) {
+  const auto mission_yaml =
+      shell::read_file(options.run_dir / shell::kMissionFile, kMaxMissionBytes);
+  if (!mission_yaml) return tl::unexpected(mission_yaml.error());
+  const auto mission = parse_mission(*mission_yaml, std::string(shell::kMissionFile));
+  if (!mission) return tl::unexpected(mission.error());
+  auto tap = tap_bus(options.run_dir);
+  if (!tap) return tl::unexpected(tap.error());
+  RecordResult result{.file = options.out.empty() ? options.run_dir / "bus.mcap" : options.out,
+                      .by_topic = std::vector<std::uint64_t>(recorded_topics().size())};
+  auto writer = mcap::Writer::create(result.file);
+  if (!writer) return tl::unexpected(writer.error());
+  writer->add(mcap::Attachment{.log_time_ns = ns(utc_now()),
+                               .name = std::string(shell::kMissionFile),
+                               .media_type = "application/yaml",
+                               .data = *mission_yaml});
+  for (const RecordedTopic& topic : recorded_topics()) {
+    writer->add_channel(topic.name, topic.schema);
+  }
+
+  link::StreamMeter meter(mission->robots.count);
+  link::Codec<link::CellStatesMessage> codec;
+  link::CellStatesMessage states;
+  const UtcTime began = utc_now();
+  UtcTime heard_at = began, flushed_at = began;
+  for (;;) {
+    (*tap)->take(kPatience, [&](const TappedSample& sample) {
+      writer->write(static_cast<std::uint16_t>(sample.topic), ns(sample.heard), ns(sample.said),
+                    sample.bytes);
+      ++result.by_topic[sample.topic];
+      heard_at = sample.heard;
+      if (sample.topic != states_index()) return;
+      // Only to count what is missing; the file holds the bytes.
+      auto* bytes = reinterpret_cast<std::byte*>(const_cast<unsigned char*>(sample.bytes.data()));
+      if (!codec.decode({bytes, sample.bytes.size()}, states)) return;
+      for (const auto& state : states.states) meter.hear(state, sample.heard);
+    });
+    const UtcTime now = utc_now();
+    if (options.stop_requested && options.stop_requested()) break;
+    if (options.duration_s && to_seconds(now - began) >= *options.duration_s) break;
+    if (now - heard_at > kSilence) break;
+    if (now - flushed_at < kFlushEvery) continue;
+    flushed_at = now;
+    writer->flush();
+    if (std::filesystem::exists(options.run_dir / shell::kSummaryFile)) break;
+  }
+  const auto finished = writer->finish();
+  result.messages = writer->messages();
+  result.dropped = writer->dropped();
+  result.states = meter.counts();
+  if (!finished) return tl::unexpected(finished.error());
+  return result;
+}
+
+std::string to_json(const RecordResult& result) {
+  nlohmann::json topics;
+  for (std::size_t i = 0; i < result.by_topic.size(); ++i) {
+    if (result.by_topic[i] > 0) topics[recorded_topics()[i].name] = result.by_topic[i];
+  }
+  return nlohmann::json{{"file", result.file.string()},
+                        {"messages", result.messages},
+                        {"dropped_by_disk", result.dropped},
+                        {"states",
+                         {{"received", result.states.received},
+                          {"lost", result.states.lost},
+                          {"duplicates", result.states.duplicates}}},
+                        {"topics", topics}}
+             .dump(2) +
+         "\n";
+}
+
+}  // namespace swarm::monitor

@@ -1,0 +1,39 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "swarm_core/base/result.hpp"
+#include "swarm_core/base/time.hpp"
+#include "swarm_link/stream_meter.hpp"
+
+namespace swarm::monitor {
+
+struct RecordOptions {
+  std::filesystem::path run_dir;
+  std::filesystem::path out{};             ///< empty: bus.mcap in the run directory
+  std::optional<double> duration_s{};      ///< empty: until the run ends
+  std::function<bool()> stop_requested{};  ///< asked every few milliseconds
+};
+
+struct RecordResult {
+  std::filesystem::path file{};
+  std::uint64_t messages = 0;
+  std::uint64_t dropped = 0;            ///< messages that the disk did not take
+  link::StreamMeter::Counts states{};   ///< lost: by their numbers
+  std::vector<std::uint64_t> by_topic;  ///< as recorded_topics()
+};
+
+/// Records the bus of a run as it is. What was heard is on the disk a second later. `mission.yaml`
+/// of the run is attached.
+Result<RecordResult> record_bus(const RecordOptions& options);
+
+std::string to_json(const RecordResult& result);
+
+}  // namespace swarm::monitor

@@ -1,0 +1,170 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "swarm_monitor/recording/merge.hpp"
+
+#include <algorithm>
+#include <map>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "swarm_core/mcap/reader.hpp"
+#include "swarm_core/mcap/writer.hpp"
+#include "swarm_core/shell/run_directory.hpp"
+
+namespace swarm::monitor {
+namespace {
+
+constexpr std::size_t kMaxTextBytes = 256U << 20U;
+
+/// All messages of several files, in memory, to be put in order.
+class Pile {
+ public:
+  Result<mcap::Damage> add(const std::filesystem::path& file) {
+    return mcap::read(file,
+                      {.message = [&](const mcap::Message& message, const mcap::Channel& channel,
+                                      const mcap::Schema& schema) {
+                        entries_.push_back({.log_time_ns = message.log_time_ns,
+                                            .publish_time_ns = message.publish_time_ns,
+                                            .begin = bytes_.size(),
+                                            .size = static_cast<std::uint32_t>(message.data.size()),
+                                            .channel = number_of(channel, schema)});
+                        bytes_.insert(bytes_.end(), message.data.begin(), message.data.end());
+                      }});
+  }
+
+  void write(mcap::Writer& writer, const std::function<void(double)>& progress) {
+    // Files come one after the other, and in each its order is kept where stamps are equal.
+    std::stable_sort(entries_.begin(), entries_.end(),
+                     [](const Entry& a, const Entry& b) { return a.log_time_ns < b.log_time_ns; });
+    std::vector<std::uint16_t> numbers;
+    for (const auto& [channel, schema] : channels_) {
+      numbers.push_back(writer.add_channel(channel.topic, schema, channel.metadata));
+    }
+    for (std::size_t i = 0; i < entries_.size(); ++i) {
+      const Entry& entry = entries_[i];
+      writer.write(numbers[entry.channel], entry.log_time_ns, entry.publish_time_ns,
+                   std::span<const unsigned char>(bytes_).subspan(entry.begin, entry.size));
+      if (progress && i % 100'000 == 0) {
+        progress(static_cast<double>(i) / static_cast<double>(entries_.size()));
+      }
+    }
+  }
+
+  std::int64_t begin_ns() const {
+    std::int64_t begin = 0;
+    for (const Entry& entry : entries_) {
+      begin = &entry == &entries_.front() ? entry.log_time_ns : std::min(begin, entry.log_time_ns);
+    }
+    return begin;
+  }
+
+ private:
+  struct Entry {
+    std::int64_t log_time_ns = 0, publish_time_ns = 0;
+    std::size_t begin = 0;
+    std::uint32_t size = 0;
+    std::uint32_t channel = 0;
+  };
+
+  std::uint32_t number_of(const mcap::Channel& channel, const mcap::Schema& schema) {
+    const auto [it, added] = numbers_.try_emplace({channel.topic, schema.name},
+                                                  static_cast<std::uint32_t>(channels_.size()));
+    if (added) channels_.emplace_back(channel, schema);
+    return it->second;
+  }
+
+  mcap::Bytes bytes_;
+  std::vector<Entry> entries_;
+  std::map<std::pair<std::string, std::string>, std::uint32_t> numbers_;
+  std::vector<std::pair<mcap::Channel, mcap::Schema>> channels_;
+};
+
+std::vector<std::filesystem::path> files_in(const std::filesystem::path& folder,
+                                            const std::function<bool(const std::string&)>& wanted) {
+  std::vector<std::filesystem::path> files;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
+    if (entry.is_regular_file(error) && wanted(entry.path().filename().string())) {
+      files.push_back(entry.path());
+    }
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+bool is_attached(const std::string& name) {
+  return name == shell::kMissionFile || name == shell::kSceneFile || name == shell::kEventsFile ||
+         name == shell::kSummaryFile || name == shell::kRunFile || name == shell::kPlanStatsFile ||
+         (name.starts_with("plan") && name.ends_with(".json"));
+}
+
+std::string media_type_of(const std::string& name) {
+  return name.ends_with(".yaml") ? "application/yaml"
+         : name.ends_with("l")   ? "application/jsonl"
+                                 : "application/json";
+}
+
+}  // namespace
+
+Result<MergeResult> merge_run(const std::filesystem::path& run_dir,
+                              const std::filesystem::path& out,
+                              const std::function<void(double)>& progress) {
+  const auto boxes = files_in(run_dir / shell::kBlackboxFolder, [](const std::string& name) {
+    return name.starts_with("robot-") && name.ends_with(".mcap");
+  });
+  const auto recordings = files_in(run_dir, [](const std::string& name) {
+    return name.starts_with("bus") && name.ends_with(".mcap");
+  });
+  if (boxes.empty() && recordings.empty()) {
+    return fail(ErrorCode::kEnvironment,
+                fmt::format("{} holds no black box and no recording: is it a run directory?",
+                            run_dir.string()));
+  }
+  MergeResult result{.file = out.empty() ? run_dir / "recording.mcap" : out};
+  Pile pile;
+  const auto take = [&](const std::filesystem::path& file, std::uint32_t& count) {
+    const auto damage = pile.add(file);
+    if (!damage) {
+      ++result.damaged;  // not a recording at all
+      return;
+    }
+    ++count;
+    result.damaged += damage->damaged;
+    result.unended += damage->ended ? 0 : 1;
+  };
+  for (const auto& box : boxes) take(box, result.boxes);
+  for (const auto& recording : recordings) take(recording, result.recordings);
+
+  auto writer = mcap::Writer::create(result.file);
+  if (!writer) return tl::unexpected(writer.error());
+  const std::int64_t begin_ns = pile.begin_ns();
+  writer->add(mcap::Metadata{.name = "swarmflow",
+                             .values = {{"version", SWARM_VERSION},
+                                        {"boxes", fmt::format("{}", result.boxes)},
+                                        {"unended", fmt::format("{}", result.unended)},
+                                        {"damaged", fmt::format("{}", result.damaged)}}});
+  for (const auto& file : files_in(run_dir, is_attached)) {
+    const auto text = shell::read_file(file, kMaxTextBytes);
+    if (!text) continue;
+    const std::string name = file.filename().string();
+    writer->add(mcap::Attachment{
+        .log_time_ns = begin_ns, .name = name, .media_type = media_type_of(name), .data = *text});
+  }
+  pile.write(*writer, progress);
+  const auto finished = writer->finish();
+  result.messages = writer->messages();
+  if (!finished) return tl::unexpected(finished.error());
+  return result;
+}
+
+std::string to_json(const MergeResult& result) {
+  return nlohmann::json{{"file", result.file.string()}, {"messages", result.messages},
+                        {"boxes", result.boxes},        {"recordings", result.recordings},
+                        {"unended", result.unended},    {"damaged", result.damaged}}
+             .dump(2) +
+         "\n";
+}
+
+}  // namespace swarm::monitor

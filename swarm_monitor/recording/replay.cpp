@@ -1,0 +1,139 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "swarm_monitor/recording/replay.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <thread>
+
+#include <fmt/format.h>
+
+#include "swarm_core/base/clock.hpp"
+#include "swarm_core/shell/run_dir.hpp"
+#include "swarm_core/shell/run_directory.hpp"
+#include "swarm_link/domain_lock.hpp"
+#include "swarm_link/monitor_topics.hpp"
+#include "swarm_link/run_meeting.hpp"
+#include "swarm_monitor/recording/bus_tap.hpp"
+
+namespace swarm::monitor {
+namespace {
+
+constexpr Duration kStep = std::chrono::milliseconds(20);
+/// For who hears last what was said last.
+constexpr Duration kLinger = std::chrono::seconds(1);
+
+/// A writer for every topic, at the place of who said it.
+class Cast {
+ public:
+  static Result<Cast> join(const shell::RunInfo& run) {
+    auto stage = link::join_as_stage(link::meeting_of(run));
+    if (!stage) return tl::unexpected(stage.error());
+    Cast cast;
+    cast.stage_ = std::move(*stage);
+    std::vector<link::MonitorTopic> topics = link::monitor_topics();
+    topics.push_back(link::states_topic());
+    for (const link::MonitorTopic& topic : topics) {
+      const bool planner = topic.recorded == "swarm/plan" || topic.recorded == "swarm/heartbeat";
+      auto writer = (planner ? cast.stage_.planner : cast.stage_.launcher)->make_writer(topic.wire);
+      if (!writer) return tl::unexpected(writer.error());
+      cast.writers_.push_back(std::move(*writer));
+    }
+    return cast;
+  }
+
+  bool is_heard() const {
+    return std::all_of(writers_.begin(), writers_.end(),
+                       [](const auto& writer) { return writer->matched() > 0; });
+  }
+
+  bool say(std::uint32_t topic, std::span<const unsigned char> bytes) {
+    const auto* begin = reinterpret_cast<const std::byte*>(bytes.data());
+    message_.bytes.assign(begin, begin + bytes.size());
+    return writers_[topic]->write(message_);
+  }
+
+  void receive() {
+    stage_.launcher->receive();
+    stage_.planner->receive();
+  }
+
+ private:
+  link::Stage stage_;
+  std::vector<std::unique_ptr<link::RawWriter>> writers_;
+  link::RawMessage message_;
+};
+
+Result<void> write_attachments(const Score& score, const std::filesystem::path& dir) {
+  bool has_mission = false;
+  for (const mcap::Attachment& attachment : score.attachments) {
+    const std::filesystem::path name(attachment.name);
+    // The run directory has its own, and a recording must not write where it likes.
+    if (name != name.filename() || name == shell::kRunFile || name == shell::kSummaryFile) continue;
+    if (auto written = shell::write_file(dir / name, attachment.data); !written) return written;
+    has_mission = has_mission || attachment.name == shell::kMissionFile;
+  }
+  if (has_mission) return {};
+  return fail(
+      ErrorCode::kBadInput,
+      fmt::format("the recording holds no {}: nobody could join its replay", shell::kMissionFile));
+}
+
+std::string summary_of(const Score& score) {
+  for (const mcap::Attachment& attachment : score.attachments) {
+    if (attachment.name == shell::kSummaryFile) return attachment.data;
+  }
+  return "{\"outcome\": \"replayed\"}\n";
+}
+
+}  // namespace
+
+Result<void> replay(const ReplayOptions& options) {
+  const auto score = read_score(options.file, options.from_s, options.topics);
+  if (!score) return tl::unexpected(score.error());
+  const link::Meeting star{.hubs = 1};
+  const auto lock = link::DomainLock::take(options.domain, link::participants_for(star, 0));
+  if (!lock) return tl::unexpected(lock.error());
+  const auto dir = shell::make_run_dir(options.out, "replay");
+  if (!dir) return tl::unexpected(dir.error());
+  if (auto written = write_attachments(*score, *dir); !written) return written;
+  const shell::RunInfo run{
+      .domain = lock->domain(), .hubs = 1, .channel = Channel::kGroups, .began = utc_now()};
+  auto cast = Cast::join(run);
+  if (!cast) return tl::unexpected(cast.error());
+  if (auto written = shell::write_run_info(*dir, run); !written) return written;
+  std::fprintf(stderr, "run directory: %s\n%zu messages, %llu of other topics left out\n",
+               dir->c_str(), score->messages.size(),
+               static_cast<unsigned long long>(score->foreign));
+
+  const auto stopped = [&] { return options.stop_requested && options.stop_requested(); };
+  const auto waits_until = std::chrono::steady_clock::now() + from_seconds(options.wait_s);
+  while (!cast->is_heard() && std::chrono::steady_clock::now() < waits_until && !stopped()) {
+    cast->receive();
+    std::this_thread::sleep_for(kStep);
+  }
+  const auto begin = std::chrono::steady_clock::now();
+  std::uint64_t refused = 0;
+  for (const ReplayMessage& message : score->messages) {
+    const auto at = begin + std::chrono::duration_cast<Duration>(message.at / options.rate);
+    while (!stopped() && std::chrono::steady_clock::now() < at) {
+      cast->receive();
+      std::this_thread::sleep_until(std::min(at, std::chrono::steady_clock::now() + kStep));
+    }
+    if (stopped()) break;
+    const auto bytes = std::span<const unsigned char>(score->bytes);
+    if (!cast->say(message.topic, bytes.subspan(message.begin, message.size))) ++refused;
+  }
+  const auto ends = std::chrono::steady_clock::now() + kLinger;
+  while (std::chrono::steady_clock::now() < ends) {
+    cast->receive();
+    std::this_thread::sleep_for(kStep);
+  }
+  if (auto written = shell::write_file(*dir / shell::kSummaryFile, summary_of(*score)); !written) {
+    return written;
+  }
+  if (refused == 0) return {};
+  return fail(ErrorCode::kEnvironment, fmt::format("DDS refused {} messages", refused));
+}
+
+}  // namespace swarm::monitor

@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "swarm_core/base/result.hpp"
+#include "swarm_core/base/time.hpp"
+#include "swarm_core/mcap/format.hpp"
+
+namespace swarm::monitor {
+
+/// A message of a recording, to be said again `at` after its begin.
+struct ReplayMessage {
+  Duration at{};
+  std::uint32_t topic = 0;  ///< as recorded_topics()
+  std::uint32_t size = 0;
+  std::size_t begin = 0;  ///< in Score::bytes
+};
+
+/// What a replay says and when: in every topic in the order of the file, at the times its writer
+/// had said it; a writer's clock that steps back stands still instead.
+struct Score {
+  std::vector<ReplayMessage> messages{};  ///< in the order of `at`
+  mcap::Bytes bytes{};
+  std::vector<mcap::Attachment> attachments{};
+  std::uint64_t foreign = 0;  ///< messages of topics that are not ours: left out
+  std::uint64_t damaged = 0;
+};
+
+/// `topics`: those that begin with one of these; empty: all. Messages before `from_s` are left out,
+/// but for the last of each latched topic (plan, scene, command), which comes first.
+Result<Score> read_score(const std::filesystem::path& file, double from_s,
+                         const std::vector<std::string>& topics);
+
+struct ReplayOptions {
+  std::filesystem::path file;
+  std::filesystem::path out{};  ///< its run directory; empty: runs/replay-<time>
+  double rate = 1.0;
+  double from_s = 0.0;
+  std::vector<std::string> topics{};
+  int domain = -1;      ///< negative: a free one
+  double wait_s = 5.0;  ///< for somebody to listen
+  std::function<bool()> stop_requested{};
+};
+
+/// Says a recording again on a bus of its own, from the places of launcher and planner, with a run
+/// directory by which others join as they join a run: record, view, or an agent. Their clocks tell
+/// the time of the replay; stamps inside messages stay as they were.
+Result<void> replay(const ReplayOptions& options);
+
+}  // namespace swarm::monitor
