@@ -4,12 +4,12 @@
 
 #include <cstdio>
 
-#include "swarm_launcher/control_socket.hpp"
+#include "swarm_core/shell/control_socket.hpp"
 
 namespace swarm::launcher {
 
 Result<ExitCode> command_mission(const std::filesystem::path& run_dir, const std::string& line) {
-  const auto done = send_command(
+  const auto done = shell::send_command(
       run_dir, line, [](const std::string& answer) { std::printf("%s\n", answer.c_str()); });
   if (!done) return tl::unexpected(done.error());
   return *done ? ExitCode::kOk : ExitCode::kCriteriaNotMet;

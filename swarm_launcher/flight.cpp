@@ -15,10 +15,10 @@
 #include "swarm_core/mission/mission_file.hpp"
 #include "swarm_core/mission/placement.hpp"
 #include "swarm_core/mission/scene_change_file.hpp"
+#include "swarm_core/shell/run_dir.hpp"
 #include "swarm_core/shell/run_directory.hpp"
 #include "swarm_core/shell/stop_signal.hpp"
 #include "swarm_launcher/child_process.hpp"
-#include "swarm_core/shell/run_dir.hpp"
 #include "swarm_link/monitor_topics.hpp"
 #include "swarm_link/run_meeting.hpp"
 #include "swarm_link/udp_socket.hpp"
@@ -156,7 +156,7 @@ Result<void> Flight::join() {
   status_relay_ = std::move(*status_relay);
   event_relay_ = std::move(*event_relay);
   scene_.emplace(options_.mission.world, dir_, std::move(*scene));
-  auto control = ControlServer::listen(dir_);
+  auto control = shell::ControlServer::listen(dir_);
   if (!control) return tl::unexpected(control.error());
   control_.emplace(std::move(*control));
 
@@ -265,7 +265,7 @@ void Flight::reap(SteadyTime now) {
   }
 }
 
-void Flight::serve(const ControlServer::Request& request, SteadyTime now) {
+void Flight::serve(const shell::ControlServer::Request& request, SteadyTime now) {
   const std::size_t space = std::min(request.line.find(' '), request.line.size());
   const std::string word = request.line.substr(0, space);
   for (const CommandKind kind :
@@ -288,7 +288,7 @@ void Flight::serve(const ControlServer::Request& request, SteadyTime now) {
 }
 
 void Flight::serve_control(SteadyTime now) {
-  for (const ControlServer::Request& request : control_->poll()) serve(request, now);
+  for (const shell::ControlServer::Request& request : control_->poll()) serve(request, now);
   if (stopping_.empty() || supervisor_->phase() != MissionPhase::kStopped) return;
   const auto unstopped = supervisor_->unstopped();
   if (!unstopped.empty() && supervisor_->stage() != Supervisor::Stage::kEnding) return;
@@ -296,7 +296,7 @@ void Flight::serve_control(SteadyTime now) {
       unstopped.empty()
           ? fmt::format("done: {} robots confirmed the stop", supervisor_->counts().stopped)
           : "failed: stop not confirmed by robots " + describe(unstopped);
-  for (const ControlServer::ClientId client : stopping_) control_->answer(client, answer);
+  for (const shell::ControlServer::ClientId client : stopping_) control_->answer(client, answer);
   stopping_.clear();
 }
 

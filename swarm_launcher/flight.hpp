@@ -15,10 +15,10 @@
 #include "swarm_core/base/result.hpp"
 #include "swarm_core/mission/channel.hpp"
 #include "swarm_core/mission/mission.hpp"
+#include "swarm_core/shell/control_socket.hpp"
 #include "swarm_core/shell/run_directory.hpp"
 #include "swarm_launcher/agent_dds.hpp"
 #include "swarm_launcher/channel_choice.hpp"
-#include "swarm_launcher/control_socket.hpp"
 #include "swarm_launcher/event_log.hpp"
 #include "swarm_launcher/gateway.hpp"
 #include "swarm_launcher/hosts/remote_hosts.hpp"
@@ -97,7 +97,7 @@ class Flight {
   void bring_boxes_home();
   void send(CommandKind kind);
   Result<std::string> change(const SceneChange& change);
-  void serve(const ControlServer::Request& request, SteadyTime now);
+  void serve(const shell::ControlServer::Request& request, SteadyTime now);
   void reap(SteadyTime now);
   void read_bus(SteadyTime now);
   void serve_control(SteadyTime now);
@@ -118,10 +118,11 @@ class Flight {
   link::WriterPtr<link::CommandMessage> command_writer_;
   link::WriterPtr<link::StatusMessage> status_relay_;  // for monitors
   link::WriterPtr<link::EventMessage> event_relay_;
-  std::optional<ControlServer> control_;
+  std::optional<shell::ControlServer> control_;
   std::optional<RemoteHosts> hosts_;
   std::optional<GatewayKeeper> gateway_;
-  std::vector<ControlServer::ClientId> stopping_;  // clients who wait for a stop to be confirmed
+  std::vector<shell::ControlServer::ClientId>
+      stopping_;  // clients who wait for a stop to be confirmed
   std::optional<SceneKeeper> scene_;
   std::optional<Supervisor> supervisor_;
   SwarmView view_;

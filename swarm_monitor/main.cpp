@@ -10,13 +10,14 @@ int main(int argc, char** argv) {
     CLI::App app(
         "Looks at a swarm that flies or has flown, records it and judges it.\n"
         "  swarm_monitor audit RUN_DIR    exits with 0 if the mission met its criteria, else 1\n"
-        "  swarm_monitor report RUN_DIR   writes report.html and paths.svg into it",
+        "  swarm_monitor report RUN_DIR   writes report.html and paths.svg into it\n"
+        "  swarm_monitor view RUN_DIR     shows it in the browser, while it flies or afterwards",
         "swarm_monitor");
     app.require_subcommand(1);
     shell::add_common_options(app);
     using namespace monitor::cli;
-    const Command commands[] = {add_audit(app), add_report(app), add_record(app), add_merge(app),
-                                add_replay(app)};
+    const Command commands[] = {add_audit(app),  add_report(app), add_record(app), add_merge(app),
+                                add_replay(app), add_view(app),   add_top(app)};
     const auto done = shell::parse(app, argc, argv);
     if (!done) return tl::unexpected(done.error());
     if (*done) return **done;

@@ -77,7 +77,8 @@ void TrackMaker::take(const blackbox::Step& step) {
   track_.points.push_back({.time_s = time_s,
                            .position_m = step.position_m,
                            .mode = static_cast<RobotMode>(step.mode),
-                           .goal = step.goal});
+                           .goal = step.goal,
+                           .neighbours = step.neighbours});
 }
 
 void TrackMaker::take(const blackbox::Belief& belief) {

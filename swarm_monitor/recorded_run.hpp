@@ -20,6 +20,7 @@ struct TrackPoint {
   Vec2 position_m = Vec2::Zero();
   RobotMode mode = RobotMode::kWaiting;
   std::uint8_t goal = blackbox::Step::kNoGoal;
+  std::uint16_t neighbours = 0;  ///< it believed near
 };
 
 /// Where a robot took another to be.

@@ -21,5 +21,7 @@ Command add_report(CLI::App& program);
 Command add_record(CLI::App& program);
 Command add_merge(CLI::App& program);
 Command add_replay(CLI::App& program);
+Command add_view(CLI::App& program);
+Command add_top(CLI::App& program);
 
 }  // namespace swarm::monitor::cli

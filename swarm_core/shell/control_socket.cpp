@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-#include "swarm_launcher/control_socket.hpp"
+#include "swarm_core/shell/control_socket.hpp"
 
 #include <algorithm>
 #include <array>
@@ -19,7 +19,7 @@
 
 #include "swarm_core/shell/run_directory.hpp"
 
-namespace swarm::launcher {
+namespace swarm::shell {
 namespace {
 
 constexpr int kAnswerTimeout_ms = 15'000;
@@ -31,7 +31,7 @@ class ShortAddress {
   explicit ShortAddress(const std::filesystem::path& run_dir)
       : dir_fd_(::open(run_dir.c_str(), O_DIRECTORY | O_PATH | O_CLOEXEC)) {
     address_.sun_family = AF_UNIX;
-    const std::string path = fmt::format("/proc/self/fd/{}/{}", dir_fd_, shell::kControlSocket);
+    const std::string path = fmt::format("/proc/self/fd/{}/{}", dir_fd_, kControlSocket);
     path.copy(address_.sun_path, sizeof(address_.sun_path) - 1);
   }
   ~ShortAddress() {
@@ -57,7 +57,7 @@ void send_line(int fd, const std::string& line) {
 
 Result<ControlServer> ControlServer::listen(const std::filesystem::path& run_dir) {
   ControlServer server;
-  server.socket_ = run_dir / shell::kControlSocket;
+  server.socket_ = run_dir / kControlSocket;
   ::unlink(server.socket_.c_str());
   server.listen_fd_ = ::socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
   const ShortAddress address(run_dir);
@@ -159,4 +159,4 @@ Result<bool> send_command(const std::filesystem::path& run_dir, const std::strin
   return last.starts_with("done");
 }
 
-}  // namespace swarm::launcher
+}  // namespace swarm::shell

@@ -14,7 +14,7 @@
 /// directory: the launcher is matched with every agent already, so a stop goes out at once.
 /// Line-based: the client sends one line, a word and its arguments; the server answers with lines
 /// of text; the last starts with "done" or "failed".
-namespace swarm::launcher {
+namespace swarm::shell {
 
 class ControlServer {
  public:
@@ -55,4 +55,4 @@ class ControlServer {
 Result<bool> send_command(const std::filesystem::path& run_dir, const std::string& line,
                           const std::function<void(const std::string&)>& on_line);
 
-}  // namespace swarm::launcher
+}  // namespace swarm::shell

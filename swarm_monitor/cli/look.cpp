@@ -1,0 +1,132 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+#include <optional>
+#include <thread>
+
+#include <fmt/format.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include "swarm_core/base/clock.hpp"
+#include "swarm_core/shell/run_directory.hpp"
+#include "swarm_core/shell/stop_signal.hpp"
+#include "swarm_monitor/cli/commands.hpp"
+#include "swarm_monitor/view/live_source.hpp"
+#include "swarm_monitor/view/recorded_source.hpp"
+#include "swarm_monitor/view/remote_control.hpp"
+#include "swarm_monitor/view/top_text.hpp"
+#include "swarm_monitor/view/view_server.hpp"
+
+namespace swarm::monitor::cli {
+namespace {
+
+constexpr Duration kPatience = std::chrono::milliseconds(10);
+/// Places among those who look on at a run: recorder 0, view 1, top 2.
+constexpr std::uint32_t kViewNumber = 1;
+constexpr std::uint32_t kTopNumber = 2;
+
+struct ViewOptions {
+  std::filesystem::path from;
+  ViewServerOptions server{};
+};
+
+bool flies(const std::filesystem::path& from) {
+  return std::filesystem::is_directory(from) &&
+         !std::filesystem::exists(from / shell::kSummaryFile);
+}
+
+Result<ExitCode> serve(ViewServerOptions options, ViewSource& source) {
+  const auto server = ViewServer::make(options, source);
+  if (!server) return tl::unexpected(server.error());
+  std::printf("http://%s:%u/%s%s\n", options.address.c_str(), (*server)->port(),
+              options.token.empty() ? "" : "#token=", options.token.c_str());
+  std::fflush(stdout);
+  while (shell::stop_requests() == 0) (*server)->serve(kPatience);
+  return ExitCode::kOk;
+}
+
+Result<ExitCode> view(ViewOptions options) {
+  if (!flies(options.from)) {
+    if (options.server.allow_control) {
+      return fail(ErrorCode::kBadInput, "--allow-control: this run has ended");
+    }
+    auto run = read_run(options.from);
+    if (!run) return tl::unexpected(run.error());
+    RecordedSource source(std::move(*run));
+    return serve(options.server, source);
+  }
+  auto source = look_at_run(options.from, kViewNumber, options.server.allow_control);
+  if (!source) return tl::unexpected(source.error());
+  std::optional<RemoteControl> control;
+  if (options.server.allow_control) {
+    control.emplace(options.from, **source);
+    options.server.token = make_token();
+    options.server.control = [&](const ControlRequest& request) { return control->ask(request); };
+  }
+  return serve(options.server, **source);
+}
+
+Result<ExitCode> top(const std::filesystem::path& run_dir) {
+  auto source = look_at_run(run_dir, kTopNumber);
+  if (!source) return tl::unexpected(source.error());
+  const bool live = ::isatty(STDOUT_FILENO) != 0;
+  TopFacts facts{.name = (*source)->mission().name};
+  std::uint64_t received = 0;
+  UtcTime shown = utc_now();
+  while (shell::stop_requests() == 0) {
+    std::this_thread::sleep_for(kPatience);
+    const UtcTime now = utc_now();
+    (*source)->poll(now);
+    if (now - shown < std::chrono::seconds(1)) continue;
+    const std::uint64_t all = (*source)->state().meter().counts().received;
+    facts.states_hz = static_cast<double>(all - received) / to_seconds(now - shown);
+    facts.latency = (*source)->state().meter().latency();
+    winsize window{};
+    if (live && ::ioctl(STDOUT_FILENO, TIOCGWINSZ, &window) == 0 && window.ws_row > 0) {
+      facts.rows = static_cast<std::size_t>(std::max(3, window.ws_row - 11));
+    }
+    received = all;
+    shown = now;
+    std::fputs(live ? "\x1b[H\x1b[J" : "", stdout);
+    std::fputs(top_text((*source)->state(), facts, now).c_str(), stdout);
+    std::fflush(stdout);
+    if (std::filesystem::exists(run_dir / shell::kSummaryFile)) break;
+  }
+  return ExitCode::kOk;
+}
+
+}  // namespace
+
+Command add_view(CLI::App& program) {
+  const auto o = std::make_shared<ViewOptions>();
+  CLI::App* const command = program.add_subcommand(
+      "view", "Show a run in the browser; also for Foxglove, and metrics for Prometheus");
+  command->add_option("run", o->from, "Directory of a run, or a recording")
+      ->required()
+      ->check(CLI::ExistingPath)
+      ->type_name("RUN_DIR|FILE");
+  command->add_option("--address", o->server.address, "Of the interface to listen at")
+      ->check(CLI::ValidIPV4)
+      ->capture_default_str();
+  command->add_option("--port", o->server.port, "To listen at (default: a free one)");
+  command->add_option("--host-name", o->server.host_names,
+                      "Name, beside addresses and this machine's own, under which it is opened");
+  command->add_flag("--allow-control", o->server.allow_control,
+                    "Let who has the printed address pause, stop and change the mission");
+  return {command, [o] { return view(*o); }};
+}
+
+Command add_top(CLI::App& program) {
+  const auto run_dir = std::make_shared<std::filesystem::path>();
+  CLI::App* const command =
+      program.add_subcommand("top", "Show a run that flies in the terminal, once a second");
+  command->add_option("run_dir", *run_dir, "Directory of the run")
+      ->required()
+      ->check(CLI::ExistingDirectory);
+  return {command, [run_dir] { return top(*run_dir); }};
+}
+
+}  // namespace swarm::monitor::cli

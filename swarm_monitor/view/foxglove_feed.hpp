@@ -1,0 +1,51 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "swarm_core/base/time.hpp"
+#include "swarm_monitor/view/foxglove_session.hpp"
+#include "swarm_monitor/view/view_source.hpp"
+
+namespace swarm::monitor {
+
+/// What Foxglove clients see of a source: three channels of Foxglove's own schemas, then the raw
+/// ones as they are. Of every channel the newest sample is kept for who subscribes later: a plan
+/// may come once in a run.
+class FoxgloveFeed {
+ public:
+  explicit FoxgloveFeed(ViewSource& source);
+  ~FoxgloveFeed();
+  FoxgloveFeed(const FoxgloveFeed&) = delete;
+  FoxgloveFeed& operator=(const FoxgloveFeed&) = delete;
+
+  const std::vector<FoxgloveChannel>& channels() const { return channels_; }
+  FoxgloveSample newest(std::uint32_t channel) const;
+
+  /// To be called after the source's poll(): hands what is new to the sessions.
+  void step(UtcTime now, std::span<FoxgloveSession* const> sessions);
+
+ private:
+  void take_raw(const RawSample& sample);
+  void take_channels();
+  void take_obstacles(UtcTime now);
+  void take_picture(UtcTime now, bool robots, bool mixture);
+  void set(std::uint32_t channel, UtcTime stamp, std::vector<std::byte> bytes);
+
+  ViewSource& source_;
+  std::vector<FoxgloveChannel> channels_;
+  std::vector<FoxgloveSample> newest_;
+  std::vector<bool> fresh_;
+  std::size_t raw_known_ = 0;
+  std::size_t scenes_seen_ = 0;
+  std::optional<UtcTime> raw_time_;  // of the newest raw sample
+  UtcTime next_picture_{};
+  std::vector<std::byte> picture_;
+};
+
+}  // namespace swarm::monitor

@@ -1,0 +1,26 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <string_view>
+#include <vector>
+
+#include "swarm_core/base/time.hpp"
+#include "swarm_monitor/view/picture_reader.hpp"
+
+/// Foxglove's schemas as CDR.
+namespace swarm::monitor::foxglove {
+
+using Bytes = std::vector<std::byte>;
+
+/// foxglove::PosesInFrame: who was heard of.
+Bytes poses_in_frame(UtcTime now, const Picture& picture);
+
+/// foxglove::SceneUpdate: an ellipse of two standard deviations for every component.
+Bytes mixture_scene(UtcTime now, const Picture& picture);
+
+/// foxglove::SceneUpdate: the obstacles of a `scene` message (PROTOCOL.md).
+Bytes obstacles_scene(UtcTime now, std::string_view scene_json);
+
+}  // namespace swarm::monitor::foxglove

@@ -1,0 +1,104 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "swarm_core/base/result.hpp"
+#include "swarm_core/base/time.hpp"
+#include "swarm_monitor/view/session.hpp"
+
+namespace swarm::monitor {
+
+/// What a client can subscribe to. Channels are numbered in their order, from 0.
+struct FoxgloveChannel {
+  std::string topic{};
+  std::string schema_name{};
+  std::string schema{};  ///< OMG IDL; the encoding is CDR
+};
+
+/// A message that any number of clients have yet to get.
+struct FoxgloveSample {
+  UtcTime stamp{};
+  std::shared_ptr<const std::vector<std::byte>> bytes{};  ///< null: none
+};
+
+struct SubscribeRequest {
+  struct One {
+    std::uint32_t id = 0;
+    std::uint32_t channel = 0;
+  };
+  std::vector<One> subscriptions{};
+};
+
+struct UnsubscribeRequest {
+  std::vector<std::uint32_t> ids{};
+};
+
+/// Part of the protocol, but of no capability that was announced.
+struct UnsupportedRequest {
+  std::string op{};
+};
+
+using FoxgloveRequest = std::variant<SubscribeRequest, UnsubscribeRequest, UnsupportedRequest>;
+
+/// What a text frame of a Foxglove client asks for. Any bytes may come.
+Result<FoxgloveRequest> parse_foxglove_request(std::string_view text);
+
+/// A client that speaks Foxglove's WebSocket protocol. It sees, and can do nothing.
+class FoxgloveSession final : public Session {
+ public:
+  /// What a new subscriber gets at once; called with the channel.
+  using Newest = std::function<FoxgloveSample(std::uint32_t)>;
+
+  FoxgloveSession(const std::vector<FoxgloveChannel>& channels, std::string session_id,
+                  Newest newest, ViewCounters& counters)
+      : Session(counters),
+        channels_(channels),
+        session_id_(std::move(session_id)),
+        newest_(std::move(newest)) {}
+
+  std::size_t max_frame() const override { return 64 * 1024; }
+  void take(std::string_view frame, bool binary) override;
+  void refuse(const std::string& why) override;
+  bool has_something() const override;
+  bool next(Outgoing& out) override;
+
+  bool subscribed(std::uint32_t channel) const;
+  /// Takes the place of what this client has not got yet of the channel.
+  void offer(std::uint32_t channel, const FoxgloveSample& sample);
+  void tell_time(UtcTime now) { time_ = now; }
+
+ private:
+  struct Subscription {
+    std::uint32_t id = 0;
+    std::uint32_t channel = 0;
+    FoxgloveSample pending{};
+  };
+
+  void subscribe(const SubscribeRequest& request);
+  void unsubscribe(const UnsubscribeRequest& request);
+  void status(int level, const std::string& message);
+  void advertise(Outgoing& out);
+  bool next_sample(Outgoing& out);
+
+  const std::vector<FoxgloveChannel>& channels_;
+  std::string session_id_;
+  Newest newest_;
+  bool greeted_ = false;
+  std::size_t advertised_ = 0;
+  std::deque<std::string> statuses_;
+  std::optional<UtcTime> time_;
+  std::vector<Subscription> subscriptions_;
+  std::size_t turn_ = 0;  // no channel waits for ever behind another
+};
+
+}  // namespace swarm::monitor

@@ -1,0 +1,85 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "swarm_monitor/view/http_reply.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <utility>
+
+#include <libwebsockets.h>
+
+#include "swarm_monitor/view/page_files.hpp"
+
+namespace swarm::monitor {
+namespace {
+
+constexpr std::size_t kPart = 16 * 1024;
+constexpr int kPatience_s = 20;  // for a part
+
+}  // namespace
+
+HttpReply HttpReply::text(int status, std::string body) {
+  HttpReply reply;
+  reply.status_ = status;
+  reply.mime_ = "text/plain; charset=utf-8";
+  reply.own_ = std::move(body);
+  return reply;
+}
+
+HttpReply HttpReply::file(std::string_view mime, std::span<const unsigned char> bytes) {
+  HttpReply reply;
+  reply.mime_ = mime;
+  reply.shared_ = {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+  return reply;
+}
+
+bool HttpReply::begin(lws* socket) const {
+  std::array<unsigned char, LWS_PRE + 2048> buffer{};
+  unsigned char* const begin = buffer.data() + LWS_PRE;
+  unsigned char* const end = buffer.data() + buffer.size() - 1;
+  unsigned char* at = begin;
+  if (lws_add_http_common_headers(socket, static_cast<unsigned>(status_), mime_.c_str(),
+                                  body().size(), &at, end) != 0) {
+    return false;
+  }
+  constexpr std::string_view kMethods = "GET";
+  if (status_ == HTTP_STATUS_METHOD_NOT_ALLOWED &&
+      lws_add_http_header_by_name(socket, reinterpret_cast<const unsigned char*>("allow:"),
+                                  reinterpret_cast<const unsigned char*>(kMethods.data()),
+                                  static_cast<int>(kMethods.size()), &at, end) != 0) {
+    return false;
+  }
+  if (lws_finalize_write_http_header(socket, begin, &at, end) != 0) return false;
+  lws_callback_on_writable(socket);
+  return true;
+}
+
+bool HttpReply::go_on(lws* socket) {
+  std::array<unsigned char, LWS_PRE + kPart> buffer;
+  const std::size_t size = std::min(kPart, body().size() - sent_);
+  const bool last = sent_ + size == body().size();
+  std::memcpy(buffer.data() + LWS_PRE, body().data() + sent_, size);
+  lws_set_timeout(socket, PENDING_TIMEOUT_HTTP_CONTENT, kPatience_s);
+  if (lws_write(socket, buffer.data() + LWS_PRE, size,
+                last ? LWS_WRITE_HTTP_FINAL : LWS_WRITE_HTTP) < static_cast<int>(size)) {
+    return false;
+  }
+  sent_ += size;
+  if (!last) {
+    lws_callback_on_writable(socket);
+    return true;
+  }
+  // What comes after a request that was not understood is not understood either.
+  return status_ == HTTP_STATUS_OK && lws_http_transaction_completed(socket) == 0;
+}
+
+HttpReply page_reply(std::string_view path) {
+  const auto files = page_files();
+  const auto file = std::find_if(files.begin(), files.end(),
+                                 [&](const PageFile& known) { return known.path == path; });
+  if (file == files.end()) return HttpReply::text(HTTP_STATUS_NOT_FOUND, "not found\n");
+  return HttpReply::file(file->mime, file->bytes);
+}
+
+}  // namespace swarm::monitor

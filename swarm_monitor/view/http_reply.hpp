@@ -1,0 +1,40 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <string_view>
+
+struct lws;
+
+namespace swarm::monitor {
+
+/// The answer to one HTTP request, on its way out in parts.
+class HttpReply {
+ public:
+  static HttpReply text(int status, std::string body);
+  /// `bytes` stay where they are until the answer is out.
+  static HttpReply file(std::string_view mime, std::span<const unsigned char> bytes);
+
+  int status() const { return status_; }
+  /// False: the connection is to be closed.
+  bool begin(lws* socket) const;
+  bool go_on(lws* socket);
+
+ private:
+  std::string_view body() const { return shared_.empty() ? own_ : shared_; }
+
+  int status_ = 200;
+  std::string mime_;
+  std::string own_;
+  std::string_view shared_;
+  std::size_t sent_ = 0;
+};
+
+/// What "GET /name" of the embedded files answers; only exact names of files are known, so that no
+/// path leads anywhere else.
+HttpReply page_reply(std::string_view path);
+
+}  // namespace swarm::monitor

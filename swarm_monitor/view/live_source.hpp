@@ -1,0 +1,58 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "swarm_core/mission/channel.hpp"
+#include "swarm_monitor/view/swarm_state.hpp"
+#include "swarm_monitor/view/view_source.hpp"
+
+namespace swarm::monitor {
+
+/// A run that flies, as a viewer sees it.
+class LiveSource final : public ViewSource {
+ public:
+  /// `control`: whether viewers may offer to control it.
+  LiveSource(Mission mission, Channel channel, std::unique_ptr<BusTap> tap, bool control);
+
+  void poll(UtcTime now) override;
+  bool live() const override { return true; }
+  const std::vector<std::string>& scenes() const override { return scenes_; }
+  const std::vector<std::string>& events() const override { return events_; }
+  const std::vector<std::string>& series() const override { return series_; }
+  void picture(std::optional<double> time_s, std::optional<RobotId> focus,
+               std::vector<std::byte>& out) override;
+  const std::vector<RawChannel>& raw_channels() const override { return raw_channels_; }
+  void on_raw(std::function<void(const RawSample&)> sink) override { raw_sink_ = std::move(sink); }
+  std::string metrics() const override;
+
+  const SwarmState& state() const { return state_; }
+  const Mission& mission() const { return mission_; }
+  const Mixture& goal() const;  ///< as it is now
+
+ private:
+  void add_scene();
+  void add_row();
+
+  Mission mission_;
+  Channel channel_;
+  bool control_;
+  std::unique_ptr<BusTap> tap_;
+  SwarmState state_;
+  UtcTime now_{};
+  std::uint64_t scene_version_ = 0;
+  UtcTime moved_at_{};  // when obstacles on their way were last shown
+  UtcTime row_at_{};
+  std::uint64_t received_at_row_ = 0;
+  std::vector<std::string> scenes_, events_, series_;
+  std::vector<RawChannel> raw_channels_;
+  std::function<void(const RawSample&)> raw_sink_;
+};
+
+/// Joins a run. Fails when its directory tells of none, or the bus cannot be heard.
+Result<std::unique_ptr<LiveSource>> look_at_run(const std::filesystem::path& run_dir,
+                                                std::uint32_t number, bool control = false);
+
+}  // namespace swarm::monitor

@@ -1,0 +1,57 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "swarm_monitor/view/origin_check.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+
+#include <arpa/inet.h>
+
+namespace swarm::monitor {
+namespace {
+
+bool same_name(std::string_view a, std::string_view b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](unsigned char x, unsigned char y) {
+    return std::tolower(x) == std::tolower(y);
+  });
+}
+
+std::string_view without_port(std::string_view host) {
+  if (host.starts_with('[')) return host.substr(1, host.find(']') - 1);
+  return host.substr(0, host.find(':'));
+}
+
+bool is_address(const std::string& text) {
+  std::array<unsigned char, sizeof(in6_addr)> address{};
+  return ::inet_pton(AF_INET, text.c_str(), address.data()) == 1 ||
+         ::inet_pton(AF_INET6, text.c_str(), address.data()) == 1;
+}
+
+}  // namespace
+
+bool same_origin(std::string_view origin, std::string_view host) {
+  if (origin.empty()) return true;
+  for (const std::string_view scheme : {"http://", "https://"}) {
+    if (origin.starts_with(scheme)) return same_name(origin.substr(scheme.size()), host);
+  }
+  return false;  // "null": a local file, or somebody who hides
+}
+
+bool trusted_host(std::string_view host, std::span<const std::string> names) {
+  const std::string name(without_port(host));
+  return is_address(name) || same_name(name, "localhost") ||
+         std::any_of(names.begin(), names.end(),
+                     [&](const std::string& known) { return same_name(name, known); });
+}
+
+bool same_token(std::string_view given, std::string_view token) {
+  volatile unsigned char differ = given.size() == token.size() ? 0 : 1;
+  for (std::size_t i = 0; i < given.size() && !token.empty(); ++i) {
+    const char expected = token[i % token.size()];
+    differ = static_cast<unsigned char>(differ | (given[i] ^ expected));
+  }
+  return differ == 0 && !token.empty();
+}
+
+}  // namespace swarm::monitor

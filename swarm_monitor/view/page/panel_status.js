@@ -1,0 +1,32 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+// The line at the top: what runs, where it stands, how many there are.
+import { byId, put } from './text.js';
+
+export class Status {
+  connection(text, kind) {
+    put(byId('connection'), text);
+    byId('connection').dataset.kind = kind;
+  }
+
+  scene(scene) {
+    put(byId('name'), scene.name);
+    document.title = `${scene.name} – Swarmflow`;
+    put(byId('kind'), scene.live ? 'live' : 'recording');
+    byId('kind').dataset.kind = scene.live ? 'live' : 'recording';
+    byId('kind').hidden = false;
+  }
+
+  picture(phase, counts, robots) {
+    put(byId('phase'), phase);
+    byId('phase').dataset.phase = phase;
+    put(byId('heard'), `${counts.heard} / ${robots}`);
+    for (const name of ['moving', 'arrived', 'lost']) put(byId(name), String(counts[name]));
+    byId('lost').classList.toggle('bad', counts.lost > 0);
+  }
+
+  rate(pictures, frames) {
+    put(byId('rate'), `${pictures}/s`);
+    byId('rate').title = `${pictures} pictures received and ${frames} frames drawn in the last second`;
+  }
+}

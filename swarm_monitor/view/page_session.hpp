@@ -1,0 +1,75 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+
+#include "swarm_core/base/result.hpp"
+#include "swarm_monitor/view/session.hpp"
+#include "swarm_monitor/view/view_source.hpp"
+
+namespace swarm::monitor {
+
+struct FrameRequest {
+  std::optional<double> time_s{};
+};
+
+struct FocusRequest {
+  std::optional<RobotId> robot{};
+};
+
+enum class ControlAction { kPause, kResume, kStop, kGoal, kAddObstacle };
+
+std::string_view name_of(ControlAction action);
+
+struct ControlRequest {
+  ControlAction action = ControlAction::kPause;
+  std::string token{};
+  double x_m = 0.0;       ///< of goal and add_obstacle
+  double y_m = 0.0;       ///< of goal and add_obstacle
+  double radius_m = 0.0;  ///< of add_obstacle
+};
+
+using PageRequest = std::variant<FrameRequest, FocusRequest, ControlRequest>;
+
+/// What a text frame of the page asks for (PROTOCOL.md). Any bytes may come.
+Result<PageRequest> parse_page_request(std::string_view text);
+
+/// Does, or refuses, what was asked. Returns what to tell.
+using Control = std::function<Result<std::string>(const ControlRequest&)>;
+
+/// A browser that shows the page.
+class PageSession final : public Session {
+ public:
+  PageSession(ViewSource& source, Control control, ViewCounters& counters)
+      : Session(counters), source_(source), control_(std::move(control)) {}
+
+  std::size_t max_frame() const override { return 4096; }
+  void take(std::string_view frame, bool binary) override;
+  void refuse(const std::string& why) override;
+  bool has_something() const override;
+  bool next(Outgoing& out) override;
+
+ private:
+  void obey(const ControlRequest& request);
+  bool next_scene(Outgoing& out);
+  bool next_events(Outgoing& out);
+  bool next_series(Outgoing& out);
+
+  ViewSource& source_;
+  Control control_;
+  std::optional<FrameRequest> wanted_;
+  std::optional<RobotId> focus_;
+  std::deque<std::string> answers_;
+  std::size_t scenes_sent_ = 0;
+  std::size_t events_sent_ = 0;
+  std::size_t rows_sent_ = 0;
+};
+
+}  // namespace swarm::monitor

@@ -1,0 +1,50 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "swarm_core/base/ids.hpp"
+#include "swarm_core/base/linalg.hpp"
+#include "swarm_core/gmm/mixture.hpp"
+#include "swarm_core/mission/phase.hpp"
+
+namespace swarm::monitor {
+
+/// A robot as pictures show it.
+struct PictureRobot {
+  Vec2 position_m = Vec2::Zero();
+  double heading_rad = 0.0;
+  RobotMode mode = RobotMode::kWaiting;
+  std::uint8_t goal = 255;
+  std::uint8_t neighbours = 0;
+  bool heard_of = false, arrived = false, lost = false;
+};
+
+struct PictureBelief {
+  RobotId neighbour{};
+  Vec2 position_m = Vec2::Zero();
+};
+
+/// Phase of a picture of what has ended.
+inline constexpr std::uint32_t kEndedPhase = 4;
+
+/// Puts a picture of PROTOCOL.md together: its robots one by one, then finish().
+class PictureMaker {
+ public:
+  PictureMaker(std::vector<std::byte>& out, std::uint32_t robots, double time_s,
+               std::uint32_t phase, const std::optional<Mixture>& mixture);
+  void add(const PictureRobot& robot);
+  void finish(std::optional<RobotId> focus, const std::vector<PictureBelief>& beliefs);
+
+ private:
+  template <class T>
+  void put(T value);
+  std::vector<std::byte>& out_;
+  const std::optional<Mixture>& mixture_;
+};
+
+}  // namespace swarm::monitor

@@ -1,0 +1,37 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "swarm_monitor/view/live_source.hpp"
+#include "swarm_monitor/view/page_session.hpp"
+
+namespace swarm::monitor {
+
+/// The launcher's line for what a viewer wants, as `swarm_launcher command` sends it. The goal
+/// moves as a whole: its mean to the point.
+std::string command_line_of(const ControlRequest& request, const Mixture& goal);
+
+/// Hands viewers' wishes to the launcher of a run, in a thread of its own, since a launcher answers
+/// when it is done. How that went is told by the run's events.
+class RemoteControl {
+ public:
+  RemoteControl(std::filesystem::path run_dir, const LiveSource& source);
+  ~RemoteControl();
+
+  /// Says that it has been asked for, or why not.
+  Result<std::string> ask(const ControlRequest& request);
+
+ private:
+  class Worker;
+  const LiveSource& source_;
+  std::unique_ptr<Worker> worker_;
+};
+
+/// A secret for a URL, by the kernel's generator.
+std::string make_token();
+
+}  // namespace swarm::monitor

@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "swarm_core/mission/channel.hpp"
+#include "swarm_core/mission/mission.hpp"
+#include "swarm_core/plan/flow_plan.hpp"
+#include "swarm_core/world/world.hpp"
+#include "swarm_monitor/recorded_run.hpp"
+
+/// Texts of PROTOCOL.md.
+namespace swarm::monitor {
+
+struct SceneFacts {
+  const Mission& mission;
+  const World& world;  ///< as it stands
+  const Mixture& goal;
+  const FlowPlan* plan = nullptr;
+  double from_s = 0.0;
+  double end_s = 0.0;
+  bool live = false;
+  bool control = false;
+  Channel channel = Channel::kGroups;
+};
+std::string scene_json(const SceneFacts& facts);
+
+std::string event_json(const RunEvent& event);
+
+/// One row of the series; numbers that are not finite are null.
+struct SeriesRow {
+  double time_s = 0.0;
+  double nearest_gap_m = 0.0;
+  std::uint32_t arrived = 0, moving = 0;
+  double latency_ms = 0.0, rate_hz = 0.0;
+};
+std::string series_json(const SeriesRow& row);
+
+}  // namespace swarm::monitor

@@ -1,0 +1,102 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "swarm_core/metrics/histogram.hpp"
+#include "swarm_core/mission/mission.hpp"
+#include "swarm_core/mission/scene.hpp"
+#include "swarm_core/plan/flow_plan.hpp"
+#include "swarm_link/cdr/codec.hpp"
+#include "swarm_link/stream_meter.hpp"
+#include "swarm_link/validation.hpp"
+#include "swarm_monitor/recorded_run.hpp"
+#include "swarm_monitor/recording/bus_tap.hpp"
+
+namespace swarm::monitor {
+
+/// What is known of a swarm that flies, from its bus alone. Everything is checked as agents do;
+/// what is refused is counted. Pure: fed with samples, told the time.
+class SwarmState {
+ public:
+  explicit SwarmState(const Mission& mission);
+
+  void take(const TappedSample& sample);
+
+  struct Robot {
+    bool heard_of = false;
+    bool arrived = false;
+    UtcTime heard{};  ///< its last state or status
+    UtcTime moved{};  ///< its last state
+    Vec2 position_m = Vec2::Zero();
+    Vec2 velocity_mps = Vec2::Zero();
+    RobotMode mode = RobotMode::kWaiting;
+    double nearest_gap_m = 0.0;
+    std::uint32_t neighbours = 0;
+    std::uint32_t ticks = 0, late_ticks = 0;
+  };
+  const std::vector<Robot>& robots() const { return robots_; }
+
+  /// Where a robot is by now: on from its last state, as its neighbours believe.
+  Vec2 position_of(const Robot& robot, UtcTime now) const;
+  bool is_lost(const Robot& robot, UtcTime now) const;
+
+  struct Counts {
+    std::uint32_t heard = 0, moving = 0, arrived = 0, lost = 0;
+    double nearest_gap_m = 0.0;  ///< NaN while no status tells
+  };
+  Counts counts(UtcTime now) const;
+
+  MissionPhase phase() const { return phase_; }
+  double mission_time_s(UtcTime now) const;
+  const std::optional<FlowPlan>& plan() const { return plan_; }
+  std::uint32_t plan_version() const { return plan_version_; }
+  const Scene& scene() const { return scene_; }
+  /// Grows with every change of plan or scene.
+  std::uint64_t version() const { return version_; }
+  const std::vector<RunEvent>& events() const { return events_; }  ///< times since begin()
+  std::optional<UtcTime> begin() const { return begin_; }          ///< first state heard
+  const link::StreamMeter& meter() const { return meter_; }
+  link::StreamMeter& meter() { return meter_; }
+  std::uint64_t refused() const { return refused_; }
+
+ private:
+  template <class M>
+  bool decode(link::Codec<M>& codec, const TappedSample& sample, M& out);
+  void take_states(const TappedSample& sample);
+  void take_status(const TappedSample& sample);
+  void take_plan(const TappedSample& sample);
+  void take_scene(const TappedSample& sample);
+  void take_heartbeat(const TappedSample& sample);
+  void take_event(const TappedSample& sample);
+
+  link::WireLimits limits_;
+  std::vector<Robot> robots_;
+  std::optional<FlowPlan> plan_;
+  std::uint32_t plan_version_ = 0;
+  link::PlanSequence plans_;
+  Scene scene_;
+  std::uint64_t version_ = 0;
+  MissionPhase phase_ = MissionPhase::kReady;
+  double mission_time_s_ = 0.0;
+  UtcTime beat_at_{};
+  std::vector<RunEvent> events_;
+  std::optional<UtcTime> begin_;
+  link::StreamMeter meter_;
+  std::uint64_t refused_ = 0;
+
+  link::Codec<link::CellStatesMessage> states_codec_;
+  link::Codec<link::StatusMessage> status_codec_;
+  link::Codec<link::PlanMessage> plan_codec_;
+  link::Codec<link::SceneMessage> scene_codec_;
+  link::Codec<link::HeartbeatMessage> heartbeat_codec_;
+  link::Codec<link::EventMessage> event_codec_;
+  link::CellStatesMessage states_;
+  link::StatusMessage status_;
+};
+
+}  // namespace swarm::monitor
