@@ -174,6 +174,8 @@ Result<void> Flight::join() {
   note(link::Severity::kInfo, "channel", told);
   std::fprintf(stderr, "%s\n", told.c_str());
   view_ = SwarmView(options_.mission.robots.count, options_.mission.link.hear_radius_m);
+  monitors_.emplace(options_.monitors, dir_);
+  if (auto started = monitors_->start(); !started) return started;
   if (options_.by_gateway > 0) {
     gateway_.emplace(dir_);
     if (auto started = gateway_->start(); !started) return started;
@@ -254,6 +256,8 @@ void Flight::reap(SteadyTime now) {
   while (const auto child = reap_child()) {
     const auto known = children_.find(child->pid);
     if (known == children_.end()) {
+      const auto monitor = monitors_->on_exit(child->pid);
+      if (monitor) log({.warning = true, .code = "monitor-exit", .text = *monitor});
       const auto gateway = gateway_ ? gateway_->on_exit(child->pid) : std::nullopt;
       if (gateway) log({.warning = true, .code = "gateway-exit", .text = *gateway});
       continue;
@@ -326,10 +330,12 @@ Result<Measurements> Flight::fly() {
     for (const Action& action : supervisor_->step(now)) {
       if (auto done = act(action); !done) return tl::unexpected(done.error());
     }
+    if (const auto address = monitors_->view_address()) progress_.say("view: " + *address);
     if (observer_ != nullptr) observer_->on_step(*this, now);
     show(now);
     std::this_thread::sleep_for(kStep);
   }
+  monitors_->finish();
   bring_boxes_home();
   rusage own = {};
   ::getrusage(RUSAGE_SELF, &own);

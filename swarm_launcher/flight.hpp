@@ -22,6 +22,7 @@
 #include "swarm_launcher/event_log.hpp"
 #include "swarm_launcher/gateway.hpp"
 #include "swarm_launcher/hosts/remote_hosts.hpp"
+#include "swarm_launcher/monitors.hpp"
 #include "swarm_launcher/progress.hpp"
 #include "swarm_launcher/scene_keeper.hpp"
 #include "swarm_launcher/summary.hpp"
@@ -49,6 +50,7 @@ struct FlightOptions {
   std::string interface = "127.0.0.1";  ///< address of the network's interface
   std::uint32_t remote = 0;             ///< robots that other hosts start: the last ones
   std::uint16_t join_port = 0;          ///< where those hosts come to; 0: a free one
+  MonitorOptions monitors{};
 };
 
 class Flight;
@@ -121,6 +123,7 @@ class Flight {
   std::optional<shell::ControlServer> control_;
   std::optional<RemoteHosts> hosts_;
   std::optional<GatewayKeeper> gateway_;
+  std::optional<Monitors> monitors_;
   std::vector<shell::ControlServer::ClientId>
       stopping_;  // clients who wait for a stop to be confirmed
   std::optional<SceneKeeper> scene_;

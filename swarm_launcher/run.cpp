@@ -49,7 +49,8 @@ Result<ExitCode> run_mission(const RunOptions& options) {
                                     .by_gateway = options.by_gateway,
                                     .interface = options.interface,
                                     .remote = options.remote,
-                                    .join_port = options.join_port});
+                                    .join_port = options.join_port,
+                                    .monitors = options.monitors});
   if (!flight) return tl::unexpected(flight.error());
   std::fprintf(stderr, "run directory: %s\n", (*flight)->dir().c_str());
   const auto measured = (*flight)->fly();

@@ -9,6 +9,7 @@
 #include "swarm_core/base/result.hpp"
 #include "swarm_core/mission/channel.hpp"
 #include "swarm_launcher/agent_dds.hpp"
+#include "swarm_launcher/monitors.hpp"
 
 namespace swarm::launcher {
 
@@ -30,6 +31,7 @@ struct RunOptions {
   std::string interface = "127.0.0.1";  ///< address of the network's interface
   std::uint32_t remote = 0;             ///< robots that other hosts start
   std::uint16_t join_port = 0;          ///< where those hosts come to; 0: a free one
+  MonitorOptions monitors{};            ///< what looks on
 };
 
 /// `swarm_launcher run`: the whole mission with real processes, from planning to the audited

@@ -17,7 +17,7 @@ int main(int argc, char** argv) {
     shell::add_common_options(app);
     using namespace monitor::cli;
     const Command commands[] = {add_audit(app),  add_report(app), add_record(app), add_merge(app),
-                                add_replay(app), add_view(app),   add_top(app)};
+                                add_replay(app), add_view(app),   add_top(app),    add_cat(app)};
     const auto done = shell::parse(app, argc, argv);
     if (!done) return tl::unexpected(done.error());
     if (*done) return **done;

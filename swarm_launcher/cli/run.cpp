@@ -76,6 +76,11 @@ Command add_run(CLI::App& program) {
   run->add_option("--remote", o->remote, "Robots, the last ones, that other hosts start: see join");
   run->add_option("--join-port", o->join_port,
                   "TCP port where those come to (default: a free one)");
+  run->add_flag("--record", o->monitors.record, "Record the bus: bus.mcap in the run directory");
+  auto* const view = run->add_flag("--view", o->monitors.view, "Show it in the browser");
+  run->add_flag("--allow-control", o->monitors.allow_control,
+                "Let who has the view's address pause, stop and change the mission")
+      ->needs(view);
   run->add_flag("--json", o->json, "Print the summary as JSON");
   return {run, [o] { return run_mission(*o); }};
 }

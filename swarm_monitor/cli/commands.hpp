@@ -20,6 +20,7 @@ Command add_audit(CLI::App& program);
 Command add_report(CLI::App& program);
 Command add_record(CLI::App& program);
 Command add_merge(CLI::App& program);
+Command add_cat(CLI::App& program);
 Command add_replay(CLI::App& program);
 Command add_view(CLI::App& program);
 Command add_top(CLI::App& program);

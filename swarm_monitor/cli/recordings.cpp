@@ -9,6 +9,7 @@
 #include "swarm_monitor/cli/commands.hpp"
 #include "swarm_monitor/recording/live_recorder.hpp"
 #include "swarm_monitor/recording/merge.hpp"
+#include "swarm_monitor/recording/message_json.hpp"
 #include "swarm_monitor/recording/replay.hpp"
 
 namespace swarm::monitor::cli {
@@ -54,6 +55,32 @@ Command add_merge(CLI::App& program) {
             if (live) std::fputs("\r\x1b[K", stderr);
             if (!result) return tl::unexpected(result.error());
             std::fputs(to_json(*result).c_str(), stdout);
+            return ExitCode::kOk;
+          }};
+}
+
+Command add_cat(CLI::App& program) {
+  struct Options {
+    std::filesystem::path file;
+    std::vector<std::string> topics;
+  };
+  const auto o = std::make_shared<Options>();
+  CLI::App* const cat =
+      program.add_subcommand("cat", "Print a recording's messages as lines of JSON");
+  cat->add_option("file", o->file, "Recording")->required()->type_name("FILE");
+  cat->add_option("--topics", o->topics, "Only topics that begin so, like swarm/,blackbox/step")
+      ->delimiter(',');
+  return {cat, [o]() -> Result<ExitCode> {
+            const auto damage = print_messages(o->file, o->topics, [](const std::string& line) {
+              std::fputs(line.c_str(), stdout);
+              std::fputc('\n', stdout);
+            });
+            if (!damage) return tl::unexpected(damage.error());
+            if (damage->damaged > 0) {
+              std::fprintf(stderr, "%llu damaged places left out\n",
+                           static_cast<unsigned long long>(damage->damaged));
+            }
+            if (damage->truncated) std::fputs("the file ends inside a record\n", stderr);
             return ExitCode::kOk;
           }};
 }

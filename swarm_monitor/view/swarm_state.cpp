@@ -15,6 +15,8 @@ namespace {
 constexpr Duration kLostAfter = std::chrono::seconds(3);
 /// A state is carried on this long at most.
 constexpr double kCarryOn_s = 0.8;
+/// Who hears nobody tells of a gap that is larger than any map.
+constexpr double kNobodyNear_m = 1e8;
 constexpr std::size_t kMostEvents = 100'000;
 
 std::string source_of(std::uint32_t source) {
@@ -106,7 +108,9 @@ void SwarmState::take_status(const TappedSample& sample) {
     robot.heard = sample.heard;
     robot.mode = status.mode;
     robot.arrived = status.arrived;
-    robot.nearest_gap_m = status.nearest_gap_m;
+    robot.nearest_gap_m = status.nearest_gap_m < kNobodyNear_m
+                              ? status.nearest_gap_m
+                              : std::numeric_limits<double>::infinity();
     robot.neighbours = status.neighbours_heard;
     robot.ticks = status.ticks;
     robot.late_ticks = status.late_ticks;
@@ -183,7 +187,7 @@ SwarmState::Counts SwarmState::counts(UtcTime now) const {
     counts.moving += robot.mode == RobotMode::kMoving ? 1 : 0;
     counts.arrived += robot.arrived ? 1 : 0;
     counts.lost += is_lost(robot, now) ? 1 : 0;
-    if (robot.ticks > 0) counts.nearest_gap_m = std::min(counts.nearest_gap_m, robot.nearest_gap_m);
+    counts.nearest_gap_m = std::min(counts.nearest_gap_m, robot.nearest_gap_m);
   }
   return counts;
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -35,7 +36,7 @@ class SwarmState {
     Vec2 position_m = Vec2::Zero();
     Vec2 velocity_mps = Vec2::Zero();
     RobotMode mode = RobotMode::kWaiting;
-    double nearest_gap_m = 0.0;
+    double nearest_gap_m = std::numeric_limits<double>::infinity();
     std::uint32_t neighbours = 0;
     std::uint32_t ticks = 0, late_ticks = 0;
   };
@@ -47,7 +48,7 @@ class SwarmState {
 
   struct Counts {
     std::uint32_t heard = 0, moving = 0, arrived = 0, lost = 0;
-    double nearest_gap_m = 0.0;  ///< NaN while no status tells
+    double nearest_gap_m = 0.0;  ///< ∞ while no status tells
   };
   Counts counts(UtcTime now) const;
 

@@ -31,7 +31,7 @@ std::string top_text(const SwarmState& state, const TopFacts& facts, UtcTime now
     const SwarmState::Robot& robot = state.robots()[i];
     if (!robot.heard_of) return 2e9;
     if (state.is_lost(robot, now)) return -1e9;
-    return robot.ticks > 0 ? robot.nearest_gap_m : 1e9;
+    return std::min(robot.nearest_gap_m, 1e9);
   };
   const std::size_t rows = std::min(facts.rows, order.size());
   std::partial_sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(rows), order.end(),

@@ -8,7 +8,7 @@ channel=$1
 shift
 out=$(mktemp -d)
 echo "runs in $out" >&2
-echo '| channel, processes | discovery s | written → received ms p50 / p99 / p99.9 | → used ms p50 / p99 | sent, lost | late ticks % | CPU s | memory MB each | outcome |'
+echo '| channel, processes | discovery s | written → received ms p50 / p99 / p99.9 | → used ms p50 / p99 | sent, lost | late ticks % | CPU s | memory MB, all | outcome |'
 echo '|---|---|---|---|---|---|---|---|---|'
 for n in "$@"; do
   "$bin/swarm_launcher" soak --processes "$n" --duration-s 20 --channel "$channel" --out "$out/$channel-$n" --json \

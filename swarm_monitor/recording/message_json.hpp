@@ -1,0 +1,22 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "swarm_core/mcap/reader.hpp"
+
+namespace swarm::monitor {
+
+/// Hands over every message of a recording as a line of JSON: topic, type, times, sequence and, as
+/// "data", its fields by their names in the IDL. 64-bit integers are texts, since JSON's numbers
+/// are too short for them; what does not decode has "data": null. `topics`: those that begin with
+/// one of these; empty: all.
+Result<mcap::Damage> print_messages(const std::filesystem::path& file,
+                                    const std::vector<std::string>& topics,
+                                    const std::function<void(const std::string&)>& print);
+
+}  // namespace swarm::monitor
