@@ -5,7 +5,7 @@
 import re
 import sys
 
-PANELS = [("discovery, s", 2, 0), ("written to received, p99, ms", 3, 1), ("CPU of 30 s, s", 7, 0), ("late ticks, %", 6, 0)]
+PANELS = [("discovery, s", 2, 0), ("written to received, p99, ms", 3, 1), ("CPU s, 20 s of motion and the start", 7, 0), ("late ticks, %", 6, 0)]
 COLOURS = {"groups": "#1f6fb4", "topics": "#d2601a"}
 WIDTH, HEIGHT, LEFT, BOTTOM, TOP = 380, 230, 48, 34, 26
 
