@@ -85,6 +85,7 @@ struct AgentProcess::Impl {
   std::uint32_t skewed_reported = 0;
   std::uint32_t plan_told = 0;
   bool planner_was_alive = false;
+  bool boxes_dropped = false;  // told already
   SteadyTime stats_at;
   std::size_t ticks = 0;
 
@@ -267,6 +268,14 @@ void AgentProcess::Impl::record_link_stats(UtcTime now) {
     }
     robot.record(stats);
   }
+  const bool dropped = std::any_of(robots.begin(), robots.end(), [](const Robot& robot) {
+    return robot.records_dropped() > 0;
+  });
+  if (dropped && !boxes_dropped) {
+    announce(now, link::Severity::kWarning, "blackbox-dropped",
+             "the disk does not take what the black box records; flies on without");
+  }
+  boxes_dropped = dropped;
 }
 
 /// Each group in its turn, so that those of one process do not all speak at the same tick.

@@ -45,6 +45,7 @@ class Robot {
   void note(UtcTime utc_now, const std::string& code, const std::string& text,
             std::int64_t caused_utc_ns = 0);
   void record(const blackbox::Record& record) { box_.append(record); }
+  std::uint64_t records_dropped() const { return box_.dropped(); }
 
  private:
   RobotId id_;

@@ -9,10 +9,10 @@
 /// The files of idl/, for recordings to carry: readers need nothing else to make sense of them.
 namespace swarm::mcap {
 
-/// idl/swarm.idl, without comments.
-const std::string& wire_idl();
+/// Of idl/swarm.idl the constants and these structs alone, in the order given, without comments.
+std::string wire_idl(const std::vector<std::string_view>& structs);
 
-/// Of idl/blackbox.idl these structs alone, in the order given: every robot's file carries them.
+/// The same of idl/blackbox.idl: every robot's file carries them.
 std::string blackbox_idl(const std::vector<std::string_view>& structs);
 
 }  // namespace swarm::mcap

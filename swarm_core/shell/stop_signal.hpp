@@ -4,7 +4,7 @@
 
 namespace swarm::shell {
 
-/// Installs handlers for SIGINT and SIGTERM that only count; SIGPIPE is ignored. Sleeps return
+/// Installs handlers for SIGINT and SIGTERM that only count; SIGPIPE and SIGXFSZ are ignored. Sleeps return
 /// early.
 void catch_stop_signals();
 

@@ -22,12 +22,24 @@ constexpr std::int64_t kMostCells = 400;
 /// A writer's clock that is this far off is not believed.
 constexpr Duration kMostDelay = std::chrono::seconds(2);
 
+/// What a type of idl/swarm.idl is made of, itself last.
+std::vector<std::string_view> structs_of(std::string_view type) {
+  if (type == "FlowPlan") return {"PlanNode", "PlanLeg", "PlanEntry", type};
+  if (type == "Scene") return {"Point", "SceneObstacle", "GoalComponent", type};
+  if (type == "CellStates") return {"RobotState", type};
+  if (type == "Status") return {"HistogramBin", "RobotStatus", type};
+  return {type};
+}
+
 mcap::Schema schema_of(const std::string& type) {
-  std::string idl = mcap::wire_idl();
   for (const blackbox::Kind& kind : blackbox::kinds()) {
-    if (kind.type == type) idl = mcap::blackbox_idl(kind.structs);
+    if (kind.type == type) {
+      return {.name = type, .encoding = "omgidl", .data = mcap::blackbox_idl(kind.structs)};
+    }
   }
-  return {.name = type, .encoding = "omgidl", .data = std::move(idl)};
+  constexpr std::string_view kModule = "swarm::wire::";
+  const auto structs = structs_of(std::string_view(type).substr(kModule.size()));
+  return {.name = type, .encoding = "omgidl", .data = mcap::wire_idl(structs)};
 }
 
 class RunTap final : public BusTap {
@@ -47,7 +59,10 @@ class RunTap final : public BusTap {
     if (groups_) {
       groups_->take_raw(patience, [&](std::span<const std::byte> bytes) {
         const UtcTime now = utc_now();
-        sink({.topic = states_index(), .heard = now, .said = now, .bytes = as_chars(bytes)});
+        // As DDS would carry it: in multiples of four bytes.
+        padded_.assign(bytes.begin(), bytes.end());
+        padded_.resize((bytes.size() + 3) / 4 * 4);
+        sink({.topic = states_index(), .heard = now, .said = now, .bytes = as_chars(padded_)});
       });
     }
     participant_->receive();
@@ -55,6 +70,9 @@ class RunTap final : public BusTap {
     for (const auto& [topic, reader] : readers_) {
       messages_.clear();
       reader->take(messages_);
+      // A reader hands over one instance after the other.
+      std::stable_sort(messages_.begin(), messages_.end(),
+                       [](const auto& a, const auto& b) { return a.said_utc_ns < b.said_utc_ns; });
       for (const link::RawMessage& message : messages_) {
         const UtcTime said{Duration(message.said_utc_ns)};
         const bool believed = said <= now && now - said < kMostDelay;
@@ -80,6 +98,7 @@ class RunTap final : public BusTap {
   std::unique_ptr<link::GroupTap> groups_;  // null: states go by topics
   std::vector<std::pair<std::uint32_t, std::unique_ptr<link::RawReader>>> readers_;
   std::vector<link::RawMessage> messages_;
+  std::vector<std::byte> padded_;
 };
 
 /// Every cell of the map, and those around it.

@@ -21,7 +21,7 @@ using std::chrono::microseconds;
 
 constexpr UtcTime kNow{std::chrono::seconds(1'000'000)};
 
-void hear(StreamMeter& meter, std::uint32_t robot, std::uint32_t number,
+void hear(link::StreamMeter& meter, std::uint32_t robot, std::uint32_t number,
           Duration age = microseconds(500)) {
   meter.hear({.robot_id = robot,
               .sequence_number = number,

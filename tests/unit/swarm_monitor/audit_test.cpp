@@ -201,7 +201,7 @@ TEST(Audit, SurvivesADamagedBlackBox) {
   files.write_good_run();
   const auto box = blackbox::file_of(files.dir(), RobotId(1));
   std::fstream file(box, std::ios::in | std::ios::out | std::ios::binary);
-  file.seekp(1000);
+  file.seekp(4000);  // behind its schemas
   file.write("\x01\x02\x03", 3);
   file.close();
 
