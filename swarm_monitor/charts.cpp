@@ -96,6 +96,51 @@ std::string line_chart(std::span<const Curve> curves, double step_s, double cap,
   return document(body);
 }
 
+std::string bar_chart(std::span<const Curve> curves, double cap, std::string_view title) {
+  constexpr std::size_t kBars = 10;
+  std::vector<std::array<std::size_t, kBars>> counts(curves.size());
+  std::size_t most = 1;
+  for (std::size_t c = 0; c < curves.size(); ++c) {
+    for (const double value : curves[c].values) {
+      const double bar = std::clamp(value / cap * kBars, 0.0, kBars - 1.0);
+      most = std::max(most, ++counts[c][static_cast<std::size_t>(bar)]);
+    }
+  }
+  const Axis gap{0.0, cap, kLeft, kInnerWidth};
+  const Axis count{0.0, 1.08 * static_cast<double>(most), kTop + kInnerHeight, -kInnerHeight};
+  std::string body;
+  const double count_step = std::max(1.0, round_step(static_cast<double>(most), 4.0));
+  for (double n = 0.0; n <= count.high; n += count_step) {
+    add_tick_y(body, count.at(n), fmt::format("{:g}", n));
+  }
+  for (std::size_t bar = 0; bar <= kBars; bar += 2) {
+    const double at = cap * static_cast<double>(bar) / kBars;
+    add_tick_x(body, gap.at(at), fmt::format("{}{:g}", bar == kBars ? "≥" : "", at));
+  }
+  auto out = std::back_inserter(body);
+  const double slot = kInnerWidth / kBars;
+  const double width = (slot - 8.0) / static_cast<double>(std::max<std::size_t>(1, curves.size()));
+  for (std::size_t c = 0; c < curves.size(); ++c) {
+    for (std::size_t bar = 0; bar < kBars; ++bar) {
+      const double top = count.at(static_cast<double>(counts[c][bar]));
+      fmt::format_to(out,
+                     "<rect class=\"bar s{}\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" "
+                     "height=\"{:.1f}\"><title>{}: {}</title></rect>\n",
+                     c,
+                     kLeft + slot * static_cast<double>(bar) + 4.0 + width * static_cast<double>(c),
+                     top, width, count.at(0.0) - top, escape_xml(curves[c].name), counts[c][bar]);
+    }
+    fmt::format_to(out,
+                   "<rect class=\"bar s{}\" x=\"{}\" y=\"{}\" width=\"10\" height=\"10\"/>"
+                   "<text x=\"{}\" y=\"{}\">{}</text>\n",
+                   c, kLeft + 12 + 150 * static_cast<double>(c), kTop + 4,
+                   kLeft + 28 + 150 * static_cast<double>(c), kTop + 14,
+                   escape_xml(curves[c].name));
+  }
+  add_title_x(body, title);
+  return document(body);
+}
+
 std::string histogram_chart(const Histogram& histogram) {
   if (histogram.count() == 0) return {};
   // Two bars per power of two: 16 bins are more than a chart shows.

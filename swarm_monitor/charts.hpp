@@ -22,6 +22,10 @@ struct Curve {
 std::string line_chart(std::span<const Curve> curves, double step_s, double cap,
                        std::string_view title);
 
+/// How many values of each curve (steps do not matter) lie in each tenth of [0, cap]; what is
+/// larger counts into the last, what is negative into the first.
+std::string bar_chart(std::span<const Curve> curves, double cap, std::string_view title);
+
 /// Shares of samples over a logarithmic axis in milliseconds. Empty text for an empty histogram.
 std::string histogram_chart(const Histogram& histogram);
 

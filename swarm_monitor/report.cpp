@@ -12,6 +12,8 @@
 
 #include "swarm_core/shell/run_directory.hpp"
 #include "swarm_monitor/charts.hpp"
+#include "swarm_monitor/plan_deviation.hpp"
+#include "swarm_monitor/png.hpp"
 #include "swarm_monitor/report_page.hpp"
 #include "swarm_monitor/svg.hpp"
 
@@ -105,6 +107,24 @@ void add_figures(Page& page, const Audit& audit) {
   page.add("</div>\n");
 }
 
+void add_plan_chart(Page& page, const RecordedRun& run) {
+  const PlanDeviation deviation = plan_deviation(run);
+  if (deviation.centre_off_m.empty()) return;
+  const std::array<Curve, 3> curves{{{"centre off the plan", deviation.centre_off_m},
+                                     {"spread planned", deviation.planned_spread_m},
+                                     {"spread flown", deviation.real_spread_m}}};
+  double most = 0.0;
+  for (const Curve& curve : curves) {
+    most = std::max(most, *std::max_element(curve.values.begin(), curve.values.end()));
+  }
+  page.add(
+      "<figure><h2>Plan and flight</h2>\n{}<figcaption>The planned mixture and the robots that "
+      "were to "
+      "make it up, from the first motion on: how far their centres are apart, and how far they "
+      "spread. Robots keep the plan's way, not its times.</figcaption></figure>\n",
+      line_chart(curves, PlanDeviation::kStep_s, std::max(most, 1e-3), "m"));
+}
+
 void add_charts(Page& page, const AuditedRun& audited) {
   const std::array<Curve, 2> curves{{{"between robots", audited.robots.by_window_m},
                                      {"to obstacles", audited.obstacles.by_window_m}}};
@@ -112,6 +132,13 @@ void add_charts(Page& page, const AuditedRun& audited) {
       "<div class=\"charts\"><figure><h2>Nearest gap</h2>\n{}<figcaption>Smallest gap of the whole "
       "swarm in each second, surface to surface.</figcaption></figure>\n",
       line_chart(curves, Clearance::kWindow_s, Clearance::kCap_m, "gap, m"));
+  const std::array<Curve, 2> gaps{
+      {{"to robots", audited.robots.by_robot_m}, {"to obstacles", audited.obstacles.by_robot_m}}};
+  page.add(
+      "<figure><h2>Gap and clearance</h2>\n{}<figcaption>How near each robot ever came to another "
+      "and to an obstacle.</figcaption></figure>\n",
+      bar_chart(gaps, Clearance::kCap_m, "smallest gap of a robot, m"));
+  add_plan_chart(page, audited.run);
   Histogram age;
   for (const Track& track : audited.run.tracks) age.merge(track.state_age);
   if (const std::string chart = histogram_chart(age); !chart.empty()) {
@@ -121,6 +148,40 @@ void add_charts(Page& page, const AuditedRun& audited) {
         chart, age.count());
   }
   page.add("</div>\n");
+}
+
+/// Who did not come home, or wrote no readable box, and what is known of why.
+void add_losses(Page& page, const AuditedRun& audited) {
+  std::vector<std::string> rows;
+  for (std::size_t i = 0; i < audited.run.tracks.size(); ++i) {
+    const Track& track = audited.run.tracks[i];
+    if (!audited.audit.by_robot[i].lost && track.damaged == 0) continue;
+    std::string why = !track.unreadable.empty() ? escape_xml(track.unreadable)
+                      : !track.ended_gracefully ? "its process ended without a word"
+                                                : "";
+    if (track.damaged > 0) {
+      why += fmt::format("{}{} damaged places in its black box", why.empty() ? "" : "; ",
+                         track.damaged);
+    }
+    if (!track.notes.empty()) {
+      why += fmt::format("; last note: {} {}", escape_xml(track.notes.back().code),
+                         escape_xml(track.notes.back().text));
+    }
+    const std::string last =
+        track.points.empty()
+            ? "<td></td><td></td>"
+            : fmt::format("<td>{:.1f}</td><td>{:.2f}, {:.2f}</td>", track.points.back().time_s,
+                          track.points.back().position_m.x(), track.points.back().position_m.y());
+    rows.push_back(fmt::format("<tr><td>{}</td>{}<td class=\"text wide\">{}</td></tr>\n",
+                               track.robot.value(), last, why));
+  }
+  if (rows.empty()) return;
+  page.add(
+      "<h2>Lost, and why</h2>\n<div class=\"scroll\"><table class=\"sortable\"><thead><tr>"
+      "<th>robot</th><th>last step at, s</th><th>at, m</th><th class=\"text\">why</th></tr></thead>"
+      "<tbody>\n");
+  for (const std::string& row : rows) page.add("{}", row);
+  page.add("</tbody></table></div>\n");
 }
 
 std::string gap_cell(double gap_m) {
@@ -243,6 +304,7 @@ std::string report_html(const AuditedRun& audited) {
       "contacts.</figcaption></figure>\n",
       paths_svg(audited));
   add_charts(page, audited);
+  add_losses(page, audited);
   add_robots(page, audited);
   add_events(page, audited.run);
   page.add("<p class=\"soft\">Computed from the robots' black boxes by swarm_monitor " SWARM_VERSION
@@ -254,6 +316,11 @@ Result<AuditedRun> write_report(const std::filesystem::path& run_dir) {
   auto audited = audit_run_fully(run_dir);
   if (!audited) return audited;
   if (auto written = shell::write_file(run_dir / "paths.svg", paths_svg(*audited)); !written) {
+    return tl::unexpected(written.error());
+  }
+  constexpr int kPictureWidth_px = 1600;
+  if (auto written = write_png(run_dir / "paths.png", paths_svg(*audited), kPictureWidth_px);
+      !written) {
     return tl::unexpected(written.error());
   }
   if (auto written = shell::write_file(run_dir / "report.html", report_html(*audited)); !written) {

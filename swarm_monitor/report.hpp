@@ -16,7 +16,7 @@ std::string paths_svg(const AuditedRun& audited);
 /// A run on one page that needs nothing else: no network, no other file.
 std::string report_html(const AuditedRun& audited);
 
-/// Audits a run and writes report.html and paths.svg into its directory.
+/// Audits a run and writes report.html, paths.svg and paths.png into its directory.
 Result<AuditedRun> write_report(const std::filesystem::path& run_dir);
 
 }  // namespace swarm::monitor

@@ -11,9 +11,9 @@ namespace {
 
 constexpr std::string_view kStyle = R"(
 :root{--page:#fff;--ink:#1d232b;--soft:#5b6470;--line:#dfe3e8;--card:#f6f7f9;
---good:#12805c;--bad:#c5221f;--s0:#1f77c9;--s1:#d9661f;color-scheme:light}
+--good:#12805c;--bad:#c5221f;--s0:#1f77c9;--s1:#d9661f;--s2:#7a5cc0;color-scheme:light}
 @media screen and (prefers-color-scheme:dark){:root{--page:#101317;--ink:#e4e8ee;--soft:#9aa5b3;
---line:#2a313b;--card:#181d24;--good:#3ecf9a;--bad:#ff6b64;--s0:#5aa9ee;--s1:#f08c4b;
+--line:#2a313b;--card:#181d24;--good:#3ecf9a;--bad:#ff6b64;--s0:#5aa9ee;--s1:#f08c4b;--s2:#b29af0;
 color-scheme:dark}}
 *{box-sizing:border-box}
 body{margin:0 auto;max-width:1080px;padding:28px 20px 60px;background:var(--page);color:var(--ink);
@@ -41,8 +41,8 @@ figcaption{font-size:13px;margin-top:4px}
 .chart .grid{stroke:var(--line)}
 .chart .zero{stroke:var(--bad);stroke-dasharray:4 3}
 .chart .curve{fill:none;stroke-width:1.6}
-.chart .s0{stroke:var(--s0)}.chart .s1{stroke:var(--s1)}
-.chart .bar{fill:var(--s0)}
+.chart .s0{stroke:var(--s0)}.chart .s1{stroke:var(--s1)}.chart .s2{stroke:var(--s2)}
+.chart .bar{fill:var(--s0);stroke:none}.chart .bar.s1{fill:var(--s1)}
 .chart .mark{stroke:var(--s1);stroke-dasharray:3 3}
 .scroll{max-height:460px;overflow:auto;border:1px solid var(--line);border-radius:8px}
 table{border-collapse:collapse;width:100%;font-size:13.5px;font-variant-numeric:tabular-nums}

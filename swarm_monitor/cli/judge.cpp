@@ -34,8 +34,9 @@ Command add_report(CLI::App& program) {
   return {report, [run_dir]() -> Result<ExitCode> {
             const auto result = write_report(*run_dir);
             if (!result) return tl::unexpected(result.error());
-            std::printf("%s\n%s\n", (*run_dir / "report.html").c_str(),
-                        (*run_dir / "paths.svg").c_str());
+            for (const char* file : {"report.html", "paths.svg", "paths.png"}) {
+              std::printf("%s\n", (*run_dir / file).c_str());
+            }
             return ExitCode::kOk;
           }};
 }

@@ -36,7 +36,7 @@ TEST(Mission, FliesAndIsAudited) {
     EXPECT_TRUE(summary["state_age_ms"][key].is_number()) << key;
   for (const char* file :
        {"summary.json", "mission.resolved.yaml", "plan.json", "events.jsonl", "report.html",
-        "paths.svg", "logs/planner.log", "blackbox/robot-00000.mcap"}) {
+        "paths.svg", "paths.png", "logs/planner.log", "blackbox/robot-00000.mcap"}) {
     EXPECT_TRUE(std::filesystem::exists(run.dir() / file)) << file;
   }
   EXPECT_EQ(nlohmann::json::parse(run.launcher().out()), summary);
