@@ -1,11 +1,14 @@
 #!/bin/sh
-# Installs what deploy/packages.txt names and this machine lacks. Does nothing, and needs no rights, when
-# nothing is missing.
+# Installs what deploy/packages.txt, or the lists given, name and this machine lacks. Does nothing, and needs no rights,
+# when nothing is missing.   deploy/install_packages.sh [LIST …]
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
 
 missing=""
-for package in $(sed 's/#.*//' "$here/packages.txt"); do
+[ $# -gt 0 ] || set -- "$here/packages.txt"
+for line in $(cat "$@" | sed 's/#.*//'); do
+  package=${line%|*}
+  [ "$line" = "$package" ] || ! command -v "${line#*|}" >/dev/null || continue
   dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null | grep -qx installed ||
     missing="$missing $package"
 done

@@ -5,7 +5,7 @@ set -eu
 root=$(cd "$(dirname "$0")/.." && pwd)
 preset=${1:-release}
 cd "$root"
-deploy/install_packages.sh
+deploy/install_packages.sh deploy/packages.txt deploy/test_packages.txt
 cmake --preset "$preset" -DSWARM_BUILD_TESTS=ON
 cmake --build --preset "$preset"
 ctest --preset "$preset"

@@ -30,7 +30,9 @@ bool Codec<M>::encode(const M& message, std::vector<std::byte>& out) {
   constexpr std::size_t kEncapsulation = 4;
   try {
     if (!cdr::to_wire(message, impl_->wire)) return false;
-    out.resize(kEncapsulation + cdr::WireOf<M>::Type::getCdrSerializedSize(impl_->wire));
+    // The encoder skips padding: what was there before must not go out.
+    out.assign(kEncapsulation + cdr::WireOf<M>::Type::getCdrSerializedSize(impl_->wire),
+               std::byte{0});
     FastBuffer buffer(reinterpret_cast<char*>(out.data()), out.size());
     Cdr stream(buffer, Cdr::DEFAULT_ENDIAN, Cdr::DDS_CDR);
     stream.serialize_encapsulation();

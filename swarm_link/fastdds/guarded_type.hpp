@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <exception>
 #include <span>
@@ -44,6 +45,12 @@ class GuardedType final : public SupportOf<M> {
     // Types are compared by name; their descriptions would only make discovery heavier.
     this->auto_fill_type_object(false);
     this->auto_fill_type_information(false);
+  }
+
+  bool serialize(void* data, eprosima::fastrtps::rtps::SerializedPayload_t* payload) override {
+    // The encoder skips padding: what the buffer held before must not go out.
+    std::fill_n(payload->data, payload->max_size, eprosima::fastrtps::rtps::octet{0});
+    return SupportOf<M>::serialize(data, payload);
   }
 
   bool deserialize(eprosima::fastrtps::rtps::SerializedPayload_t* payload, void* data) override {

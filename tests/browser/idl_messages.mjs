@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+
+// CDR decoded by nothing but the IDL that comes with it, by a library that knows no Swarmflow.
+import omgidl from '@foxglove/omgidl-parser';
+import serialization from '@foxglove/omgidl-serialization';
+
+const definitions = new Map();
+const readers = new Map();
+
+function definitionsOf(idl) {
+  if (!definitions.has(idl)) definitions.set(idl, omgidl.parseIDL(idl));
+  return definitions.get(idl);
+}
+
+/** A decoder for messages of the struct `name` of this IDL. */
+export function readerOf(name, idl) {
+  const key = `${name}\n${idl}`;
+  if (!readers.has(key)) readers.set(key, new serialization.MessageReader(name, definitionsOf(idl)));
+  return readers.get(key);
+}
+
+/** How many bytes a message has by its IDL when it is decoded and encoded again, in the same kind of CDR. */
+export function sizeByIdl(name, idl, bytes) {
+  const writer = new serialization.MessageWriter(name, definitionsOf(idl), { kind: bytes[1] });
+  return writer.writeMessage(readerOf(name, idl).readMessage(bytes)).length;
+}
+
+const isList = (value) => Array.isArray(value) || (ArrayBuffer.isView(value) && !(value instanceof DataView));
+
+function same(said, read) {
+  if (typeof read === 'bigint') return said === String(read);
+  // JSON has no word for what is not finite.
+  if (typeof read === 'number' && !Number.isFinite(read)) return said === null;
+  return Object.is(said, read);
+}
+
+/** Where JSON and a decoded message differ: { path, said, read } for every field. */
+export function* differences(said, read, path = '') {
+  const nested = read !== null && typeof read === 'object';
+  if (!nested || said === null || typeof said !== 'object' || isList(said) !== isList(read)) {
+    if (!same(said, read)) yield { path, said, read };
+    return;
+  }
+  if (isList(read)) {
+    if (said.length !== read.length) yield { path: `${path}.length`, said: said.length, read: read.length };
+    for (let i = 0; i < Math.min(said.length, read.length); ++i) yield* differences(said[i], read[i], `${path}[${i}]`);
+    return;
+  }
+  for (const name of new Set([...Object.keys(said), ...Object.keys(read)])) {
+    yield* differences(said[name], read[name], path ? `${path}.${name}` : name);
+  }
+}
+
+export const shown = (value) =>
+  JSON.stringify(value, (_, part) => (typeof part === 'bigint' ? String(part) : part)) ?? String(value);
