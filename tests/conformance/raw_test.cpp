@@ -1,0 +1,131 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+// Those who look on: samples as they are, of launcher and planner of a run and of a replay.
+#include <algorithm>
+#include <chrono>
+#include <thread>
+
+#include <gtest/gtest.h>
+
+#include "swarm_link/cdr/codec.hpp"
+#include "swarm_link/join.hpp"
+#include "swarm_link/monitor_topics.hpp"
+#include "tests/conformance/bus.hpp"
+
+namespace swarm::link::conformance {
+namespace {
+
+template <class Condition>
+bool eventually(Condition condition) {
+  for (int i = 0; i < 3000; ++i) {
+    if (condition()) return true;
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  return false;
+}
+
+StatusMessage status_of(std::uint32_t robot, std::uint32_t ticks) {
+  StatusMessage status{.first_robot_id = robot};
+  status.robots.push_back({.robot_id = robot, .ticks = ticks});
+  status.refused.assign(robot % 3, 7);
+  return status;
+}
+
+template <class M>
+std::vector<std::byte> bytes_of(const M& message) {
+  Codec<M> codec;
+  std::vector<std::byte> bytes;
+  EXPECT_TRUE(codec.encode(message, bytes));
+  bytes.resize((bytes.size() + 3) / 4 * 4);  // as DDS carries it
+  return bytes;
+}
+
+MonitorTopic topic_named(const std::string& recorded) {
+  const auto topics = monitor_topics();
+  return *std::find_if(topics.begin(), topics.end(),
+                       [&](const MonitorTopic& topic) { return topic.recorded == recorded; });
+}
+
+/// What a reader has heard so far, by when it was said.
+std::vector<RawMessage> heard(RawParticipant& participant, RawReader& reader,
+                              std::size_t expected) {
+  std::vector<RawMessage> messages;
+  EXPECT_TRUE(eventually([&] {
+    participant.receive();
+    reader.take(messages);
+    return messages.size() >= expected;
+  }));
+  std::stable_sort(messages.begin(), messages.end(),
+                   [](const auto& a, const auto& b) { return a.said_utc_ns < b.said_utc_ns; });
+  return messages;
+}
+
+TEST(Raw, HearsByteForByteWhatALauncherSays) {
+  const Meeting meeting{.domain = test_domain(), .hubs = 1};
+  const auto launcher = join_as_launcher(meeting).value();
+  const auto writer = launcher->make_writer(relayed_status_topic()).value();
+  const auto monitor = join_as_monitor(meeting, 10).value();
+  const auto reader = monitor->make_reader(topic_named("swarm/status").wire).value();
+  ASSERT_TRUE(eventually([&] {
+    launcher->receive();
+    monitor->receive();
+    return writer->matched() == 1 && reader->matched() == 1;
+  }));
+
+  std::vector<std::vector<std::byte>> said;
+  for (std::uint32_t ticks = 0; ticks < 3; ++ticks) {
+    for (std::uint32_t robot = 0; robot < 20; ++robot) {
+      ASSERT_TRUE(writer->write(status_of(robot, ticks)));
+      said.push_back(bytes_of(status_of(robot, ticks)));
+    }
+  }
+
+  const auto messages = heard(*monitor, *reader, said.size());
+  ASSERT_EQ(messages.size(), said.size());
+  for (std::size_t i = 0; i < said.size(); ++i) EXPECT_EQ(messages[i].bytes, said[i]) << i;
+}
+
+TEST(Raw, SaysAgainWhatWasHeard) {
+  const Meeting meeting{.domain = test_domain(), .hubs = 1};
+  const auto stage = join_as_stage(meeting).value();
+  const auto plans = stage.planner->make_writer(topic_named("swarm/plan").wire).value();
+  const auto statuses = stage.launcher->make_writer(topic_named("swarm/status").wire).value();
+  const auto monitor = join_as_monitor(meeting, 0).value();
+  const auto plan_reader = monitor->make_reader(topic_named("swarm/plan").wire).value();
+  const auto status_reader = monitor->make_reader(topic_named("swarm/status").wire).value();
+  // Larger than a datagram, and said before anybody listens: it is latched.
+  PlanMessage plan{.version = 3, .epoch = 4};
+  plan.nodes.resize(2000);
+  RawMessage message{.bytes = bytes_of(plan)};
+  ASSERT_TRUE(plans->write(message));
+  ASSERT_TRUE(eventually([&] {
+    monitor->receive();
+    stage.launcher->receive();
+    stage.planner->receive();
+    return statuses->matched() == 1 && status_reader->matched() == 1;
+  }));
+  RawMessage status{.bytes = bytes_of(status_of(5, 9))};
+  ASSERT_TRUE(statuses->write(status));
+
+  const auto heard_status = heard(*monitor, *status_reader, 1);
+  EXPECT_EQ(heard_status.front().bytes, status.bytes);
+  std::vector<RawMessage> heard_plans;
+  EXPECT_TRUE(eventually([&] {
+    monitor->receive();
+    stage.planner->receive();
+    plan_reader->take(heard_plans);
+    return !heard_plans.empty();
+  }));
+  ASSERT_EQ(heard_plans.size(), 1U);
+  EXPECT_EQ(heard_plans.front().bytes, message.bytes);
+}
+
+TEST(Raw, RefusesWhatIsNoSample) {
+  const Meeting meeting{.domain = test_domain(), .hubs = 1};
+  const auto stage = join_as_stage(meeting).value();
+  const auto writer = stage.launcher->make_writer(topic_named("swarm/event").wire).value();
+  EXPECT_FALSE(writer->write({.bytes = {std::byte{0}}}));
+}
+
+}  // namespace
+}  // namespace swarm::link::conformance
