@@ -19,6 +19,7 @@
 #include "swarm_core/shell/run_directory.hpp"
 #include "swarm_core/shell/stop_signal.hpp"
 #include "swarm_launcher/child_process.hpp"
+#include "swarm_launcher/host_limits.hpp"
 #include "swarm_link/monitor_topics.hpp"
 #include "swarm_link/run_meeting.hpp"
 #include "swarm_link/udp_socket.hpp"
@@ -173,6 +174,13 @@ Result<void> Flight::join() {
       fmt::format("robot states go by {}: {}", to_string(channel_.channel), channel_.reason);
   note(link::Severity::kInfo, "channel", told);
   std::fprintf(stderr, "%s\n", told.c_str());
+  raise_open_files();
+  for (const std::string& shortcoming : shortcomings(
+           read_host_limits(),
+           {.agents = run.agents, .robots_per_process = options_.per_process, .hubs = hubs_})) {
+    note(link::Severity::kWarning, "host-limits", shortcoming);
+    std::fprintf(stderr, "%s\n", shortcoming.c_str());
+  }
   view_ = SwarmView(options_.mission.robots.count, options_.mission.link.hear_radius_m);
   monitors_.emplace(options_.monitors, dir_);
   if (auto started = monitors_->start(); !started) return started;
