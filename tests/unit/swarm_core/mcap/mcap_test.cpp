@@ -73,7 +73,8 @@ class Mcap : public testing::TestWithParam<Compression> {
     const auto a = writer->add_channel("a", schema_named("A"), {{"qos", "reliable"}});
     const auto b = writer->add_channel("b", schema_named("B"));
     for (int i = 0; i < n; ++i) {
-      writer->write(i % 2 == 0 ? a : b, i * 1'000'000, i * 1'000'000, bytes_of(text(i, size)));
+      writer->write(i % 2 == 0 ? a : b, i * std::int64_t{1'000'000}, i * std::int64_t{1'000'000},
+                    bytes_of(text(i, size)));
     }
     EXPECT_EQ(writer->dropped(), 0U);
     EXPECT_TRUE(writer->finish());
