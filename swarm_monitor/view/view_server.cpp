@@ -14,6 +14,7 @@
 
 #include <fmt/format.h>
 #include <libwebsockets.h>
+#include <sys/socket.h>
 #include <unistd.h>
 
 #include "swarm_core/base/clock.hpp"
@@ -252,6 +253,9 @@ int ViewServer::Impl::on_websocket(lws* socket, lws_callback_reasons reason, std
   if (reason == LWS_CALLBACK_ESTABLISHED) {
     Client& client = clients_[socket];
     client.session = make_session(socket);
+    // What the kernel holds for a slow client is old when it gets it; left alone that is megabytes.
+    constexpr int kHeldBytes = 256 << 10;
+    ::setsockopt(lws_get_socket_fd(socket), SOL_SOCKET, SO_SNDBUF, &kHeldBytes, sizeof kHeldBytes);
     if (client.session->has_something()) lws_callback_on_writable(socket);
     return 0;
   }
