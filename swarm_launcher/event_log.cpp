@@ -2,37 +2,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "swarm_launcher/event_log.hpp"
 
-#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "swarm_link/event_words.hpp"
+
 namespace swarm::launcher {
-namespace {
-
-std::string_view to_string(link::Severity severity) {
-  switch (severity) {
-    case link::Severity::kInfo:
-      return "info";
-    case link::Severity::kWarning:
-      return "warning";
-    case link::Severity::kError:
-      return "error";
-  }
-  return "unknown";
-}
-
-std::string source_name(std::uint32_t source) {
-  if (source == link::kPlannerSource) return "planner";
-  if (source == link::kLauncherSource) return "launcher";
-  return fmt::format("robot-{}", source);
-}
-
-}  // namespace
 
 void EventLog::write(UtcTime at, const std::string& source, link::Severity severity,
                      const std::string& code, const std::string& text) {
   const nlohmann::ordered_json line = {{"utc_ns", at.time_since_epoch().count()},
                                        {"source", source},
-                                       {"severity", to_string(severity)},
+                                       {"severity", link::to_string(severity)},
                                        {"code", code},
                                        {"text", text}};
   // Text from the bus may be any bytes: what is not UTF-8 is replaced.
@@ -40,7 +20,7 @@ void EventLog::write(UtcTime at, const std::string& source, link::Severity sever
 }
 
 void EventLog::write(const link::EventMessage& event) {
-  write(UtcTime(Duration(event.stamp_utc_ns)), source_name(event.source), event.severity,
+  write(UtcTime(Duration(event.stamp_utc_ns)), link::source_name(event.source), event.severity,
         event.code, event.text);
 }
 

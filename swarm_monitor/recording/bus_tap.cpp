@@ -19,6 +19,7 @@ namespace swarm::monitor {
 namespace {
 
 constexpr std::int64_t kMostCells = 400;
+constexpr int kLeastDepth = 256;
 /// A writer's clock that is this far off is not believed.
 constexpr Duration kMostDelay = std::chrono::seconds(2);
 
@@ -47,7 +48,9 @@ class RunTap final : public BusTap {
   explicit RunTap(std::unique_ptr<link::RawParticipant> participant)
       : participant_(std::move(participant)) {}
 
-  Result<void> listen(const link::RawTopic& topic, std::uint32_t recorded) {
+  Result<void> listen(link::RawTopic topic, std::uint32_t recorded) {
+    // Robots want the newest, a recorder all: also what came while it was not looking.
+    topic.qos.depth = std::max(topic.qos.depth, kLeastDepth);
     auto reader = participant_->make_reader(topic);
     if (!reader) return tl::unexpected(reader.error());
     readers_.push_back({recorded, std::move(*reader)});

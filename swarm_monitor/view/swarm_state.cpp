@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include <fmt/format.h>
+#include "swarm_link/event_words.hpp"
 
 namespace swarm::monitor {
 namespace {
@@ -18,24 +18,6 @@ constexpr double kCarryOn_s = 0.8;
 /// Who hears nobody tells of a gap that is larger than any map.
 constexpr double kNobodyNear_m = 1e8;
 constexpr std::size_t kMostEvents = 100'000;
-
-std::string source_of(std::uint32_t source) {
-  if (source == link::kPlannerSource) return "planner";
-  if (source == link::kLauncherSource) return "launcher";
-  return fmt::format("robot-{}", source);
-}
-
-const char* word_of(link::Severity severity) {
-  switch (severity) {
-    case link::Severity::kInfo:
-      return "info";
-    case link::Severity::kWarning:
-      return "warning";
-    case link::Severity::kError:
-      return "error";
-  }
-  return "info";
-}
 
 }  // namespace
 
@@ -164,8 +146,8 @@ void SwarmState::take_event(const TappedSample& sample) {
     return;
   }
   events_.push_back({.time_s = begin_ ? to_seconds(sample.heard - *begin_) : 0.0,
-                     .source = source_of(message.source),
-                     .severity = word_of(message.severity),
+                     .source = link::source_name(message.source),
+                     .severity = std::string(link::to_string(message.severity)),
                      .code = message.code,
                      .text = message.text});
 }

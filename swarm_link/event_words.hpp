@@ -1,0 +1,32 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "swarm_link/messages.hpp"
+
+/// How events are told in files and to people.
+namespace swarm::link {
+
+constexpr std::string_view to_string(Severity severity) {
+  switch (severity) {
+    case Severity::kInfo:
+      return "info";
+    case Severity::kWarning:
+      return "warning";
+    case Severity::kError:
+      return "error";
+  }
+  return "unknown";
+}
+
+inline std::string source_name(std::uint32_t source) {
+  if (source == kPlannerSource) return "planner";
+  if (source == kLauncherSource) return "launcher";
+  return "robot-" + std::to_string(source);
+}
+
+}  // namespace swarm::link
