@@ -75,8 +75,9 @@ export class Charts {
       const plot = make('div', { className: 'plot', role: 'img', 'aria-label': `${spec.title} over time` });
       const marker = make('div', { className: 'marker', 'aria-hidden': 'true' });
       const frame = make('div', { className: 'plot-frame' }, plot, marker);
-      this.box.append(make('div', { className: 'chart' }, make('h3', {}, spec.title, ...named), frame));
-      const chart = { spec, values, plot, marker, graph: null };
+      const whole = make('div', { className: 'chart' }, make('h3', {}, spec.title, ...named), frame);
+      this.box.append(whole);
+      const chart = { spec, values, plot, marker, whole, graph: null };
       frame.addEventListener('click', (event) => {
         if (chart.graph) this.seek(chart.graph.toDataXCoord(event.clientX - frame.getBoundingClientRect().left));
       });
@@ -88,9 +89,15 @@ export class Charts {
     const { spec } = chart;
     const columns = spec.columns.map((name) => this.#names.indexOf(name));
     const rows = this.#rows.map((row) => [row[0], ...columns.map((at) => row[at] ?? null)]);
+    // Recordings do not tell everything: what they do not is not shown.
+    chart.whole.hidden = rows.every((row) => row.slice(1).every((value) => value === null));
+    if (chart.whole.hidden) return;
     const first = this.range?.[0] ?? rows[0][0];
     const last = Math.max(this.range?.[1] ?? 0, rows.at(-1)[0], first + 1);
-    if (chart.graph) return chart.graph.updateOptions({ file: rows, dateWindow: [first, last] });
+    if (chart.graph) {
+      chart.graph.updateOptions({ file: rows, dateWindow: [first, last] });
+      return;
+    }
     const style = getComputedStyle(document.documentElement);
     const axis = { axisLineColor: style.getPropertyValue('--line'), gridLineColor: style.getPropertyValue('--line') };
     chart.graph = new Dygraph(chart.plot, rows, {
