@@ -268,9 +268,8 @@ void AgentProcess::Impl::record_link_stats(UtcTime now) {
     }
     robot.record(stats);
   }
-  const bool dropped = std::any_of(robots.begin(), robots.end(), [](const Robot& robot) {
-    return robot.records_dropped() > 0;
-  });
+  const bool dropped = std::any_of(robots.begin(), robots.end(),
+                                   [](const Robot& robot) { return robot.records_dropped() > 0; });
   if (dropped && !boxes_dropped) {
     announce(now, link::Severity::kWarning, "blackbox-dropped",
              "the disk does not take what the black box records; flies on without");

@@ -4,8 +4,8 @@
 
 namespace swarm::shell {
 
-/// Installs handlers for SIGINT and SIGTERM that only count; SIGPIPE and SIGXFSZ are ignored. Sleeps return
-/// early.
+/// Installs handlers for SIGINT and SIGTERM that only count; SIGPIPE and SIGXFSZ are ignored.
+/// Sleeps return early.
 void catch_stop_signals();
 
 /// How often the user asked to stop so far.

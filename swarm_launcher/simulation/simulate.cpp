@@ -13,11 +13,11 @@
 #include "swarm_core/mission/mission_file.hpp"
 #include "swarm_core/mission/scene_log.hpp"
 #include "swarm_core/plan/plan_json.hpp"
+#include "swarm_core/shell/run_dir.hpp"
 #include "swarm_core/shell/run_directory.hpp"
 #include "swarm_core/shell/stop_signal.hpp"
 #include "swarm_launcher/event_log.hpp"
 #include "swarm_launcher/progress.hpp"
-#include "swarm_core/shell/run_dir.hpp"
 #include "swarm_launcher/simulation/simulation.hpp"
 #include "swarm_launcher/summary.hpp"
 

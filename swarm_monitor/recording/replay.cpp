@@ -23,7 +23,8 @@ constexpr Duration kStep = std::chrono::milliseconds(20);
 /// For who hears last what was said last.
 constexpr Duration kLinger = std::chrono::seconds(1);
 
-/// What a writer keeps to say it again. With ten thousand messages every acknowledgement took 10 ms.
+/// What a writer keeps to say it again. With ten thousand messages every acknowledgement took 10
+/// ms.
 constexpr int kKept = 500;
 
 /// A writer for every topic, at the place of who said it.
