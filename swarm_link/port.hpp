@@ -13,7 +13,7 @@
 #include "swarm_link/topics.hpp"
 
 /// The bus as the programs see it: typed writers and readers made by a participant. Three backs
-/// implement it: fastdds/, cyclone/ (to come) and inproc/. No vendor type and no vendor exception
+/// implement it: fastdds/, cyclone/ and inproc/. No vendor type and no vendor exception
 /// crosses this line, and no vendor thread ever runs domain code: readers are polled.
 namespace swarm::link {
 

@@ -13,50 +13,10 @@
 #include "planner_service/transport/build_plan.hpp"
 #include "swarm_core/gmm/wasserstein.hpp"
 #include "swarm_core/mission/mission_file.hpp"
+#include "tests/unit/planner_service/roadmap/crops_worlds.hpp"
 
 namespace swarm::planner {
 namespace {
-
-Polygon box(double x0, double y0, double x1, double y1) {
-  return Polygon::make({{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}}).value();
-}
-
-Mixture single(double x, double y, double sigma_m) {
-  return Mixture::make({{1.0, Gaussian::from_parameters({x, y}, sigma_m, sigma_m, 0.0)}}).value();
-}
-
-Mission crops_scene(const std::string& name) {
-  return load_mission(std::string(SWARM_SOURCE_DIR) + "/deploy/missions/crops_" + name + ".yaml")
-      .value();
-}
-
-Result<CropsGuide> guide_of(const Mission& mission, std::uint64_t seed) {
-  Rng rng(seed);
-  return CropsGuide::make(mission.world, mission.start, mission.goal, {}, {}, rng);
-}
-
-// Largest CVaR on the legs, on a grid.
-double worst_cvar_m(const Waypoints& waypoints, const World& world) {
-  const double k = cvar_coefficient(RiskLimit{}.alpha);
-  double worst_m = -std::numeric_limits<double>::infinity();
-  for (std::size_t i = 1; i < waypoints.size(); ++i) {
-    const Geodesic geodesic(waypoints[i - 1], waypoints[i]);
-    for (int t = 0; t <= 100; ++t) {
-      worst_m = std::max(worst_m, max_cvar_m(geodesic.at(t / 100.0), world, k));
-    }
-  }
-  return worst_m;
-}
-
-double mean_y_at(const Waypoints& waypoints, double x) {
-  for (std::size_t i = 1; i < waypoints.size(); ++i) {
-    const Vec2& a = waypoints[i - 1].mean_m();
-    const Vec2& b = waypoints[i].mean_m();
-    if ((a.x() - x) * (b.x() - x) > 0.0 || a.x() == b.x()) continue;
-    return a.y() + (x - a.x()) / (b.x() - a.x()) * (b.y() - a.y());
-  }
-  return std::numeric_limits<double>::quiet_NaN();
-}
 
 TEST(CropsGuide, WeighsAPlaceByTheSumOfItsDistances) {
   const auto letter_l = Polygon::make({{0, 0}, {4, 0}, {4, 1}, {1, 1}, {1, 6}, {0, 6}}).value();
@@ -157,19 +117,6 @@ TEST(CropsGuide, IsTheUnionOfEachNodesNearestVisibleNeighbours) {
   EXPECT_EQ(found, expected);
 }
 
-// A wall with a gap of 2 m on the direct way; above the wall all is open.
-//
-//   20  .                 .
-//   11  .       ##        .      start (2, 5), goal (18, 5)
-//       .       ##        .
-//    6  .       ##        .      at the gap's middle, (10, 5): 1 + 1 = 2 m of clearance
-//    5  S                 G      above the wall, (10, 14): 3 + 10 = 13 m
-//    4  .       ##        .
-//    0  .       ##        .
-World gap_or_detour() {
-  return World::make({{0, 0}, {20, 20}}, {box(9, -1, 11, 4), box(9, 6, 11, 11)}).value();
-}
-
 TEST(CropsGuide, PrefersClearanceOverLength) {
   // Straight 16 m, around the wall at least 2·√(8² + 6²) = 20 m. Cubed, the gap's edges cost
   // (13/2)³ = 275 times as much a metre as those above the wall; with p = 0 length alone counts.
@@ -222,107 +169,6 @@ TEST(CropsGuide, TakesTheCheapestPathOfItsGraph) {
     }
     EXPECT_NEAR(path_cost, cost[route.from], 1e-6 * path_cost);
   }
-}
-
-TEST(CropsGuide, LeavesAWayWhereManyAreStuck) {
-  // One block in the middle, a way on either side.
-  const World world = World::make({{0, 0}, {20, 20}}, {box(8, 6, 12, 14)}).value();
-  int changed_sides = 0;
-  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
-    Rng rng(seed);
-    auto guide = CropsGuide::make(world, single(2, 10, 0.5), single(18, 10, 0.5), {}, {}, rng);
-    ASSERT_TRUE(guide.has_value());
-    const bool was_above = mean_y_at(guide->routes()[0].waypoints, 10.0) > 10.0;
-
-    for (int times = 0; times < 20; ++times) {
-      const double y = mean_y_at(guide->routes()[0].waypoints, 10.0);
-      if ((y > 10.0) != was_above) break;
-      guide->reweight(0, {9.0, y});
-    }
-
-    changed_sides += (mean_y_at(guide->routes()[0].waypoints, 10.0) > 10.0) != was_above ? 1 : 0;
-    EXPECT_LE(worst_cvar_m(guide->routes()[0].waypoints, world),
-              RiskLimit{}.delta_m + kPlanTolerance_m);
-  }
-  EXPECT_EQ(changed_sides, 10);
-}
-
-TEST(CropsGuide, MakesTheNextEdgesThreeTimesAsDear) {
-  const World world = gap_or_detour();
-  Rng rng(2);
-  auto guide = CropsGuide::make(world, single(2, 5, 0.5), single(18, 5, 0.5), {}, {}, rng);
-  ASSERT_TRUE(guide.has_value());
-  const Roadmap before = guide->roadmap();
-  const Waypoints path = guide->routes()[0].waypoints;
-  ASSERT_GE(path.size(), 7U);
-
-  // Between the second and the third place of the path: its edges 1, 2, 3 and 4.
-  guide->reweight(0, 0.5 * (path[1].mean_m() + path[2].mean_m()));
-
-  const auto is_dear = [&](const Vec2& a, const Vec2& b) {
-    for (std::size_t i = 1; i <= 4; ++i) {
-      if ((path[i].mean_m() == a && path[i + 1].mean_m() == b) ||
-          (path[i].mean_m() == b && path[i + 1].mean_m() == a)) {
-        return true;
-      }
-    }
-    return false;
-  };
-  std::size_t dear = 0;
-  for (std::uint32_t a = 0; a < before.nodes.size(); ++a) {
-    for (std::size_t i = 0; i < before.arcs_of(a).size(); ++i) {
-      const Roadmap::Arc& arc = before.arcs_of(a)[i];
-      const bool expected = is_dear(before.nodes[a].mean_m(), before.nodes[arc.to].mean_m());
-      dear += expected ? 1U : 0U;
-      EXPECT_EQ(guide->roadmap().arcs_of(a)[i].length_m,
-                expected ? 3.0 * arc.length_m : arc.length_m);
-    }
-  }
-  EXPECT_EQ(dear, 8U);
-}
-
-TEST(CropsGuide, KeepsTheOnlyWayHoweverStuck) {
-  const Mission mission = crops_scene("spiral");
-  auto guide = guide_of(mission, 1);
-  ASSERT_TRUE(guide.has_value());
-
-  for (int times = 0; times < 1'000; ++times) guide->reweight(0, {30.0, 20.0});
-
-  ASSERT_EQ(guide->routes().size(), mission.start.components().size());
-  for (const Roadmap::Arc& arc : guide->roadmap().arcs) EXPECT_TRUE(std::isfinite(arc.length_m));
-}
-
-TEST(CropsGuide, FollowsTheSwarmOnItsSamples) {
-  const World world = World::make({{0, 0}, {20, 20}}, {box(8, 6, 12, 14)}).value();
-  Rng rng(4);
-  auto guide = CropsGuide::make(world, single(2, 10, 0.5), single(18, 10, 0.5), {}, {}, rng);
-  ASSERT_TRUE(guide.has_value());
-  const bool was_above = mean_y_at(guide->routes()[0].waypoints, 10.0) > 10.0;
-  const std::size_t samples = guide->roadmap().nodes.size() - 2;
-  for (int times = 0; times < 20; ++times) {
-    guide->reweight(0, {9.0, mean_y_at(guide->routes()[0].waypoints, 9.0)});
-  }
-  for (int times = 0; times < 20; ++times) {
-    guide->reweight(0, {9.0, was_above ? 17.0 : 3.0});
-  }
-  const bool is_above = mean_y_at(guide->routes()[0].waypoints, 10.0) > 10.0;
-
-  const auto start = Mixture::make({{0.5, Gaussian::from_parameters({4, 9}, 0.4, 0.4, 0)},
-                                    {0.5, Gaussian::from_parameters({4, 11}, 0.4, 0.4, 0)}});
-  const auto moved = guide->move_ends(start.value(), single(17, 10, 0.6));
-
-  ASSERT_TRUE(moved.has_value()) << moved.error().message;
-  EXPECT_EQ(guide->roadmap().nodes.size() - 3, samples);
-  ASSERT_EQ(guide->routes().size(), 2U);
-  for (const Route& route : guide->routes()) {
-    EXPECT_EQ(route.waypoints.front().mean_m(), start->components()[route.from].gaussian.mean_m());
-    EXPECT_EQ(route.waypoints.back().mean_m(), Vec2(17, 10));
-    EXPECT_LE(worst_cvar_m(route.waypoints, world), RiskLimit{}.delta_m + kPlanTolerance_m);
-    // What was dear is still dear.
-    EXPECT_EQ(mean_y_at(route.waypoints, 10.0) > 10.0, is_above);
-  }
-  EXPECT_FALSE(guide->move_ends(start.value(), single(10, 10, 0.6)).has_value());
-  EXPECT_TRUE(guide->routes().empty());
 }
 
 TEST(CropsGuide, ContractsInPlaceWhereTheFirstLegIsTight) {
