@@ -32,8 +32,9 @@ constexpr Duration kStep = std::chrono::milliseconds(20);
 constexpr std::uint32_t kPlannerStrength = 100;
 
 Result<void> vendors_fit(const FlightOptions& options, Channel channel) {
-  const bool cyclone = options.agent_dds != AgentDds::kFastDds || options.cyclone_launcher ||
-                       options.cyclone_planner || options.by_gateway > 0;
+  const bool cyclone = options.how.agent_dds != AgentDds::kFastDds ||
+                       options.how.cyclone_launcher || options.how.cyclone_planner ||
+                       options.how.by_gateway > 0;
   if (cyclone && channel != Channel::kGroups) {
     return fail(ErrorCode::kBadInput,
                 "Cyclone DDS joins without a discovery server; add --channel groups");
@@ -41,7 +42,7 @@ Result<void> vendors_fit(const FlightOptions& options, Channel channel) {
   if (cyclone && !link::built_with(link::Vendor::kCycloneDds)) {
     return fail(ErrorCode::kBadInput, "this program was built without Cyclone DDS");
   }
-  if (options.by_gateway > 0 && !link::built_with(link::Vendor::kFastDds)) {
+  if (options.how.by_gateway > 0 && !link::built_with(link::Vendor::kFastDds)) {
     return fail(ErrorCode::kBadInput,
                 "--by-gateway: the gateway speaks Fast DDS, which this program was built without");
   }
@@ -61,44 +62,45 @@ Flight::Flight(FlightOptions options, FlightObserver* observer, std::filesystem:
       events_(dir_ / shell::kEventsFile) {}
 
 Result<std::unique_ptr<Flight>> Flight::make(FlightOptions options, FlightObserver* observer) {
-  if (const auto faults = parse_link_faults(options.fault); !faults) {
+  if (const auto faults = parse_link_faults(options.how.fault); !faults) {
     return tl::unexpected(faults.error());
   }
-  if (const auto places = place_robots(options.mission, options.seed); !places) {
+  if (const auto places = place_robots(options.mission, options.how.seed); !places) {
     return tl::unexpected(places.error());
   }
   const std::uint32_t agents =
       (options.mission.robots.count + options.per_process - 1) / options.per_process;
-  if (options.remote > 0 && options.channel.value_or(Channel::kGroups) != Channel::kGroups) {
+  if (options.how.remote > 0 &&
+      options.how.channel.value_or(Channel::kGroups) != Channel::kGroups) {
     return fail(ErrorCode::kBadInput, "--remote: robots of several hosts meet by --channel groups");
   }
-  if (options.remote > 0) options.channel = Channel::kGroups;
-  if (options.remote > options.mission.robots.count ||
-      (options.remote > 0 &&
-       (options.mission.robots.count - options.remote) % options.per_process != 0)) {
+  if (options.how.remote > 0) options.how.channel = Channel::kGroups;
+  if (options.how.remote > options.mission.robots.count ||
+      (options.how.remote > 0 &&
+       (options.mission.robots.count - options.how.remote) % options.per_process != 0)) {
     return fail(ErrorCode::kBadInput,
                 fmt::format("--remote {}: of {} robots that many must be there, and what is left "
                             "must be whole processes of {}",
-                            options.remote, options.mission.robots.count, options.per_process));
+                            options.how.remote, options.mission.robots.count, options.per_process));
   }
   if (!link::built_with(link::Vendor::kFastDds)) {
-    options.agent_dds = AgentDds::kCycloneDds;
-    options.cyclone_launcher = options.cyclone_planner = true;
-    if (!options.channel) options.channel = Channel::kGroups;
+    options.how.agent_dds = AgentDds::kCycloneDds;
+    options.how.cyclone_launcher = options.how.cyclone_planner = true;
+    if (!options.how.channel) options.how.channel = Channel::kGroups;
   }
-  auto channel = choose_channel({.wanted = options.channel,
+  auto channel = choose_channel({.wanted = options.how.channel,
                                  .agents = agents,
                                  .robots_per_process = options.per_process,
-                                 .multicast = link::carries_multicast(options.interface)});
+                                 .multicast = link::carries_multicast(options.how.interface)});
   if (!channel) return tl::unexpected(channel.error());
   if (const auto fits = vendors_fit(options, channel->channel); !fits) {
     return tl::unexpected(fits.error());
   }
   const std::uint32_t hubs = channel->channel == Channel::kGroups ? link::hubs_for(agents) : 0;
   auto lock =
-      link::DomainLock::take(options.domain, link::participants_for({.hubs = hubs}, agents));
+      link::DomainLock::take(options.how.domain, link::participants_for({.hubs = hubs}, agents));
   if (!lock) return tl::unexpected(lock.error());
-  const auto dir = shell::make_run_dir(options.out, options.mission.name);
+  const auto dir = shell::make_run_dir(options.how.out, options.mission.name);
   if (!dir) return tl::unexpected(dir.error());
   if (auto written = shell::write_file(*dir / shell::kMissionFile, to_yaml(options.mission));
       !written) {
@@ -128,12 +130,12 @@ Result<void> Flight::join() {
       .discovery_port = meeting_place.port,
       .agents = (options_.mission.robots.count + options_.per_process - 1) / options_.per_process,
       .hubs = hubs_,
-      .cyclone_launcher = options_.cyclone_launcher,
-      .cyclone_planner = options_.cyclone_planner,
-      .host = options_.interface,
-      .interface = options_.interface,
+      .cyclone_launcher = options_.how.cyclone_launcher,
+      .cyclone_planner = options_.how.cyclone_planner,
+      .host = options_.how.interface,
+      .interface = options_.how.interface,
       .channel = channel_.channel,
-      .seed = options_.seed,
+      .seed = options_.how.seed,
       .began = utc_now()};
   if (auto written = shell::write_run_info(dir_, run); !written) return written;
   auto participant = link::join_as_launcher(link::meeting_of(run));
@@ -163,12 +165,12 @@ Result<void> Flight::join() {
 
   limits_ = link::wire_limits(options_.mission);
   supervisor_.emplace(
-      SupervisorOptions{
-          .robots = options_.mission.robots.count,
-          .per_process = options_.per_process,
-          .remote_processes = (options_.remote + options_.per_process - 1) / options_.per_process,
-          .launcher = options_.mission.launcher,
-          .script = options_.mission.script},
+      SupervisorOptions{.robots = options_.mission.robots.count,
+                        .per_process = options_.per_process,
+                        .remote_processes =
+                            (options_.how.remote + options_.per_process - 1) / options_.per_process,
+                        .launcher = options_.mission.launcher,
+                        .script = options_.mission.script},
       std::chrono::steady_clock::now());
   const std::string told =
       fmt::format("robot states go by {}: {}", to_string(channel_.channel), channel_.reason);
@@ -182,13 +184,13 @@ Result<void> Flight::join() {
     std::fprintf(stderr, "%s\n", shortcoming.c_str());
   }
   view_ = SwarmView(options_.mission.robots.count, options_.mission.link.hear_radius_m);
-  monitors_.emplace(options_.monitors, dir_);
+  monitors_.emplace(options_.how.monitors, dir_);
   if (auto started = monitors_->start(); !started) return started;
-  if (options_.by_gateway > 0) {
+  if (options_.how.by_gateway > 0) {
     gateway_.emplace(dir_);
     if (auto started = gateway_->start(); !started) return started;
   }
-  return options_.remote > 0 ? open_to_hosts(run) : Result<void>{};
+  return options_.how.remote > 0 ? open_to_hosts(run) : Result<void>{};
 }
 
 Result<void> Flight::start(ProcessIndex process) {
@@ -211,15 +213,16 @@ Result<void> Flight::start(ProcessIndex process) {
                     fmt::format("{}", count),
                     "--number",
                     fmt::format("{}", process.value() - 1)};
-    const bool by_gateway = process.value() <= options_.by_gateway;
-    if (by_gateway || options_.agent_dds == AgentDds::kCycloneDds ||
-        (options_.agent_dds == AgentDds::kHalf && process.value() % 2 == 0)) {
+    const bool by_gateway = process.value() <= options_.how.by_gateway;
+    if (by_gateway || options_.how.agent_dds == AgentDds::kCycloneDds ||
+        (options_.how.agent_dds == AgentDds::kHalf && process.value() % 2 == 0)) {
       command_line.insert(command_line.end(), {"--dds", "cyclonedds"});
     }
     if (by_gateway) command_line.emplace_back("--by-gateway");
     log = fmt::format("agent-{:05}.log", first.value());
   }
-  if (!options_.fault.empty()) command_line.insert(command_line.end(), {"--fault", options_.fault});
+  if (!options_.how.fault.empty())
+    command_line.insert(command_line.end(), {"--fault", options_.how.fault});
   command_line.insert(command_line.end(), {"--parent", fmt::format("{}", ::getpid())});
   const auto pid = start_process(command_line, dir_ / shell::kLogsFolder / log);
   if (!pid) return tl::unexpected(pid.error());

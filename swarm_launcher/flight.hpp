@@ -17,9 +17,9 @@
 #include "swarm_core/mission/mission.hpp"
 #include "swarm_core/shell/control_socket.hpp"
 #include "swarm_core/shell/run_directory.hpp"
-#include "swarm_launcher/agent_dds.hpp"
 #include "swarm_launcher/channel_choice.hpp"
 #include "swarm_launcher/event_log.hpp"
+#include "swarm_launcher/flight_choices.hpp"
 #include "swarm_launcher/gateway.hpp"
 #include "swarm_launcher/hosts/remote_hosts.hpp"
 #include "swarm_launcher/monitors.hpp"
@@ -38,19 +38,7 @@ namespace swarm::launcher {
 struct FlightOptions {
   Mission mission;
   std::uint32_t per_process = 1;
-  std::uint64_t seed = 1;
-  std::string fault{};               ///< as parse_link_faults() reads it
-  std::filesystem::path out{};       ///< run directory; empty: runs/<mission>-<time>
-  int domain = -1;                   ///< DDS domain; negative: a free one
-  std::optional<Channel> channel{};  ///< empty: choose_channel() decides
-  AgentDds agent_dds = AgentDds::kFastDds;
-  bool cyclone_launcher = false;
-  bool cyclone_planner = false;
-  std::uint32_t by_gateway = 0;  ///< agent processes, the first ones, whose states go by topics
-  std::string interface = "127.0.0.1";  ///< address of the network's interface
-  std::uint32_t remote = 0;             ///< robots that other hosts start: the last ones
-  std::uint16_t join_port = 0;          ///< where those hosts come to; 0: a free one
-  MonitorOptions monitors{};
+  FlightChoices how{};
 };
 
 class Flight;

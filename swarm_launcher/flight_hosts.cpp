@@ -18,20 +18,20 @@ constexpr Duration kBoxesPatience = std::chrono::minutes(3);
 }  // namespace
 
 Result<void> Flight::open_to_hosts(const shell::RunInfo& run) {
-  auto server = LineServer::listen({options_.interface, options_.join_port});
+  auto server = LineServer::listen({options_.how.interface, options_.how.join_port});
   if (!server) return tl::unexpected(server.error());
-  const std::uint32_t first = options_.mission.robots.count - options_.remote;
+  const std::uint32_t first = options_.mission.robots.count - options_.how.remote;
   hosts_.emplace(std::move(*server),
                  HostOffer{.run = run,
                            .first_robot = first,
-                           .robots = options_.remote,
+                           .robots = options_.how.remote,
                            .per_process = options_.per_process,
                            .first_process = first / options_.per_process,
-                           .fault = options_.fault,
+                           .fault = options_.how.fault,
                            .mission_yaml = to_yaml(options_.mission)},
                  options_.mission.link.status_hz, dir_);
   std::fprintf(stderr, "%u robots are for other hosts: swarm_launcher join %s:%u\n",
-               options_.remote, options_.interface.c_str(), hosts_->port());
+               options_.how.remote, options_.how.interface.c_str(), hosts_->port());
   return {};
 }
 

@@ -36,21 +36,8 @@ Result<ExitCode> run_mission(const RunOptions& options) {
     per_process = *options.processes > 0 ? (robots + *options.processes - 1) / *options.processes
                                          : robots_per_process(robots, this_machine());
   }
-  const auto flight = Flight::make({.mission = std::move(*mission),
-                                    .per_process = per_process,
-                                    .seed = options.seed,
-                                    .fault = options.fault,
-                                    .out = options.out,
-                                    .domain = options.domain,
-                                    .channel = options.channel,
-                                    .agent_dds = options.agent_dds,
-                                    .cyclone_launcher = options.cyclone_launcher,
-                                    .cyclone_planner = options.cyclone_planner,
-                                    .by_gateway = options.by_gateway,
-                                    .interface = options.interface,
-                                    .remote = options.remote,
-                                    .join_port = options.join_port,
-                                    .monitors = options.monitors});
+  const auto flight = Flight::make(
+      {.mission = std::move(*mission), .per_process = per_process, .how = options.how});
   if (!flight) return tl::unexpected(flight.error());
   std::fprintf(stderr, "run directory: %s\n", (*flight)->dir().c_str());
   const auto measured = (*flight)->fly();

@@ -45,40 +45,42 @@ Command add_run(CLI::App& program) {
       ->check(CLI::IsMember({"auto"}) | CLI::Range(1, kMostRobots))
       ->type_name("N|auto")
       ->excludes(per_process);
-  run->add_option("--seed", o->seed, "Seed of placement, plan and robots");
-  run->add_option("--out", o->out, "Run directory (default: runs/<mission>-<time>)");
-  add_domain(*run, o->domain);
-  add_channel(*run, o->channel);
+  run->add_option("--seed", o->how.seed, "Seed of placement, plan and robots");
+  run->add_option("--out", o->how.out, "Run directory (default: runs/<mission>-<time>)");
+  add_domain(*run, o->how.domain);
+  add_channel(*run, o->how.channel);
   const std::map<std::string, AgentDds> agent_dds = {{"fastdds", AgentDds::kFastDds},
                                                      {"cyclonedds", AgentDds::kCycloneDds},
                                                      {"half", AgentDds::kHalf}};
-  run->add_option("--agent-dds", o->agent_dds, "Whose DDS the agents speak (groups channel)")
+  run->add_option("--agent-dds", o->how.agent_dds, "Whose DDS the agents speak (groups channel)")
       ->transform(CLI::CheckedTransformer(agent_dds));
-  run->add_option("--by-gateway", o->by_gateway,
+  run->add_option("--by-gateway", o->how.by_gateway,
                   "The first N agent processes speak Cyclone DDS and say their states by\n"
                   "topics, through a gateway to the others' groups");
   run->add_option_function<std::string>(
          "--launcher-dds",
-         [o](const std::string& name) { o->cyclone_launcher = name == "cyclonedds"; },
+         [o](const std::string& name) { o->how.cyclone_launcher = name == "cyclonedds"; },
          "Whose DDS the launcher speaks (groups channel)")
       ->check(CLI::IsMember({"fastdds", "cyclonedds"}));
   run->add_option_function<std::string>(
          "--planner-dds",
-         [o](const std::string& name) { o->cyclone_planner = name == "cyclonedds"; },
+         [o](const std::string& name) { o->how.cyclone_planner = name == "cyclonedds"; },
          "Whose DDS the planner speaks (groups channel)")
       ->check(CLI::IsMember({"fastdds", "cyclonedds"}));
-  run->add_option("--fault", o->fault,
+  run->add_option("--fault", o->how.fault,
                   "A bad network for what planner and robots receive, like\n"
                   "loss=0.2,delay-ms=150,jitter-ms=50,from=10,to=60")
       ->type_name("FAULT");
-  run->add_option("--interface", o->interface, "IPv4 address to meet other hosts on")
+  run->add_option("--interface", o->how.interface, "IPv4 address to meet other hosts on")
       ->check(CLI::ValidIPV4);
-  run->add_option("--remote", o->remote, "Robots, the last ones, that other hosts start: see join");
-  run->add_option("--join-port", o->join_port,
+  run->add_option("--remote", o->how.remote,
+                  "Robots, the last ones, that other hosts start: see join");
+  run->add_option("--join-port", o->how.join_port,
                   "TCP port where those come to (default: a free one)");
-  run->add_flag("--record", o->monitors.record, "Record the bus: bus.mcap in the run directory");
-  auto* const view = run->add_flag("--view", o->monitors.view, "Show it in the browser");
-  run->add_flag("--allow-control", o->monitors.allow_control,
+  run->add_flag("--record", o->how.monitors.record,
+                "Record the bus: bus.mcap in the run directory");
+  auto* const view = run->add_flag("--view", o->how.monitors.view, "Show it in the browser");
+  run->add_flag("--allow-control", o->how.monitors.allow_control,
                 "Let who has the view's address pause, stop and change the mission")
       ->needs(view);
   run->add_flag("--json", o->json, "Print the summary as JSON");

@@ -21,11 +21,11 @@ Result<ExitCode> soak(const SoakOptions& options) {
   SoakWatch watch(robots);
   const auto flight = Flight::make({.mission = std::move(*mission),
                                     .per_process = options.per_process,
-                                    .seed = options.seed,
-                                    .fault = options.fault,
-                                    .out = options.out,
-                                    .domain = options.domain,
-                                    .channel = options.channel},
+                                    .how = {.seed = options.seed,
+                                            .fault = options.fault,
+                                            .out = options.out,
+                                            .domain = options.domain,
+                                            .channel = options.channel}},
                                    &watch);
   if (!flight) return tl::unexpected(flight.error());
   const std::filesystem::path& dir = (*flight)->dir();
