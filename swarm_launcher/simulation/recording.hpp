@@ -13,21 +13,19 @@
 
 namespace swarm::launcher {
 
-/// The black boxes of a simulation, in memory. Robots may be recorded by several threads, each
-/// robot by one at a time.
+/// The black boxes of a simulation, in memory, a control period after the other: a swarm writes
+/// them as it goes from robot to robot, so in flight they cost the cache nothing. Robots may be
+/// recorded by several threads, each robot by one at a time.
 class Recording {
  public:
   /// Nothing is kept if `steps` is false but where robots began and ended.
   Recording(const Mission& mission, UtcTime begin, bool steps);
 
-  void step(RobotId robot, const blackbox::Step& step) {
-    std::vector<blackbox::Step>& kept = robots_[robot.value()].steps;
-    if (keeps_steps_ || kept.size() < 2) {
-      kept.push_back(step);
-    } else {
-      kept.back() = step;
-    }
+  /// Every robot makes one step in it.
+  void begin_period() {
+    if (keeps_steps_ || periods_.size() < 2) periods_.emplace_back(notes_.size());
   }
+  void step(RobotId robot, const blackbox::Step& step) { periods_.back()[robot.value()] = step; }
   void note(RobotId robot, UtcTime at, std::string code, std::string text);
 
   /// What the network did, told once for all robots together.
@@ -44,17 +42,14 @@ class Recording {
   Result<void> write(const std::filesystem::path& run_dir) const;
 
  private:
-  struct Robot {
-    std::vector<blackbox::Step> steps;
-    std::vector<blackbox::Note> notes;
-  };
   template <class Take>
   void replay(std::uint32_t robot, Take take) const;
 
   const Mission& mission_;
   UtcTime begin_;
   bool keeps_steps_;
-  std::vector<Robot> robots_;
+  std::vector<std::vector<blackbox::Step>> periods_;  // each of all robots
+  std::vector<std::vector<blackbox::Note>> notes_;    // of each robot
   Link link_;
 };
 

@@ -268,6 +268,7 @@ bool Simulation::step() {
     world_ = world_at(mission_.world, scene_, utc(now_));
     world_moves_ = scene_.moves(utc(now_));
   }
+  recording_.begin_period();
   const auto begin = std::chrono::steady_clock::now();
   for (std::size_t slot = 0; slot < slots_.size(); ++slot) tick_slot(slot);
   const double took_s = to_seconds(std::chrono::steady_clock::now() - begin);
