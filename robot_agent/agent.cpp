@@ -165,7 +165,9 @@ AgentOptions agent_options(const Mission& mission, RobotId robot, std::uint64_t 
 
 Agent::Agent(const World& world, const AgentOptions& options)
     : world_(&world),
-      options_(options),
+      share_(options.share),
+      route_options_(options.route),
+      mean_share_(std::min(1.0, to_seconds(options.safety.period) / kMeanOver_s)),
       neighbours_(options.neighbours),
       filter_(world, options.safety),
       say_(options.say),
@@ -176,11 +178,11 @@ Agent::Agent(const World& world, const AgentOptions& options)
 void Agent::accept_plan(const FlowPlan& plan, const Vec2& position_m,
                         std::optional<PlanEntry> entry) {
   if (has_route_ && plan.digest() == plan_digest_) return;
-  const RouteOptions& o = options_.route;
+  const RouteOptions& o = route_options_;
   Route route = entry && is_near_source(plan, entry->source, position_m)
                     ? route_from_source(plan, entry->source, entry->share, position_m, *world_, o)
-                : moved_ || entry ? route_from_here(plan, options_.share, position_m, *world_, o)
-                                  : route_from_start(plan, options_.share, position_m, *world_, o);
+                : moved_ || entry ? route_from_here(plan, share_, position_m, *world_, o)
+                                  : route_from_start(plan, share_, position_m, *world_, o);
   keep_place(route, position_m);
   method_->see_goals(plan);
   method_->begin(route, *world_);
@@ -198,7 +200,7 @@ void Agent::keep_place(Route& route, const Vec2& position_m) const {
   constexpr double kSame_m = 1e-6;
   const bool same_goal = has_route_ && (route.goal.mean_m() - goal_.mean_m()).norm() < kSame_m;
   if (!same_goal || !route.goal.contains_99(position_m)) return;
-  if (!world_->segment_is_free(position_m, way_end_m_, options_.route.radius_m)) return;
+  if (!world_->segment_is_free(position_m, way_end_m_, route_options_.radius_m)) return;
   route.path = Polyline({position_m, way_end_m_});
   route.stations = {route.stations.back()};
   route.stations.back().at_m = route.path.length_m();
@@ -232,8 +234,7 @@ AgentOutput Agent::tick(const AgentInput& input) {
     out.velocity_mps = filter_.filter(input.position_m, wished, view.neighbours, gives_way);
   }
   // With noise in what it measures a robot never stands; where it goes nowhere, it rests.
-  const double share = std::min(1.0, to_seconds(options_.safety.period) / kMeanOver_s);
-  mean_mps_ += share * (out.velocity_mps - mean_mps_);
+  mean_mps_ += mean_share_ * (out.velocity_mps - mean_mps_);
   out.settled = out.mode == RobotMode::kArrived &&
                 std::min(out.velocity_mps.norm(), mean_mps_.norm()) < kAtRest_mps;
 

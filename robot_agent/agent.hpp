@@ -109,7 +109,9 @@ class Agent {
   RobotMode decide_mode(const AgentInput& input) const;
 
   const World* world_;
-  AgentOptions options_;
+  double share_;
+  RouteOptions route_options_;
+  double mean_share_;  // of a tick, in mean_mps_
   NeighbourTable neighbours_;
   SafetyFilter filter_;
   SayPolicy say_;

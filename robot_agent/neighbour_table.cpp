@@ -3,7 +3,6 @@
 #include "robot_agent/neighbour_table.hpp"
 
 #include <algorithm>
-#include <limits>
 
 namespace swarm::agent {
 namespace {
@@ -16,12 +15,17 @@ constexpr double kOfWords = 1.0 / 64;  // weight of a word in what is thought of
 constexpr double kPoor = 0.02;         // of two words in the last sixty-four, …
 constexpr double kClean = 0.005;       // … until eighty in a row came
 constexpr double kInside = 0.8;        // of the range: who is farther may have been out of it
+constexpr std::int32_t kLongest_us = 1 << 29;  // nothing is remembered for so long
+constexpr Duration kFrameFor = std::chrono::seconds(60);
+constexpr double kFrame_m = 100.0;
 
-/// A product: to_seconds() divides, which is a tenth of what believing a robot costs.
-double age_in_s(SteadyTime now, SteadyTime as_of) {
-  constexpr double kSecond = std::chrono::duration<double>(Duration(1)).count();
-  return std::max(0.0, kSecond * static_cast<double>((now - as_of).count()));
+std::int32_t to_us(Duration d) {
+  constexpr std::int64_t kMost = kLongest_us;
+  return static_cast<std::int32_t>(
+      std::clamp<std::int64_t>(d / std::chrono::microseconds(1), -kMost, kMost));
 }
+
+constexpr double in_s(std::int32_t us) { return 1e-6 * us; }
 
 }  // namespace
 
@@ -29,9 +33,12 @@ NeighbourTable::NeighbourTable(const NeighbourOptions& options)
     : options_(options),
       period_s_(to_seconds(options.period)),
       silence_s_(to_seconds(options.expected_silence)),
-      forget_after_s_(to_seconds(options.forget_after)),
+      period_us_(to_us(options.period)),
+      silence_us_(to_us(options.expected_silence)),
+      forget_after_us_(to_us(options.forget_after)),
       index_(kFirstSlots, kFree) {
-  known_.reserve(kFirstSlots / kSlotsEach);
+  fours_.reserve(kFirstSlots / kSlotsEach / kLanes);
+  sifted_.reserve(fours_.capacity());
   candidates_.reserve(kFirstSlots / kSlotsEach);
   neighbours_.reserve(kFirstSlots / kSlotsEach);
 }
@@ -40,149 +47,201 @@ NeighbourTable::NeighbourTable(const NeighbourOptions& options)
 NeighbourTable::Slot& NeighbourTable::slot_of(RobotId robot) {
   const std::size_t mask = index_.size() - 1;
   std::size_t at = (robot.value() * 0x9E37'79B1U >> 16U) & mask;
-  while (index_[at] != kFree && known_[index_[at]].robot != robot) at = (at + 1) & mask;
+  while (index_[at] != kFree && fours_[index_[at] / kLanes].robot[index_[at] % kLanes] != robot) {
+    at = (at + 1) & mask;
+  }
   return index_[at];
 }
 
 void NeighbourTable::rebuild_index() {
-  if (index_.size() < kSlotsEach * known_.size()) index_.resize(2 * index_.size());
+  if (index_.size() < kSlotsEach * count_) index_.resize(2 * index_.size());
   std::fill(index_.begin(), index_.end(), kFree);
-  for (std::size_t i = 0; i < known_.size(); ++i) {
-    slot_of(known_[i].robot) = static_cast<Slot>(i);
+  for (std::size_t i = 0; i < count_; ++i) {
+    slot_of(fours_[i / kLanes].robot[i % kLanes]) = static_cast<Slot>(i);
   }
 }
 
 void NeighbourTable::insert(RobotId robot, Slot& slot) {
-  slot = static_cast<Slot>(known_.size());
-  Known& known = known_.emplace_back();
-  known.robot = robot;
-  known.radius_m = options_.fleet.of(robot).radius_m;
-  if (index_.size() < kSlotsEach * known_.size()) rebuild_index();
+  slot = static_cast<Slot>(count_);
+  if (count_ % kLanes == 0) fours_.emplace_back().as_of_us = all(kGone);
+  fours_.back().robot[count_ % kLanes] = robot;
+  ++count_;
+  if (index_.size() < kSlotsEach * count_) rebuild_index();
+}
+
+std::int32_t NeighbourTable::since_then_us(SteadyTime t) const { return to_us(t - then_); }
+
+/// Counts all that is known from another moment and place once the last ones are far off.
+void NeighbourTable::keep_frame(SteadyTime now, const Vec2& own_position_m) {
+  const Vec2 by_m = own_position_m - here_m_;
+  if (now - then_ <= kFrameFor && by_m.squaredNorm() <= kFrame_m * kFrame_m) return;
+  const std::int32_t by_us = to_us(now - then_);
+  for (Four& four : fours_) {
+    four.x_m -= static_cast<float>(by_m.x());
+    four.y_m -= static_cast<float>(by_m.y());
+    four.as_of_us = four.as_of_us == all(kGone) ? all(kGone) : four.as_of_us - by_us;
+  }
+  then_ = now;
+  here_m_ = own_position_m;
 }
 
 /// Numbers that were left out are words that were lost, where both ends of the gap were in range.
-void NeighbourTable::judge_link(const Known& before, const NeighbourReport& report,
-                                const Vec2& own_position_m) {
+void NeighbourTable::judge_link(const Four& four, std::size_t lane, const NeighbourReport& report,
+                                std::int32_t as_of_us, const Vec2& own_position_m) {
   link_.late_s += kOfWords * (report.late_s - link_.late_s);
   const double inside_m = kInside * options_.keep_radius_m;
-  if (report.as_of - before.as_of > options_.expected_silence ||
-      (before.position_m - own_position_m).squaredNorm() > inside_m * inside_m) {
-    return;
-  }
-  const double lost = std::min(report.sequence - before.sequence - 1U, 4U);
-  loss_ += kOfWords * (lost - (lost + 1.0) * loss_);
+  const Vec2 before_m = here_m_ + Vec2(four.x_m[lane], four.y_m[lane]);
+  // Which of the two were is a coin toss: no branch.
+  const bool was_in_range =
+      static_cast<int>(as_of_us - four.as_of_us[lane] <= silence_us_) &
+      static_cast<int>((before_m - own_position_m).squaredNorm() <= inside_m * inside_m);
+  const double lost = std::min(report.sequence - four.sequence[lane] - 1U, 4U);
+  loss_ += (was_in_range ? kOfWords : 0.0) * (lost - (lost + 1.0) * loss_);
   link_.poor = loss_ > (link_.poor ? kClean : kPoor) || link_.late_s > 1.5 * period_s_;
 }
 
 NeighbourTable::Outcome NeighbourTable::take(const NeighbourReport& report,
                                              const Vec2& own_position_m) {
+  keep_frame(report.as_of, own_position_m);
   Slot& slot = slot_of(report.robot);
   const bool is_known = slot != kFree;
+  const std::int32_t as_of_us = since_then_us(report.as_of);
   if (is_known) {
-    const Known& known = known_[slot];
-    if (report.as_of - known.as_of < options_.forget_after) {
-      if (report.sequence == known.sequence) return Outcome::kDuplicate;
+    const Four& four = fours_[slot / kLanes];
+    const std::size_t lane = slot % kLanes;
+    if (as_of_us - four.as_of_us[lane] < forget_after_us_) {
+      if (report.sequence == four.sequence[lane]) return Outcome::kDuplicate;
       // Sequence numbers wrap: what lies in the half circle behind is older.
-      if (static_cast<std::int32_t>(report.sequence - known.sequence) < 0) return Outcome::kStale;
-      judge_link(known, report, own_position_m);
+      if (static_cast<std::int32_t>(report.sequence - four.sequence[lane]) < 0) {
+        return Outcome::kStale;
+      }
+      judge_link(four, lane, report, as_of_us, own_position_m);
     }
   }
   const double keep_squared = options_.keep_radius_m * options_.keep_radius_m;
   if ((report.position_m - own_position_m).squaredNorm() > keep_squared) {
-    if (is_known) known_[slot].gone = true;
+    if (is_known) fours_[slot / kLanes].as_of_us[slot % kLanes] = kGone;
     return Outcome::kFar;
   }
-  if (!is_known && known_.size() >= kFree) return Outcome::kFar;
-  const std::size_t at = is_known ? slot : known_.size();
+  if (!is_known && count_ >= kFree) return Outcome::kFar;
+  const std::size_t known = is_known ? slot : count_;
   if (!is_known) insert(report.robot, slot);
-  Known& known = known_[at];
-  known.position_m = report.position_m;
-  known.velocity_mps = report.velocity_mps;
-  known.as_of = report.as_of;
-  known.sequence = report.sequence;
-  known.late_s = static_cast<float>(report.late_s);
-  known.gone = false;
+  Four& four = fours_[known / kLanes];
+  const std::size_t lane = known % kLanes;
+  four.x_m[lane] = static_cast<float>(report.position_m.x() - here_m_.x());
+  four.y_m[lane] = static_cast<float>(report.position_m.y() - here_m_.y());
+  four.vx_mps[lane] = static_cast<float>(report.velocity_mps.x());
+  four.vy_mps[lane] = static_cast<float>(report.velocity_mps.y());
+  four.as_of_us[lane] = as_of_us;
+  four.late_us[lane] = static_cast<std::int32_t>(1e6 * std::clamp(report.late_s, 0.0, 1e3));
+  four.sequence[lane] = report.sequence;
   return Outcome::kTaken;
 }
 
-/// Who may be within reach, into candidates_. Most are not, and which ones is a coin toss: no
-/// branches. Those that are extrapolated out of the sensing range are gone: should they come back
-/// they will be heard.
-void NeighbourTable::sift(SteadyTime now, const Vec2& own_position_m) {
-  const double keep_squared = options_.keep_radius_m * options_.keep_radius_m;
-  const double growth_mps = options_.reach_growth_mps;
-  const double period_s = period_s_;
-  const double reach_now_m = options_.reach_m - growth_mps * period_s;
-  const Vec2 own_m = own_position_m;
+/// Who is within reach, into candidates_. Most are not, and which ones is a coin toss: no branches.
+/// Those that are extrapolated out of the sensing range are gone: should they come back they will
+/// be heard.
+void NeighbourTable::sift(std::int32_t now_us, const Vec2& own_position_m) {
+  const auto keep_m = static_cast<float>(options_.keep_radius_m);
+  const auto growth_mps = static_cast<float>(options_.reach_growth_mps);
+  const auto period_s = static_cast<float>(period_s_);
+  const float reach_now_m = static_cast<float>(options_.reach_m) - growth_mps * period_s;
+  const auto own_x_m = static_cast<float>(own_position_m.x() - here_m_.x());
+  const auto own_y_m = static_cast<float>(own_position_m.y() - here_m_.y());
   // What is too old is as old as it is, anything else at most as late as words are.
-  const double late_s = link_.poor ? std::numeric_limits<double>::infinity() : link_.late_s;
-  const double silence_s = silence_s_ - period_s_;
-  if (candidates_.size() < known_.size()) candidates_.resize(known_.capacity());
-  Known* const known = known_.data();
-  std::uint32_t* const candidates = candidates_.data();
-  const auto count = static_cast<std::uint32_t>(known_.size());
-  std::size_t found = 0;
-  std::size_t gone = 0;
-  for (std::uint32_t i = 0; i < count; ++i) {
-    Known& r = known[i];
-    const double age_s = age_in_s(now, r.as_of);
-    const Vec2 away_m = r.position_m + age_s * r.velocity_mps - own_m;
-    const double away_squared = away_m.squaredNorm();
-    const double known_s = std::min(age_s, std::max<double>(r.late_s, late_s));
-    const double stale_s = std::max(known_s, age_s - silence_s);
-    const double reach_m = reach_now_m + growth_mps * std::max(stale_s, period_s);
-    r.gone |= away_squared > keep_squared;
-    candidates[found] = i;
-    found += static_cast<std::size_t>(away_squared <= reach_m * reach_m);
-    gone += r.gone;
+  const Int4 late_us =
+      all(link_.poor ? kLongest_us : static_cast<std::int32_t>(1e6 * link_.late_s));
+  sifted_.resize(fours_.size());
+  candidates_.resize(kLanes * fours_.size());
+  std::uint32_t* next = candidates_.data();
+  Int4 gone = all(0);
+  for (std::uint32_t i = 0; i < fours_.size(); ++i) {
+    Four& f = fours_[i];
+    const Int4 age_us = max(now_us - f.as_of_us, all(0));
+    const Float4 age_s = 1e-6F * to_float(age_us);
+    const Float4 x_m = f.x_m + age_s * f.vx_mps;
+    const Float4 y_m = f.y_m + age_s * f.vy_mps;
+    const Float4 away_x_m = x_m - own_x_m;
+    const Float4 away_y_m = y_m - own_y_m;
+    const Float4 away_squared = away_x_m * away_x_m + away_y_m * away_y_m;
+    const Int4 known_us = min(age_us, max(f.late_us, late_us));
+    const Int4 stale_us = max(known_us, age_us - (silence_us_ - period_us_));
+    const Float4 stale_s = max(1e-6F * to_float(stale_us), all(period_s));
+    const Float4 reach_m = reach_now_m + growth_mps * stale_s;
+    const Int4 is_gone = (away_squared > keep_m * keep_m) | (age_us > forget_after_us_);
+    const Int4 in_reach = ~is_gone & (away_squared <= reach_m * reach_m);
+    f.as_of_us = is_gone ? all(kGone) : f.as_of_us;
+    gone -= is_gone;
+    sifted_[i] = {x_m, y_m, age_us};
+    for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
+      *next = kLanes * i + lane;
+      next -= in_reach[lane];
+    }
   }
-  candidates_found_ = found;
-  gone_ = gone;
+  candidates_found_ = static_cast<std::size_t>(next - candidates_.data());
+  // The lanes behind the last robot are nobody's.
+  gone_ = static_cast<std::size_t>(gone[0] + gone[1] + gone[2] + gone[3]) -
+          (kLanes * fours_.size() - count_);
 }
 
-/// What is believed of it, if it is within reach.
-void NeighbourTable::believe(Known& r, SteadyTime now, const Vec2& own_position_m) {
-  const double age_s = age_in_s(now, r.as_of);
-  if (age_s > forget_after_s_) {
-    r.gone = true;
-    ++gone_;
-    return;
+/// What is thought of one within reach, to the end of neighbours_.
+void NeighbourTable::believe(std::size_t known, const Vec2& own_position_m) {
+  const Four& four = fours_[known / kLanes];
+  const Sifted& sifted = sifted_[known / kLanes];
+  const std::size_t lane = known % kLanes;
+  const double age_s = in_s(sifted.age_us[lane]);
+  const double radius_m = options_.fleet.of(four.robot[lane]).radius_m;
+  Neighbour& n = neighbours_.emplace_back();
+  n.robot = four.robot[lane];
+  n.position_m = here_m_ + Vec2(sifted.x_m[lane], sifted.y_m[lane]);
+  n.velocity_mps = {four.vx_mps[lane], four.vy_mps[lane]};
+  n.radius_m = radius_m;
+  if (sifted.age_us[lane] > silence_us_) {
+    n.radius_m += options_.fleet.of(n.robot).speed_max_mps * (age_s - silence_s_);
   }
-  double stale_s = std::min(age_s, std::max<double>(r.late_s, link_.late_s));
-  if (link_.poor && r.velocity_mps.squaredNorm() > kStands_mps * kStands_mps) {
-    const double speaks_within_m = options_.near_m + options_.radius_m + r.radius_m;
-    const double spoke_at_squared = (r.position_m - own_position_m).squaredNorm();
-    if (spoke_at_squared < speaks_within_m * speaks_within_m) stale_s = age_s;
+  n.stale_s = std::min(age_s, std::max(in_s(four.late_us[lane]), link_.late_s));
+  if (link_.poor && n.velocity_mps.squaredNorm() > kStands_mps * kStands_mps) {
+    const double speaks_within_m = options_.near_m + options_.radius_m + radius_m;
+    const Vec2 spoke_at_m = here_m_ + Vec2(four.x_m[lane], four.y_m[lane]);
+    if ((spoke_at_m - own_position_m).squaredNorm() < speaks_within_m * speaks_within_m) {
+      n.stale_s = age_s;
+    }
   }
-  double grown_m = 0.0;
-  if (age_s > silence_s_) {
-    grown_m = options_.fleet.of(r.robot).speed_max_mps * (age_s - silence_s_);
+  n.stalled_s = in_s(std::max(0, sifted.age_us[lane] - 2 * period_us_));
+}
+
+/// Closes the ranks where robots are gone.
+void NeighbourTable::sweep() {
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < count_; ++i) {
+    const Four& from = fours_[i / kLanes];
+    const std::size_t f = i % kLanes;
+    if (from.as_of_us[f] == kGone) continue;
+    Four& to = fours_[kept / kLanes];
+    const std::size_t t = kept % kLanes;
+    to.x_m[t] = from.x_m[f];
+    to.y_m[t] = from.y_m[f];
+    to.vx_mps[t] = from.vx_mps[f];
+    to.vy_mps[t] = from.vy_mps[f];
+    to.as_of_us[t] = from.as_of_us[f];
+    to.late_us[t] = from.late_us[f];
+    to.robot[t] = from.robot[f];
+    to.sequence[t] = from.sequence[f];
+    ++kept;
   }
-  const double stalled_s = std::max(0.0, age_s - 2.0 * period_s_);
-  const double reach_m =
-      options_.reach_m + grown_m + options_.reach_growth_mps * std::max(0.0, stale_s - period_s_);
-  const Vec2 position = r.position_m + age_s * r.velocity_mps;
-  if ((position - own_position_m).squaredNorm() > reach_m * reach_m) return;
-  neighbours_.push_back({.robot = r.robot,
-                         .position_m = position,
-                         .velocity_mps = r.velocity_mps,
-                         .radius_m = r.radius_m + grown_m,
-                         .stale_s = stale_s,
-                         .stalled_s = stalled_s});
+  for (std::size_t i = kept; i < count_; ++i) fours_[i / kLanes].as_of_us[i % kLanes] = kGone;
+  count_ = kept;
+  fours_.resize((count_ + kLanes - 1) / kLanes);
+  gone_ = 0;
+  rebuild_index();
 }
 
 std::span<const Neighbour> NeighbourTable::at(SteadyTime now, const Vec2& own_position_m) {
+  keep_frame(now, own_position_m);
+  sift(since_then_us(now), own_position_m);
   neighbours_.clear();
-  sift(now, own_position_m);
-  for (std::size_t i = 0; i < candidates_found_; ++i) {
-    Known& known = known_[candidates_[i]];
-    if (!known.gone) believe(known, now, own_position_m);
-  }
-  if (gone_ >= kSweepAt) {
-    std::erase_if(known_, [](const Known& known) { return known.gone; });
-    rebuild_index();
-    gone_ = 0;
-  }
+  for (std::size_t i = 0; i < candidates_found_; ++i) believe(candidates_[i], own_position_m);
+  if (gone_ >= kSweepAt) sweep();
   return neighbours_;
 }
 

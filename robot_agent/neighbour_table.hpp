@@ -2,11 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "swarm_core/base/ids.hpp"
+#include "swarm_core/base/lanes.hpp"
 #include "swarm_core/base/linalg.hpp"
 #include "swarm_core/base/prefetch.hpp"
 #include "swarm_core/base/time.hpp"
@@ -61,7 +63,7 @@ struct NeighbourOptions {
 /// extrapolated; that it may have stalled in between is told beside. From `expected_silence` on its
 /// radius grows by its largest speed for every second more, and after `forget_after` it is
 /// forgotten. A robot in a crowd hears fifty others at every tick: taking a report is a look into a
-/// hash table, and believing one a pass over an array.
+/// hash table, and believing one a pass over an array, four robots at a time.
 /// The same reports in the same order give the same neighbours in the same order. No allocation
 /// once warm.
 class NeighbourTable {
@@ -80,49 +82,64 @@ class NeighbourTable {
   /// Brings what take() and at() will look at into the cache: for whoever ticks many robots in
   /// turn, while it ticks the one before.
   void prefetch() const {
-    swarm::prefetch(known_.data(), known_.size() * sizeof(Known));
+    swarm::prefetch(fours_.data(), fours_.size() * sizeof(Four));
     swarm::prefetch(index_.data(), index_.size() * sizeof(Slot));
   }
 
   const LinkQuality& link() const { return link_; }
 
   /// Robots known at the last at(), within reach or not.
-  std::size_t known() const { return known_.size() - gone_; }
+  std::size_t known() const { return count_ - gone_; }
 
  private:
-  /// One cache line.
-  struct alignas(64) Known {
-    Vec2 position_m;
-    Vec2 velocity_mps;
-    SteadyTime as_of;
-    RobotId robot;
-    std::uint32_t sequence = 0;
-    double radius_m = 0.0;
-    float late_s = 0.0F;
-    bool gone = false;  // left the neighbourhood
+  /// The last words of four robots, in two cache lines, counted from then_ and here_m_ so that
+  /// floats hold them to micrometres.
+  struct alignas(64) Four {
+    Float4 x_m, y_m;
+    Float4 vx_mps, vy_mps;
+    Int4 as_of_us;  // kGone: nobody
+    Int4 late_us;
+    std::array<RobotId, kLanes> robot;
+    std::array<std::uint32_t, kLanes> sequence;
   };
-  /// Index into known_. Small, so that three of four slots can be free and still few lines are
-  /// used.
+  /// What at() finds out of four robots.
+  struct Sifted {
+    Float4 x_m, y_m;  // dead-reckoned
+    Int4 age_us;
+  };
+  static constexpr std::int32_t kGone = -(1 << 30);
+  /// Number of a robot in fours_. Small, so that three of four slots can be free and still few
+  /// lines are used.
   using Slot = std::uint16_t;
   static constexpr Slot kFree = 0xFFFF;
 
   Slot& slot_of(RobotId robot);
   void insert(RobotId robot, Slot& slot);
-  void judge_link(const Known& before, const NeighbourReport& report, const Vec2& own_position_m);
+  void judge_link(const Four& four, std::size_t lane, const NeighbourReport& report,
+                  std::int32_t as_of_us, const Vec2& own_position_m);
   void rebuild_index();
-  void sift(SteadyTime now, const Vec2& own_position_m);
-  void believe(Known& r, SteadyTime now, const Vec2& own_position_m);
+  std::int32_t since_then_us(SteadyTime t) const;
+  void keep_frame(SteadyTime now, const Vec2& own_position_m);
+  void sift(std::int32_t now_us, const Vec2& own_position_m);
+  void believe(std::size_t known, const Vec2& own_position_m);
+  void sweep();
 
   NeighbourOptions options_;
   double period_s_;
   double silence_s_;  // that is expected
-  double forget_after_s_;
-  std::vector<Known> known_;
-  std::vector<std::uint32_t> candidates_;  // indices into known_, the first candidates_found_
-  std::size_t candidates_found_ = 0;
+  std::int32_t period_us_;
+  std::int32_t silence_us_;
+  std::int32_t forget_after_us_;
+  SteadyTime then_;
+  Vec2 here_m_ = Vec2::Zero();
+  std::vector<Four> fours_;
+  std::size_t count_ = 0;                  // of robots in fours_, gone or not
+  std::size_t gone_ = 0;                   // of those, as of the last at()
+  std::vector<Sifted> sifted_;             // as fours_
+  std::vector<std::uint32_t> candidates_;  // numbers of those within reach, …
+  std::size_t candidates_found_ = 0;       // … the first of them
   std::vector<Slot> index_;  // hash table with open addressing, a power of two of them
   std::vector<Neighbour> neighbours_;
-  std::size_t gone_ = 0;  // of known_, as of the last at()
   LinkQuality link_;
   double loss_ = 0.0;  // share of words lost, mean of the last ones
 };

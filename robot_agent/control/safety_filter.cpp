@@ -61,8 +61,6 @@ SafetyFilter::Pace SafetyFilter::pace(double stale_s) const {
                         options_.stale_gain * std::max(0.0, stale_s - period_s);
   const double given_up_m = options_.speed_max_mps * std::max(stale_s, period_s);
   return {
-      .brake_m =
-          options_.neighbour_margin_m + 2.0 * options_.speed_max_mps * time_s / options_.gap_share,
       .closing_hz = options_.gap_share / (2.0 * time_s),
       // If it stops at once …
       .follow = stale_s > kFollows * period_s
@@ -75,44 +73,51 @@ SafetyFilter::Pace SafetyFilter::pace(double stale_s) const {
 void SafetyFilter::collect_neighbours(const Vec2& position_m,
                                       std::span<const Neighbour> neighbours) {
   const double period_s = to_seconds(options_.period);
+  const double horizon_s = 2.0 * period_s + options_.lag_s;
   const double v_max = options_.speed_max_mps;
   const double margin_m = options_.neighbour_margin_m;
-  const double evading_hz = 1.0 / (2.0 * period_s + options_.lag_s);
+  const double evading_hz = 1.0 / horizon_s;
+  const double stalled_reach_m = kEvade * margin_m + v_max * horizon_s;
+  constraints_.resize(obstacles_ + 2 * neighbours.size());
+  HalfPlane* next = constraints_.data() + obstacles_;
   for (const Neighbour& n : neighbours) {
     const Pace late = n.stale_s > kFresh * period_s ? pace(n.stale_s) : fresh_;
-    // From here on the robot may do what it likes: nobody comes faster than its own brake allows.
     const double sum_m = options_.radius_m + n.radius_m;
-    const double gone_m = n.stalled_s > 0.0 ? n.stalled_s * n.velocity_mps.norm() : 0.0;
-    const double reach_m = sum_m + late.brake_m + gone_m;
     const Vec2 offset = n.position_m - position_m;
-    const double squared = offset.squaredNorm();
-    if (squared > reach_m * reach_m) continue;
-    const double distance = std::sqrt(squared);
+    const double distance = offset.norm();
     // Robots believed to be in the same spot part to opposite sides by chance.
     const Vec2 towards = distance > 1e-9 ? Vec2(offset / distance) : Vec2(1.0, 0.0);
     const double gap = distance - sum_m;
     const double leaving = towards.dot(n.velocity_mps);
-    const double share = late.closing_hz * (gap - margin_m) + late.follow * std::max(0.0, leaving);
-    const double evade = evading_hz * (gap - kEvade * margin_m) - std::max(0.0, -leaving);
+    // Who comes or leaves, and who bounds us, are coin tosses: no branches.
+    const double away_mps = std::max(leaving, 0.0);
+    const double coming_mps = away_mps - leaving;
+    const double share = late.closing_hz * (gap - margin_m) + late.follow * away_mps;
+    const double evade = evading_hz * (gap - kEvade * margin_m) - coming_mps;
     const double bound = std::min(share, evade);
-    if (bound < v_max) constraints_.push_back({towards, std::max(bound, -v_max)});
-    if (n.stalled_s > 0.0 && leaving > 0.0) keep_off_stalled(position_m, n, sum_m);
+    *next = {towards, std::max(bound, -v_max)};
+    next += bound < v_max;
+    const double left_behind_m = n.stalled_s * leaving;
+    if (std::min(left_behind_m, stalled_reach_m + left_behind_m - gap) > 0.0) {
+      if (const auto line = off_stalled(position_m, n, sum_m)) *next++ = *line;
+    }
   }
+  constraints_.resize(static_cast<std::size_t>(next - constraints_.data()));
 }
 
-/// Where the neighbour is if it stalled when that is worst for us: the nearest place of its way
-/// since. One that stands does not come nearer, so neither must we: no more is asked.
-void SafetyFilter::keep_off_stalled(const Vec2& position_m, const Neighbour& n, double sum_m) {
+/// Keeps off where the neighbour is if it stalled when that is worst for us: the nearest place of
+/// its way since. One that stands does not come nearer, so neither must we: no more is asked.
+std::optional<HalfPlane> SafetyFilter::off_stalled(const Vec2& position_m, const Neighbour& n,
+                                                   double sum_m) const {
   const Vec2 back = -n.stalled_s * n.velocity_mps;
   const double share = (position_m - n.position_m).dot(back) / back.squaredNorm();
   const Vec2 offset = n.position_m + std::clamp(share, 0.0, 1.0) * back - position_m;
   const double distance = offset.norm();
-  if (distance < 1e-9) return;  // we are where it would be: it went on
+  if (distance < 1e-9) return std::nullopt;  // we are where it would be: it went on
   const double bound = (distance - sum_m - kEvade * options_.neighbour_margin_m) /
                        (2.0 * to_seconds(options_.period) + options_.lag_s);
-  if (bound < options_.speed_max_mps) {
-    constraints_.push_back({offset / distance, std::max(bound, 0.0)});
-  }
+  if (bound >= options_.speed_max_mps) return std::nullopt;
+  return HalfPlane{offset / distance, std::max(bound, 0.0)};
 }
 
 Listeners SafetyFilter::listeners(const Vec2& position_m, const Vec2& velocity_mps,

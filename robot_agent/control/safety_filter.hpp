@@ -3,6 +3,7 @@
 #pragma once
 
 #include <limits>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -85,14 +86,14 @@ class SafetyFilter {
 
  private:
   struct Pace {
-    double brake_m;     ///< from where on a neighbour bounds us at all
     double closing_hz;  ///< γ / (2T)
     double follow;      ///< β
   };
   Pace pace(double stale_s) const;
   void collect_obstacles(const Vec2& position_m);
   void collect_neighbours(const Vec2& position_m, std::span<const Neighbour> neighbours);
-  void keep_off_stalled(const Vec2& position_m, const Neighbour& n, double sum_m);
+  std::optional<HalfPlane> off_stalled(const Vec2& position_m, const Neighbour& n,
+                                       double sum_m) const;
   Vec2 nearest(const Vec2& wish_mps);
   Vec2 least_violation(const Vec2& wish_mps);
 
