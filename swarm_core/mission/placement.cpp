@@ -15,6 +15,8 @@ namespace {
 /// Tries per robot before its component counts as full: a free share of 0.2 % of the ellipse is
 /// still found with 1 − e⁻²⁰.
 constexpr int kMaxTries = 10'000;
+/// Of placing all: robots placed at random leave gaps that are too small, a lucky draw fewer.
+constexpr std::uint64_t kAttempts = 10;
 
 /// Robots placed so far, in square cells as wide as the least distance: whoever is too near stands
 /// in one of nine cells.
@@ -54,14 +56,7 @@ class PlacedRobots {
   std::unordered_map<std::uint64_t, std::vector<Vec2>> cells_;
 };
 
-}  // namespace
-
-double stratified_share(std::uint32_t robot, std::uint32_t robots) {
-  SWARM_ASSERT(robot < robots);
-  return (static_cast<double>(robot) + 0.5) / static_cast<double>(robots);
-}
-
-Result<std::vector<Vec2>> place_robots(const Mission& mission, std::uint64_t seed) {
+Result<std::vector<Vec2>> place_once(const Mission& mission, std::uint64_t seed) {
   const RobotsSpec& spec = mission.robots;
   const double radius_m = largest_radius_m(spec);
   // Off the walls as far as the safety filter keeps robots.
@@ -100,6 +95,21 @@ Result<std::vector<Vec2>> place_robots(const Mission& mission, std::uint64_t see
     }
   }
   return positions;
+}
+
+}  // namespace
+
+double stratified_share(std::uint32_t robot, std::uint32_t robots) {
+  SWARM_ASSERT(robot < robots);
+  return (static_cast<double>(robot) + 0.5) / static_cast<double>(robots);
+}
+
+Result<std::vector<Vec2>> place_robots(const Mission& mission, std::uint64_t seed) {
+  Result<std::vector<Vec2>> placed = place_once(mission, seed);
+  for (std::uint64_t again = 1; again < kAttempts && !placed; ++again) {
+    placed = place_once(mission, mix_seed(seed, ~again));
+  }
+  return placed;
 }
 
 }  // namespace swarm

@@ -76,6 +76,15 @@ TEST(Placement, PlacesThousandsOfRobots) {
   EXPECT_EQ(positions->size(), 5000U);
 }
 
+TEST(Placement, DrawsAgainWhenTheLastRobotsFindNoRoom) {
+  Mission mission = shipped("crops_scene3.yaml");  // a flat start that a hundred just fit in
+  mission.robots.count = 100;
+
+  for (std::uint64_t seed = 70; seed < 80; ++seed) {
+    EXPECT_TRUE(place_robots(mission, seed).has_value()) << "seed " << seed;
+  }
+}
+
 TEST(Placement, RefusesAComponentThatIsTooCrowded) {
   Mission mission = shipped("small.yaml");
   mission.robots.count = 2000;
