@@ -38,23 +38,41 @@ double force_reach_m(const ControlSpec& control, double bodies_m) {
     return std::max(bodies_m + control.neighbour_gap_m, DensityAttractionOptions{}.kernel_m);
   }
   const HeadingFieldOptions heading;
-  constexpr double kSigmas = 3.0;  // farther headings weigh less than 1 %
+  constexpr double kSigmas = 2.5;  // farther headings weigh less than 5 %
   return std::max(SeparationFieldOptions{}.reach_m, heading.mean_m + kSigmas * heading.sigma_m);
 }
 
-/// From where on it matters neither to those, nor to the filter, nor to what we say.
+/// In a crowd gaps are as small as the filter's margin: what presses begins well above.
+double room_gap_m(const Mission& mission) { return mission.safety.neighbour_margin_m + 0.5; }
+
+double fastest_mps(const RobotsSpec& robots) {
+  double fastest = robots.speed_max_mps;
+  for (const RobotGroupSpec& group : robots.groups) {
+    fastest = std::max(fastest, group.speed_max_mps);
+  }
+  return fastest;
+}
+
+/// From where on it matters neither to the filter, nor to forces of contact, nor to what we say.
+double close_m(const Mission& mission, const BodySpec& body) {
+  const double period_s = 1.0 / mission.control.rate_hz;
+  const double margin_m = mission.safety.neighbour_margin_m;
+  const double braking_s = period_s / mission.safety.gap_share + lag_s(body);
+  const double brake_m = margin_m + 2.0 * body.speed_max_mps * braking_s;
+  // One that follows us, or that stalled unheard and was left behind, goes on for so long.
+  const double unheard_s = 2.0 * period_s + lag_s(body) + mission.link.send_interval_max_s;
+  const double follows_m = margin_m + fastest_mps(mission.robots) * unheard_s;
+  const double pressing_m = std::max(mission.control.neighbour_gap_m, room_gap_m(mission));
+  return body.radius_m + largest_radius_m(mission.robots) +
+         std::max({brake_m, follows_m, mission.link.send_near_m, pressing_m});
+}
+
+/// From where on it matters to nothing.
 double reach_m(const Mission& mission, const BodySpec& body, double keep_m) {
   // Its range is the sensing range.
   if (mission.control.method == "intermittent_diffusion") return keep_m;
-  const double period_s = 1.0 / mission.control.rate_hz;
-  const double braking_s = period_s / mission.safety.gap_share + lag_s(body);
-  const double brake_m = mission.safety.neighbour_margin_m + 2.0 * body.speed_max_mps * braking_s;
-  const double follows_m =
-      mission.safety.neighbour_margin_m +
-      body.speed_max_mps * (2.0 * period_s + lag_s(body) + mission.link.send_interval_max_s);
   const double bodies_m = body.radius_m + largest_radius_m(mission.robots);
-  return std::max(bodies_m + std::max({brake_m, follows_m, mission.link.send_near_m}),
-                  force_reach_m(mission.control, bodies_m));
+  return std::max(close_m(mission, body), force_reach_m(mission.control, bodies_m));
 }
 
 CropsOptions crops_options(const Mission& mission, const BodySpec& body) {
@@ -63,8 +81,6 @@ CropsOptions crops_options(const Mission& mission, const BodySpec& body) {
   const auto ticks = [&](double time_s) {
     return static_cast<std::size_t>(std::max(1.0, std::round(time_s * c.rate_hz)));
   };
-  // In a crowd gaps are as small as the filter's margin: what acts in contact begins a hand above.
-  const double near_gap_m = mission.safety.neighbour_margin_m + 0.15;
   return {
       .cruise_mps = cruise_mps,
       .approach_gain_hz = c.approach_gain_hz,
@@ -73,7 +89,7 @@ CropsOptions crops_options(const Mission& mission, const BodySpec& body) {
                 .goal_radius_m = mission.planner.crops_goal_radius_m,
                 .sight_m = c.look_ahead_s * cruise_mps},
       .place = {.radius_m = body.radius_m,
-                .room_gap_m = near_gap_m,
+                .room_gap_m = room_gap_m(mission),
                 .approach_gain_hz = c.approach_gain_hz},
       .obstacle = {.radius_m = body.radius_m},
       .give_way = {.radius_m = body.radius_m, .gap_m = mission.safety.neighbour_margin_m + 0.1},
@@ -150,6 +166,7 @@ AgentOptions agent_options(const Mission& mission, RobotId robot, std::uint64_t 
                      .fleet = Fleet(mission.robots),
                      .keep_radius_m = hear_m,
                      .reach_m = reach_m(mission, body, hear_m),
+                     .close_m = close_m(mission, body),
                      .reach_growth_mps = 2.0 * body.speed_max_mps * mission.safety.stale_gain /
                                          mission.safety.gap_share,
                      .near_m = l.send_near_m,
@@ -215,10 +232,12 @@ RobotMode Agent::decide_mode(const AgentInput& input) const {
 }
 
 AgentOutput Agent::tick(const AgentInput& input) {
+  const Neighbourhood hood = neighbours_.at(input.now, input.position_m);
   const ControlView view{.now = input.now,
                          .position_m = input.position_m,
-                         .neighbours = neighbours_.at(input.now, input.position_m),
-                         .world = *world_};
+                         .neighbours = hood.all,
+                         .world = *world_,
+                         .close = hood.close};
   if (has_route_ && input.phase != MissionPhase::kReady) arrived_ = method_->has_arrived(view);
   AgentOutput out;
   out.mode = decide_mode(input);
@@ -231,7 +250,7 @@ AgentOutput Agent::tick(const AgentInput& input) {
     const bool drives = out.mode == RobotMode::kMoving || out.mode == RobotMode::kArrived;
     const Vec2 wished = drives ? method_->wish(view, arrived_, rng_) : method_->hold(view);
     const bool gives_way = out.mode == RobotMode::kMoving && out.remaining_m > kSettling_m;
-    out.velocity_mps = filter_.filter(input.position_m, wished, view.neighbours, gives_way);
+    out.velocity_mps = filter_.filter(input.position_m, wished, view.close, gives_way);
   }
   // With noise in what it measures a robot never stands; where it goes nowhere, it rests.
   mean_mps_ += mean_share_ * (out.velocity_mps - mean_mps_);
@@ -239,12 +258,11 @@ AgentOutput Agent::tick(const AgentInput& input) {
                 std::min(out.velocity_mps.norm(), mean_mps_.norm()) < kAtRest_mps;
 
   out.told_mps = input.velocity_mps.value_or(out.velocity_mps);
-  const SayInput word{
-      .now = input.now,
-      .position_m = input.position_m,
-      .velocity_mps = out.told_mps,
-      .listeners = filter_.listeners(input.position_m, out.told_mps, view.neighbours),
-      .link = neighbours_.link()};
+  const SayInput word{.now = input.now,
+                      .position_m = input.position_m,
+                      .velocity_mps = out.told_mps,
+                      .listeners = filter_.listeners(input.position_m, out.told_mps, view.close),
+                      .link = neighbours_.link()};
   out.nearest_gap_m = word.listeners.nearest_gap_m;
   out.say = say_.must_say(word);
   if (out.say) say_.said(word);

@@ -81,8 +81,9 @@ class Agent {
   void accept_plan(const FlowPlan& plan, const Vec2& position_m,
                    std::optional<PlanEntry> entry = std::nullopt);
 
-  NeighbourTable::Outcome hear(const NeighbourReport& report, const Vec2& own_position_m) {
-    return neighbours_.take(report, own_position_m);
+  NeighbourTable::Outcome hear(const NeighbourReport& report, const Vec2& own_position_m,
+                               Duration late = {}) {
+    return neighbours_.take(report, own_position_m, late);
   }
 
   AgentOutput tick(const AgentInput& input);

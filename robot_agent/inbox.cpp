@@ -142,8 +142,7 @@ void Inbox::receive_state(const link::RobotStateMessage& state, SteadyTime stead
                                .sequence = state.sequence_number,
                                .as_of = steady_now - age,
                                .position_m = {state.x_m, state.y_m},
-                               .velocity_mps = {state.vx_mps, state.vy_mps},
-                               .late_s = to_seconds(age)},
+                               .velocity_mps = {state.vx_mps, state.vy_mps}},
                     .age = age});
 }
 

@@ -11,7 +11,7 @@ constexpr std::size_t kFirstSlots = 128;
 constexpr std::size_t kSlotsEach = 4;  // of the index, for every robot known
 constexpr std::size_t kSweepAt = 8;    // so many who are gone are worth a new index
 constexpr double kStands_mps = 0.01;   // slower is standing: such a robot need not speak
-constexpr double kOfWords = 1.0 / 64;  // weight of a word in what is thought of the link
+constexpr double kWords = 64.0;        // that what is thought of the link is the mean of
 constexpr double kPoor = 0.02;         // of two words in the last sixty-four, …
 constexpr double kClean = 0.005;       // … until eighty in a row came
 constexpr double kInside = 0.8;        // of the range: who is farther may have been out of it
@@ -25,9 +25,24 @@ std::int32_t to_us(Duration d) {
       std::clamp<std::int64_t>(d / std::chrono::microseconds(1), -kMost, kMost));
 }
 
-constexpr double in_s(std::int32_t us) { return 1e-6 * us; }
+constexpr double in_s(std::int64_t us) { return 1e-6 * static_cast<double>(us); }
 
 }  // namespace
+
+/// What at() finds out. Of one call alone, so all robots that a thread ticks in turn share it, and
+/// it stays in the cache.
+struct NeighbourTable::Sieve {
+  struct Four {
+    Float4 x_m, y_m;  // dead-reckoned
+    Int4 age_us;
+  };
+  std::vector<Four> fours;           // as the table's
+  std::vector<std::uint32_t> close;  // numbers of those who are, the first close_found
+  std::vector<std::uint32_t> far;    // … of the others within reach, the first far_found
+  std::size_t close_found = 0;
+  std::size_t far_found = 0;
+  std::vector<Neighbour> neighbours;
+};
 
 NeighbourTable::NeighbourTable(const NeighbourOptions& options)
     : options_(options),
@@ -38,9 +53,6 @@ NeighbourTable::NeighbourTable(const NeighbourOptions& options)
       forget_after_us_(to_us(options.forget_after)),
       index_(kFirstSlots, kFree) {
   fours_.reserve(kFirstSlots / kSlotsEach / kLanes);
-  sifted_.reserve(fours_.capacity());
-  candidates_.reserve(kFirstSlots / kSlotsEach);
-  neighbours_.reserve(kFirstSlots / kSlotsEach);
 }
 
 /// The slot of a robot, or the free one where it belongs.
@@ -86,22 +98,37 @@ void NeighbourTable::keep_frame(SteadyTime now, const Vec2& own_position_m) {
 }
 
 /// Numbers that were left out are words that were lost, where both ends of the gap were in range.
-void NeighbourTable::judge_link(const Four& four, std::size_t lane, const NeighbourReport& report,
+void NeighbourTable::count_lost(const Four& four, std::size_t lane, const NeighbourReport& report,
                                 std::int32_t as_of_us, const Vec2& own_position_m) {
-  link_.late_s += kOfWords * (report.late_s - link_.late_s);
-  const double inside_m = kInside * options_.keep_radius_m;
-  const Vec2 before_m = here_m_ + Vec2(four.x_m[lane], four.y_m[lane]);
-  // Which of the two were is a coin toss: no branch.
-  const bool was_in_range =
-      static_cast<int>(as_of_us - four.as_of_us[lane] <= silence_us_) &
-      static_cast<int>((before_m - own_position_m).squaredNorm() <= inside_m * inside_m);
-  const double lost = std::min(report.sequence - four.sequence[lane] - 1U, 4U);
-  loss_ += (was_in_range ? kOfWords : 0.0) * (lost - (lost + 1.0) * loss_);
+  const std::uint32_t lost = report.sequence - four.sequence[lane] - 1U;
+  if (lost > 0) {
+    const double inside_m = kInside * options_.keep_radius_m;
+    const Vec2 before_m = here_m_ + Vec2(four.x_m[lane], four.y_m[lane]);
+    if (as_of_us - four.as_of_us[lane] > silence_us_ ||
+        (before_m - own_position_m).squaredNorm() > inside_m * inside_m) {
+      return;
+    }
+  }
+  ++tally_.came;
+  tally_.lost += std::min(lost, 4U);
+}
+
+/// What the words since the last at() tell of the link: each weighs a sixty-fourth.
+void NeighbourTable::judge_link() {
+  if (tally_.words == 0) return;
+  const auto share_of_all = [](std::uint32_t count) { return count / (kWords + count); };
+  const double late_s = in_s(tally_.late_us) / tally_.words;
+  link_.late_s += share_of_all(tally_.words) * (late_s - link_.late_s);
+  if (const std::uint32_t said = tally_.came + tally_.lost; said > 0) {
+    const double lost = static_cast<double>(tally_.lost) / said;
+    loss_ += share_of_all(said) * (lost - loss_);
+  }
   link_.poor = loss_ > (link_.poor ? kClean : kPoor) || link_.late_s > 1.5 * period_s_;
+  tally_ = {};
 }
 
 NeighbourTable::Outcome NeighbourTable::take(const NeighbourReport& report,
-                                             const Vec2& own_position_m) {
+                                             const Vec2& own_position_m, Duration late) {
   keep_frame(report.as_of, own_position_m);
   Slot& slot = slot_of(report.robot);
   const bool is_known = slot != kFree;
@@ -115,7 +142,7 @@ NeighbourTable::Outcome NeighbourTable::take(const NeighbourReport& report,
       if (static_cast<std::int32_t>(report.sequence - four.sequence[lane]) < 0) {
         return Outcome::kStale;
       }
-      judge_link(four, lane, report, as_of_us, own_position_m);
+      count_lost(four, lane, report, as_of_us, own_position_m);
     }
   }
   const double keep_squared = options_.keep_radius_m * options_.keep_radius_m;
@@ -133,27 +160,35 @@ NeighbourTable::Outcome NeighbourTable::take(const NeighbourReport& report,
   four.vx_mps[lane] = static_cast<float>(report.velocity_mps.x());
   four.vy_mps[lane] = static_cast<float>(report.velocity_mps.y());
   four.as_of_us[lane] = as_of_us;
-  four.late_us[lane] = static_cast<std::int32_t>(1e6 * std::clamp(report.late_s, 0.0, 1e3));
+  four.late_us[lane] = std::max(to_us(late), 0);
+  tally_.late_us += four.late_us[lane];
+  ++tally_.words;
   four.sequence[lane] = report.sequence;
   return Outcome::kTaken;
 }
 
-/// Who is within reach, into candidates_. Most are not, and which ones is a coin toss: no branches.
-/// Those that are extrapolated out of the sensing range are gone: should they come back they will
-/// be heard.
-void NeighbourTable::sift(std::int32_t now_us, const Vec2& own_position_m) {
+/// Who is within reach, into the sieve. Most are not, and which ones is a coin toss: no
+/// branches. Those that are extrapolated out of the sensing range are gone: should they come back
+/// they will be heard.
+void NeighbourTable::sift(std::int32_t now_us, const Vec2& own_position_m, Sieve& sieve) {
   const auto keep_m = static_cast<float>(options_.keep_radius_m);
   const auto growth_mps = static_cast<float>(options_.reach_growth_mps);
   const auto period_s = static_cast<float>(period_s_);
   const float reach_now_m = static_cast<float>(options_.reach_m) - growth_mps * period_s;
+  const auto beyond_close_m = static_cast<float>(options_.reach_m - options_.close_m);
   const auto own_x_m = static_cast<float>(own_position_m.x() - here_m_.x());
   const auto own_y_m = static_cast<float>(own_position_m.y() - here_m_.y());
   // What is too old is as old as it is, anything else at most as late as words are.
   const Int4 late_us =
       all(link_.poor ? kLongest_us : static_cast<std::int32_t>(1e6 * link_.late_s));
-  sifted_.resize(fours_.size());
-  candidates_.resize(kLanes * fours_.size());
-  std::uint32_t* next = candidates_.data();
+  if (sieve.fours.size() < fours_.size()) {
+    sieve.fours.resize(2 * fours_.size());
+    sieve.close.resize(kLanes * sieve.fours.size());
+    sieve.far.resize(kLanes * sieve.fours.size());
+    sieve.neighbours.resize(kLanes * sieve.fours.size());
+  }
+  std::uint32_t* next_close = sieve.close.data();
+  std::uint32_t* next_far = sieve.far.data();
   Int4 gone = all(0);
   for (std::uint32_t i = 0; i < fours_.size(); ++i) {
     Four& f = fours_[i];
@@ -170,28 +205,35 @@ void NeighbourTable::sift(std::int32_t now_us, const Vec2& own_position_m) {
     const Float4 reach_m = reach_now_m + growth_mps * stale_s;
     const Int4 is_gone = (away_squared > keep_m * keep_m) | (age_us > forget_after_us_);
     const Int4 in_reach = ~is_gone & (away_squared <= reach_m * reach_m);
+    const Float4 close_m = reach_m - beyond_close_m;
+    const Int4 is_close = in_reach & (away_squared <= close_m * close_m);
+    const Int4 is_far = in_reach & ~is_close;
     f.as_of_us = is_gone ? all(kGone) : f.as_of_us;
     gone -= is_gone;
-    sifted_[i] = {x_m, y_m, age_us};
+    sieve.fours[i] = {x_m, y_m, age_us};
+#pragma GCC unroll 4
     for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
-      *next = kLanes * i + lane;
-      next -= in_reach[lane];
+      *next_close = kLanes * i + lane;
+      next_close -= is_close[lane];
+      *next_far = kLanes * i + lane;
+      next_far -= is_far[lane];
     }
   }
-  candidates_found_ = static_cast<std::size_t>(next - candidates_.data());
+  sieve.close_found = static_cast<std::size_t>(next_close - sieve.close.data());
+  sieve.far_found = static_cast<std::size_t>(next_far - sieve.far.data());
   // The lanes behind the last robot are nobody's.
   gone_ = static_cast<std::size_t>(gone[0] + gone[1] + gone[2] + gone[3]) -
           (kLanes * fours_.size() - count_);
 }
 
-/// What is thought of one within reach, to the end of neighbours_.
-void NeighbourTable::believe(std::size_t known, const Vec2& own_position_m) {
+/// What is thought of one within reach.
+void NeighbourTable::believe(std::size_t known, const Vec2& own_position_m, const Sieve& sieve,
+                             Neighbour& n) const {
   const Four& four = fours_[known / kLanes];
-  const Sifted& sifted = sifted_[known / kLanes];
+  const Sieve::Four& sifted = sieve.fours[known / kLanes];
   const std::size_t lane = known % kLanes;
   const double age_s = in_s(sifted.age_us[lane]);
   const double radius_m = options_.fleet.of(four.robot[lane]).radius_m;
-  Neighbour& n = neighbours_.emplace_back();
   n.robot = four.robot[lane];
   n.position_m = here_m_ + Vec2(sifted.x_m[lane], sifted.y_m[lane]);
   n.velocity_mps = {four.vx_mps[lane], four.vy_mps[lane]};
@@ -236,13 +278,21 @@ void NeighbourTable::sweep() {
   rebuild_index();
 }
 
-std::span<const Neighbour> NeighbourTable::at(SteadyTime now, const Vec2& own_position_m) {
+Neighbourhood NeighbourTable::at(SteadyTime now, const Vec2& own_position_m) {
+  judge_link();
   keep_frame(now, own_position_m);
-  sift(since_then_us(now), own_position_m);
-  neighbours_.clear();
-  for (std::size_t i = 0; i < candidates_found_; ++i) believe(candidates_[i], own_position_m);
+  static thread_local Sieve sieve;
+  sift(since_then_us(now), own_position_m, sieve);
+  Neighbour* next = sieve.neighbours.data();
+  for (std::size_t i = 0; i < sieve.close_found; ++i) {
+    believe(sieve.close[i], own_position_m, sieve, *next++);
+  }
+  for (std::size_t i = 0; i < sieve.far_found; ++i) {
+    believe(sieve.far[i], own_position_m, sieve, *next++);
+  }
   if (gone_ >= kSweepAt) sweep();
-  return neighbours_;
+  const std::span<const Neighbour> all(sieve.neighbours.data(), next);
+  return {.all = all, .close = all.first(sieve.close_found)};
 }
 
 }  // namespace swarm::agent

@@ -23,7 +23,6 @@ struct NeighbourReport {
   SteadyTime as_of;  ///< when it was true, on our steady clock
   Vec2 position_m = Vec2::Zero();
   Vec2 velocity_mps = Vec2::Zero();
-  double late_s = 0.0;  ///< how old it was when it was heard
 };
 
 /// What we believe of a neighbour now.
@@ -39,6 +38,12 @@ struct Neighbour {
   double stalled_s = 0.0;
 };
 
+/// Those within reach; valid until the thread asks a table again.
+struct Neighbourhood {
+  std::span<const Neighbour> all;
+  std::span<const Neighbour> close;  ///< the first of them: who may touch us or bound our velocity
+};
+
 /// How well the words of others reach us, and so, most likely, ours them.
 struct LinkQuality {
   bool poor = false;    ///< words are lost, or later than a period and a half
@@ -52,6 +57,7 @@ struct NeighbourOptions {
   /// Who is farther than this matters to nobody: not told by at(). Grows with what the knowledge of
   /// a robot is older than a control period. Holds the way of one that may have stalled.
   double reach_m = 6.0;
+  double close_m = 6.0;  ///< … and who is farther than this, grown as much, is not close
   double reach_growth_mps = 0.0;
   double near_m = 1.0;          ///< on a poor link robots this near speak at every tick
   Duration period{};            ///< of control: a body stops two after its last command
@@ -72,12 +78,12 @@ class NeighbourTable {
 
   enum class Outcome { kTaken, kDuplicate, kStale, kFar };
 
-  /// Takes a report. Older or repeated sequence numbers are refused; a robot that was silent for
-  /// `forget_after` may start over (it was restarted).
-  Outcome take(const NeighbourReport& report, const Vec2& own_position_m);
+  /// Takes a report that was `late` when it was heard. Older or repeated sequence numbers are
+  /// refused; a robot that was silent for `forget_after` may start over (it was restarted).
+  Outcome take(const NeighbourReport& report, const Vec2& own_position_m, Duration late = {});
 
-  /// Neighbours within reach as of `now`; valid until the next call.
-  std::span<const Neighbour> at(SteadyTime now, const Vec2& own_position_m);
+  /// Neighbours within reach as of `now`.
+  Neighbourhood at(SteadyTime now, const Vec2& own_position_m);
 
   /// Brings what take() and at() will look at into the cache: for whoever ticks many robots in
   /// turn, while it ticks the one before.
@@ -102,11 +108,6 @@ class NeighbourTable {
     std::array<RobotId, kLanes> robot;
     std::array<std::uint32_t, kLanes> sequence;
   };
-  /// What at() finds out of four robots.
-  struct Sifted {
-    Float4 x_m, y_m;  // dead-reckoned
-    Int4 age_us;
-  };
   static constexpr std::int32_t kGone = -(1 << 30);
   /// Number of a robot in fours_. Small, so that three of four slots can be free and still few
   /// lines are used.
@@ -115,13 +116,16 @@ class NeighbourTable {
 
   Slot& slot_of(RobotId robot);
   void insert(RobotId robot, Slot& slot);
-  void judge_link(const Four& four, std::size_t lane, const NeighbourReport& report,
+  void count_lost(const Four& four, std::size_t lane, const NeighbourReport& report,
                   std::int32_t as_of_us, const Vec2& own_position_m);
+  void judge_link();
   void rebuild_index();
   std::int32_t since_then_us(SteadyTime t) const;
   void keep_frame(SteadyTime now, const Vec2& own_position_m);
-  void sift(std::int32_t now_us, const Vec2& own_position_m);
-  void believe(std::size_t known, const Vec2& own_position_m);
+  struct Sieve;
+  void sift(std::int32_t now_us, const Vec2& own_position_m, Sieve& sieve);
+  void believe(std::size_t known, const Vec2& own_position_m, const Sieve& sieve,
+               Neighbour& n) const;
   void sweep();
 
   NeighbourOptions options_;
@@ -133,13 +137,18 @@ class NeighbourTable {
   SteadyTime then_;
   Vec2 here_m_ = Vec2::Zero();
   std::vector<Four> fours_;
-  std::size_t count_ = 0;                  // of robots in fours_, gone or not
-  std::size_t gone_ = 0;                   // of those, as of the last at()
-  std::vector<Sifted> sifted_;             // as fours_
-  std::vector<std::uint32_t> candidates_;  // numbers of those within reach, …
-  std::size_t candidates_found_ = 0;       // … the first of them
+  std::size_t count_ = 0;    // of robots in fours_, gone or not
+  std::size_t gone_ = 0;     // of those, as of the last at()
   std::vector<Slot> index_;  // hash table with open addressing, a power of two of them
-  std::vector<Neighbour> neighbours_;
+  /// Words since the last at().
+  struct Tally {
+    std::uint32_t words = 0;
+    std::uint32_t came =
+        0;  // of which none is missing before, or both ends of the gap were in range
+    std::uint32_t lost = 0;
+    std::int64_t late_us = 0;
+  };
+  Tally tally_;
   LinkQuality link_;
   double loss_ = 0.0;  // share of words lost, mean of the last ones
 };

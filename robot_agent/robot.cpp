@@ -47,7 +47,7 @@ void Robot::step(const Tick& tick, const Inbox& inbox, const NewPlan* new_plan,
   }
   inbox.heard().visit_near(position_m_, [&](const HeardState& state) {
     if (state.report.robot == id_) return;  // our own echo
-    if (agent_.hear(state.report, position_m_) == NeighbourTable::Outcome::kTaken) {
+    if (agent_.hear(state.report, position_m_, state.age) == NeighbourTable::Outcome::kTaken) {
       state_age.add(to_us(state.age));
       ++heard_;
     }

@@ -22,7 +22,7 @@ bool Apf::has_arrived(const ControlView& view) {
 }
 
 Vec2 Apf::repulsion(const ControlView& view) const {
-  return neighbour_repulsion(view.position_m, view.neighbours, options_.neighbour_repulsion) +
+  return neighbour_repulsion(view.position_m, view.close, options_.neighbour_repulsion) +
          obstacle_repulsion(view.position_m, view.world, options_.obstacle_repulsion);
 }
 

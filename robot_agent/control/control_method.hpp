@@ -20,6 +20,7 @@ struct ControlView {
   Vec2 position_m = Vec2::Zero();
   std::span<const Neighbour> neighbours;
   const World& world;
+  std::span<const Neighbour> close{};  ///< the first of the neighbours: Neighbourhood::close
 };
 
 /// How a robot turns its way through the flow into a velocity: one class per method of the papers.

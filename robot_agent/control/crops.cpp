@@ -30,12 +30,12 @@ bool Crops::has_arrived(const ControlView& view) {
 
 Vec2 Crops::wish(const ControlView& view, bool arrived, Rng& rng) {
   const Vec2& x = view.position_m;
-  const Vec2 point_m = guide_.update(x, view.world);
   if (arrived) {
     remaining_m_ = place_.left_m(x);
     escape_.forget();
     return place_.keep(view);
   }
+  const Vec2 point_m = guide_.update(x, view.world, place_.is_in_goal(x));
   const bool at_end = guide_.is_last();
   const Vec2 aim_m = at_end ? place_.aim_m() : point_m;
   remaining_m_ = at_end ? place_.left_m(x) : guide_.remaining_m(x);
@@ -51,8 +51,7 @@ Vec2 Crops::wish(const ControlView& view, bool arrived, Rng& rng) {
   const std::array<Vec2, 6> fields{
       wall_share * obstacle_field(x, view.world, options_.obstacle),
       presses ? Vec2(Vec2::Zero()) : separation_field(x, view.neighbours, options_.separation),
-      is_blocked ? Vec2(Vec2::Zero())
-                 : give_way_field(x, aim_m, view.neighbours, options_.give_way),
+      is_blocked ? Vec2(Vec2::Zero()) : give_way_field(x, aim_m, view.close, options_.give_way),
       goal_field(x, aim_m, options_.goal),
       heading_field(x, view.neighbours, options_.heading),
       escape};
@@ -69,8 +68,7 @@ Vec2 Crops::wish(const ControlView& view, bool arrived, Rng& rng) {
 Vec2 Crops::hold(const ControlView& view) {
   escape_.forget();
   place_.wait(view.now);
-  return neighbour_repulsion(view.position_m, view.neighbours,
-                             {.radius_m = options_.guide.radius_m}) +
+  return neighbour_repulsion(view.position_m, view.close, {.radius_m = options_.guide.radius_m}) +
          obstacle_repulsion(view.position_m, view.world, {.radius_m = options_.guide.radius_m});
 }
 

@@ -44,7 +44,7 @@ Vec2 DensityAttraction::pull(const Vec2& position_m, double progress_m,
   for (const Neighbour& n : neighbours) {
     const Vec2 offset = position_m - n.position_m;
     // Who is in reach is a coin toss: no branch.
-    const double left = std::max(0.0, 1.0 - offset.squaredNorm() / h2);
+    const double left = positive_part(1.0 - offset.squaredNorm() / h2);
     density += left * left;
     gradient -= 4.0 / h2 * left * offset;
   }

@@ -46,7 +46,7 @@ bool GoalPlace::has_arrived(SteadyTime now, const Vec2& position_m) {
 Vec2 GoalPlace::room(const ControlView& view) const {
   const double own = goal_.mahalanobis_squared(view.position_m);
   Vec2 push = Vec2::Zero();
-  for (const Neighbour& n : view.neighbours) {
+  for (const Neighbour& n : view.close) {
     const Vec2 away_m = view.position_m - n.position_m;
     const double distance_m = away_m.norm();
     const double lacking_m = options_.radius_m + n.radius_m + options_.room_gap_m - distance_m;
@@ -62,10 +62,12 @@ Vec2 GoalPlace::room(const ControlView& view) const {
 
 Vec2 GoalPlace::keep(const ControlView& view) {
   Vec2 push = room(view);
-  // Not out of the goal for anybody's sake.
-  if (goal_.mahalanobis_squared(view.position_m) > kRim) {
+  // Not out of the goal for anybody's sake: the nearer to its edge, the more inwards.
+  const double beyond_rim = goal_.mahalanobis_squared(view.position_m) - kRim;
+  if (beyond_rim > 0.0) {
     const Vec2 inwards = (goal_.mean_m() - view.position_m).normalized();
-    push -= std::min(0.0, push.dot(inwards)) * inwards;
+    const double share = beyond_rim / (kChiSquared2Dof99 - kRim);
+    push += (share * options_.approach_max_mps - std::min(0.0, push.dot(inwards))) * inwards;
   }
   if (push != Vec2::Zero()) {
     place_m_ = view.position_m;

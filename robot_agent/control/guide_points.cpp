@@ -30,7 +30,7 @@ bool GuidePoints::sees(const Vec2& position_m, const World& world, std::size_t p
   return world.segment_is_free(position_m, points_m_[point], std::max(0.0, least_m - 1e-3));
 }
 
-void GuidePoints::look(const Vec2& position_m, const World& world) {
+void GuidePoints::look(const Vec2& position_m, const World& world, bool in_goal) {
   std::size_t last = at_;
   while (last + 1 < points_m_.size() && behind_m_[at_] - behind_m_[last + 1] < options_.sight_m) {
     ++last;
@@ -48,15 +48,16 @@ void GuidePoints::look(const Vec2& position_m, const World& world) {
   for (std::size_t i = last; i > at_; --i) {
     if (take_if_seen(i, options_.passable_m)) return;
   }
+  if (in_goal) return;
   for (std::size_t i = at_; i > 0; --i) {
     if (take_if_seen(i - 1, options_.passable_m)) return;
   }
 }
 
-const Vec2& GuidePoints::update(const Vec2& position_m, const World& world) {
+const Vec2& GuidePoints::update(const Vec2& position_m, const World& world, bool in_goal) {
   if (looks_in_-- == 0) {
     looks_in_ = options_.look_every - 1;
-    look(position_m, world);
+    look(position_m, world, in_goal);
   }
   const double distance_m = (points_m_[at_] - position_m).norm();
   if (!is_last() && distance_m < options_.goal_radius_m &&

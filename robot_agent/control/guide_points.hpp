@@ -26,14 +26,15 @@ struct GuidePointsOptions {
 ///
 /// A robot goes on to the next one within goal_radius_m, and to the farthest one within sight_m
 /// that is in line of sight. Pushed off so far that its present one is hidden, it goes on to one
-/// that it sees through any gap, and if there is none falls back to the last one that it sees.
+/// that it sees through any gap, and if there is none falls back to the last one that it sees; not
+/// from within the goal, where whoever is pushed aside will find a place.
 class GuidePoints {
  public:
   GuidePoints() = default;
   GuidePoints(const Polyline& path, const GuidePointsOptions& options);
 
   /// Which point to go to from here. No allocation. \pre the path was not empty
-  const Vec2& update(const Vec2& position_m, const World& world);
+  const Vec2& update(const Vec2& position_m, const World& world, bool in_goal = false);
 
   const Vec2& end_m() const { return points_m_.back(); }
   bool is_last() const { return at_ + 1 == points_m_.size(); }
@@ -45,7 +46,7 @@ class GuidePoints {
  private:
   bool sees(const Vec2& position_m, const World& world, std::size_t point,
             double clearance_m) const;
-  void look(const Vec2& position_m, const World& world);
+  void look(const Vec2& position_m, const World& world, bool in_goal);
 
   GuidePointsOptions options_;
   std::vector<Vec2> points_m_;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <vector>
 
 namespace swarm::agent {
 namespace {
@@ -17,27 +18,41 @@ constexpr std::array kTurns_rad{0.4, 0.9, 1.4};  // to the right, while blocked,
 constexpr double kFree = 0.3;                    // … faster than this share of the wish
 constexpr double kFollowMargin = 0.9;            // share of the margin that following may give up
 constexpr double kEvade = 1.0 / 3.0;             // of the margin: kept to who does not keep off
-constexpr double kFollows = 3.5;        // periods: who is known from before may have turned
-constexpr double kFresh = 1.01;         // periods: known at once, but for rounding
-constexpr double kWithdraw = 0.9;       // of the largest speed: out of an obstacle
+constexpr double kFollows = 3.5;       // periods: who is known from before may have turned
+constexpr double kFresh = 1.01;        // periods: known at once, but for rounding
+constexpr double kWithdraw = 0.9;      // of the largest speed: out of an obstacle
+constexpr double kStands_m2ps = 1e-9;  // does not leave anybody
+constexpr double kNever_m2 = 1e9;
 constexpr double kLeastWish_mps = 0.1;  // slower wishes are not worth a detour
 
 }  // namespace
 
-SafetyFilter::SafetyFilter(const World& world, const SafetyOptions& options)
-    : world_(world), options_(options), fresh_(pace(0.0)) {
-  constraints_.reserve(64);
-  relaxed_.reserve(64);
-}
+/// The lines of one call: all robots that a thread ticks in turn share the memory, and it stays in
+/// the cache.
+struct SafetyFilter::Lines {
+  std::vector<HalfPlane> buffer;
+  std::size_t obstacles = 0;  // the first ones
+  std::size_t count = 0;
+  std::vector<HalfPlane> relaxed;
 
-void SafetyFilter::collect_obstacles(const Vec2& position_m) {
+  std::span<const HalfPlane> all() const { return std::span(buffer).first(count); }
+  void make_room(std::size_t more) {
+    if (buffer.size() < count + more) buffer.resize(2 * (count + more));
+  }
+};
+
+SafetyFilter::SafetyFilter(const World& world, const SafetyOptions& options)
+    : world_(world), options_(options), fresh_(pace(0.0)) {}
+
+void SafetyFilter::collect_obstacles(const Vec2& position_m, Lines& lines) const {
   const double horizon_s = 2.0 * to_seconds(options_.period) + options_.lag_s;
   const double reach_m = options_.speed_max_mps * horizon_s + options_.obstacle_margin_m;
   const auto keep_off = [&](const Vec2& towards, double surface_gap_m, double coming_mps = 0.0) {
     if (surface_gap_m > reach_m + coming_mps * horizon_s) return;
     const double bound = (surface_gap_m - options_.obstacle_margin_m) / horizon_s - coming_mps;
     // One inside withdraws as fast as it can; to ask for more would freeze it.
-    constraints_.push_back({towards, std::max(bound, -kWithdraw * options_.speed_max_mps)});
+    lines.make_room(1);
+    lines.buffer[lines.count++] = {towards, std::max(bound, -kWithdraw * options_.speed_max_mps)};
   };
   const double searched_m = options_.radius_m + reach_m + world_.fastest_mps() * horizon_s;
   world_.convex_boxes().for_each_within({position_m, position_m}, searched_m, [&](std::uint32_t i) {
@@ -51,7 +66,7 @@ void SafetyFilter::collect_obstacles(const Vec2& position_m) {
   keep_off({1.0, 0.0}, bounds.max_m.x() - position_m.x() - options_.radius_m);
   keep_off({0.0, -1.0}, position_m.y() - bounds.min_m.y() - options_.radius_m);
   keep_off({0.0, 1.0}, bounds.max_m.y() - position_m.y() - options_.radius_m);
-  obstacles_ = constraints_.size();
+  lines.obstacles = lines.count;
 }
 
 /// The time in which a neighbour's half of the gap may be closed, and what follows from it.
@@ -70,16 +85,16 @@ SafetyFilter::Pace SafetyFilter::pace(double stale_s) const {
   };
 }
 
-void SafetyFilter::collect_neighbours(const Vec2& position_m,
-                                      std::span<const Neighbour> neighbours) {
+void SafetyFilter::collect_neighbours(const Vec2& position_m, std::span<const Neighbour> neighbours,
+                                      Lines& lines) const {
   const double period_s = to_seconds(options_.period);
   const double horizon_s = 2.0 * period_s + options_.lag_s;
   const double v_max = options_.speed_max_mps;
   const double margin_m = options_.neighbour_margin_m;
   const double evading_hz = 1.0 / horizon_s;
   const double stalled_reach_m = kEvade * margin_m + v_max * horizon_s;
-  constraints_.resize(obstacles_ + 2 * neighbours.size());
-  HalfPlane* next = constraints_.data() + obstacles_;
+  lines.make_room(2 * neighbours.size());
+  HalfPlane* next = lines.buffer.data() + lines.count;
   for (const Neighbour& n : neighbours) {
     const Pace late = n.stale_s > kFresh * period_s ? pace(n.stale_s) : fresh_;
     const double sum_m = options_.radius_m + n.radius_m;
@@ -90,7 +105,7 @@ void SafetyFilter::collect_neighbours(const Vec2& position_m,
     const double gap = distance - sum_m;
     const double leaving = towards.dot(n.velocity_mps);
     // Who comes or leaves, and who bounds us, are coin tosses: no branches.
-    const double away_mps = std::max(leaving, 0.0);
+    const double away_mps = positive_part(leaving);
     const double coming_mps = away_mps - leaving;
     const double share = late.closing_hz * (gap - margin_m) + late.follow * away_mps;
     const double evade = evading_hz * (gap - kEvade * margin_m) - coming_mps;
@@ -102,7 +117,7 @@ void SafetyFilter::collect_neighbours(const Vec2& position_m,
       if (const auto line = off_stalled(position_m, n, sum_m)) *next++ = *line;
     }
   }
-  constraints_.resize(static_cast<std::size_t>(next - constraints_.data()));
+  lines.count = static_cast<std::size_t>(next - lines.buffer.data());
 }
 
 /// Keeps off where the neighbour is if it stalled when that is worst for us: the nearest place of
@@ -131,30 +146,32 @@ Listeners SafetyFilter::listeners(const Vec2& position_m, const Vec2& velocity_m
     const double gap_m = distance - options_.radius_m - n.radius_m;
     found.nearest_gap_m = std::min(found.nearest_gap_m, gap_m);
     const double leaving_m2ps = offset.dot(velocity_mps);
-    const double coming_m2ps = std::max(0.0, offset.dot(n.velocity_mps));
-    const double spare_m2 = std::max(0.0, (gap_m - kept_m) * distance - horizon_s * coming_m2ps);
-    if (leaving_m2ps * found.patience_s > spare_m2) found.patience_s = spare_m2 / leaving_m2ps;
+    // Who comes and whom it leaves are coin tosses: no branches.
+    const double coming_m2ps = positive_part(offset.dot(n.velocity_mps));
+    const double spare_m2 = positive_part((gap_m - kept_m) * distance - horizon_s * coming_m2ps);
+    const double never_m2 = leaving_m2ps > 0.0 ? 0.0 : kNever_m2;
+    found.patience_s =
+        std::min(found.patience_s, (spare_m2 + never_m2) / std::max(leaving_m2ps, kStands_m2ps));
   }
-  found.patience_s += 2.0 * to_seconds(options_.period);
+  found.patience_s += horizon_s - options_.lag_s;
   return found;
 }
 
 /// All who are too near give in by the same speed, the least that leaves a common point. Nobody
 /// comes nearer for it.
-Vec2 SafetyFilter::least_violation(const Vec2& wish_mps) {
-  relaxed_ = constraints_;
+Vec2 SafetyFilter::least_violation(const Vec2& wish_mps, Lines& lines) const {
+  const std::span<const HalfPlane> all = lines.all();
+  lines.relaxed.assign(all.begin(), all.end());
   const auto relax = [&](double by_mps) {
-    for (std::size_t i = obstacles_; i < constraints_.size(); ++i) {
-      const double bound = constraints_[i].bound_mps;
-      if (bound < 0.0) relaxed_[i].bound_mps = std::min(0.0, bound + by_mps);
+    for (std::size_t i = lines.obstacles; i < all.size(); ++i) {
+      const double bound = all[i].bound_mps;
+      if (bound < 0.0) lines.relaxed[i].bound_mps = std::min(0.0, bound + by_mps);
     }
-    return nearest_velocity(wish_mps, relaxed_, options_.speed_max_mps);
+    return nearest_velocity(wish_mps, lines.relaxed, options_.speed_max_mps);
   };
   double low = 0.0;
   double high = 0.0;
-  for (std::size_t i = obstacles_; i < constraints_.size(); ++i) {
-    high = std::max(high, -constraints_[i].bound_mps);
-  }
+  for (const HalfPlane& line : all.subspan(lines.obstacles)) high = std::max(high, -line.bound_mps);
   // Standing still breaks nothing by more than this, unless an obstacle comes.
   std::optional<Vec2> best = relax(high);
   if (!best) return Vec2::Zero();
@@ -170,17 +187,18 @@ Vec2 SafetyFilter::least_violation(const Vec2& wish_mps) {
   return *best;
 }
 
-Vec2 SafetyFilter::nearest(const Vec2& wish_mps) {
-  if (auto u = nearest_velocity(wish_mps, constraints_, options_.speed_max_mps)) return *u;
-  return least_violation(wish_mps);
+Vec2 SafetyFilter::nearest(const Vec2& wish_mps, Lines& lines) const {
+  if (auto u = nearest_velocity(wish_mps, lines.all(), options_.speed_max_mps)) return *u;
+  return least_violation(wish_mps, lines);
 }
 
 Vec2 SafetyFilter::filter(const Vec2& position_m, const Vec2& wish_mps,
-                          std::span<const Neighbour> neighbours, bool gives_way) {
-  constraints_.clear();
-  collect_obstacles(position_m);
-  collect_neighbours(position_m, neighbours);
-  const Vec2 u = nearest(wish_mps);
+                          std::span<const Neighbour> neighbours, bool gives_way) const {
+  static thread_local Lines lines;
+  lines.count = 0;
+  collect_obstacles(position_m, lines);
+  collect_neighbours(position_m, neighbours, lines);
+  const Vec2 u = nearest(wish_mps, lines);
   const double wished = wish_mps.norm();
   if (!gives_way || wished < kLeastWish_mps) return u;
   if (u.dot(wish_mps) > kBlocked * wished * wished) return u;
@@ -188,7 +206,8 @@ Vec2 SafetyFilter::filter(const Vec2& position_m, const Vec2& wish_mps,
   for (const double turn_rad : kTurns_rad) {
     const double c = std::cos(turn_rad);
     const double s = std::sin(turn_rad);
-    turned = nearest({c * wish_mps.x() + s * wish_mps.y(), c * wish_mps.y() - s * wish_mps.x()});
+    turned =
+        nearest({c * wish_mps.x() + s * wish_mps.y(), c * wish_mps.y() - s * wish_mps.x()}, lines);
     if (turned.norm() > kFree * wished) break;
   }
   return turned;

@@ -5,7 +5,6 @@
 #include <limits>
 #include <optional>
 #include <span>
-#include <vector>
 
 #include "robot_agent/control/half_plane_qp.hpp"
 #include "robot_agent/neighbour_table.hpp"
@@ -78,7 +77,7 @@ class SafetyFilter {
   /// No allocation once warm. Cost: O(obstacles in reach + neighbours). `gives_way` allows the turn
   /// to the right: not where robots settle.
   Vec2 filter(const Vec2& position_m, const Vec2& wish_mps, std::span<const Neighbour> neighbours,
-              bool gives_way = false);
+              bool gives_way = false) const;
 
   /// What it means to `neighbours` that a robot at `position_m` goes at `velocity_mps`.
   Listeners listeners(const Vec2& position_m, const Vec2& velocity_mps,
@@ -90,19 +89,18 @@ class SafetyFilter {
     double follow;      ///< β
   };
   Pace pace(double stale_s) const;
-  void collect_obstacles(const Vec2& position_m);
-  void collect_neighbours(const Vec2& position_m, std::span<const Neighbour> neighbours);
+  struct Lines;
+  void collect_obstacles(const Vec2& position_m, Lines& lines) const;
+  void collect_neighbours(const Vec2& position_m, std::span<const Neighbour> neighbours,
+                          Lines& lines) const;
   std::optional<HalfPlane> off_stalled(const Vec2& position_m, const Neighbour& n,
                                        double sum_m) const;
-  Vec2 nearest(const Vec2& wish_mps);
-  Vec2 least_violation(const Vec2& wish_mps);
+  Vec2 nearest(const Vec2& wish_mps, Lines& lines) const;
+  Vec2 least_violation(const Vec2& wish_mps, Lines& lines) const;
 
   const World& world_;
   SafetyOptions options_;
-  Pace fresh_;                          // of neighbours that are known at once
-  std::vector<HalfPlane> constraints_;  // obstacles first
-  std::vector<HalfPlane> relaxed_;
-  std::size_t obstacles_ = 0;  // of constraints_
+  Pace fresh_;  // of neighbours that are known at once
 };
 
 }  // namespace swarm::agent

@@ -174,17 +174,13 @@ void Simulation::tick_robot(std::uint32_t id, SteadyTime now, Histogram* ages) {
   Robot& robot = robots_[id];
   const agent::Measurement body = robot.body->measure(now);
   robot.position_m = body.position_m;
-  air_.hear(
-      RobotId(id), robot.position_m, robot.hears_m, robot.heard_until, now,
-      [&](const agent::NeighbourReport& report) {
-        agent::NeighbourReport heard = report;
-        heard.late_s = to_seconds(now - report.as_of);
-        robot.agent.hear(heard, robot.position_m);
-        ++robot.received;
-        if (ages == nullptr) return;
-        ages->add(
-            std::chrono::duration_cast<std::chrono::microseconds>(now - report.as_of).count());
-      });
+  air_.hear(RobotId(id), robot.position_m, robot.hears_m, robot.heard_until, now,
+            [&](const agent::NeighbourReport& report) {
+              const Duration late = now - report.as_of;
+              robot.agent.hear(report, robot.position_m, late);
+              ++robot.received;
+              if (ages != nullptr) ages->add(late / std::chrono::microseconds(1));
+            });
   robot.heard_until = now;
   const RobotMode before = robot.output.mode;
   robot.output = robot.agent.tick({.now = now,

@@ -29,11 +29,12 @@ inline Vec2 give_way_field(const Vec2& position_m, const Vec2& goal_m,
   const double own_squared = (goal_m - position_m).squaredNorm();
   Vec2 sum = Vec2::Zero();
   for (const Neighbour& n : neighbours) {
-    if ((goal_m - n.position_m).squaredNorm() >= own_squared) continue;
     const Vec2 away_m = position_m - n.position_m;
     const double distance_m = away_m.norm();
     const double gap_m = distance_m - options.radius_m - n.radius_m;
+    // Few are so near; of those each second one is nearer.
     if (gap_m >= options.gap_m || distance_m < 1e-9) continue;
+    if ((goal_m - n.position_m).squaredNorm() >= own_squared) continue;
     sum += (1.0 - gap_m / options.gap_m) / distance_m * away_m;
   }
   return options.strength * sum;

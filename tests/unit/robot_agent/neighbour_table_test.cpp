@@ -34,7 +34,7 @@ TEST(NeighbourTable, ExtrapolatesAlongTheLastVelocity) {
   auto sut = table();
   sut.take(report(3, 1, 0, {2, 0}, {0.5, -1}), Vec2::Zero());
 
-  const auto now = sut.at(at(400), Vec2::Zero());
+  const auto now = sut.at(at(400), Vec2::Zero()).all;
 
   ASSERT_EQ(now.size(), 1U);
   EXPECT_NEAR(now[0].position_m.x(), 2.2, 1e-6);
@@ -46,9 +46,9 @@ TEST(NeighbourTable, TellsForHowLongARobotMayHaveStood) {
   auto sut = table();
   sut.take(report(3, 1, 0, {1, 0}, {1, 0}), Vec2::Zero());
 
-  EXPECT_DOUBLE_EQ(sut.at(at(200), Vec2::Zero())[0].stalled_s, 0.0);  // its command still holds
-  EXPECT_NEAR(sut.at(at(500), Vec2::Zero())[0].stalled_s, 0.3, 1e-12);
-  EXPECT_NEAR(sut.at(at(500), Vec2::Zero())[0].position_m.x(), 1.5, 1e-12);
+  EXPECT_DOUBLE_EQ(sut.at(at(200), Vec2::Zero()).all[0].stalled_s, 0.0);  // its command still holds
+  EXPECT_NEAR(sut.at(at(500), Vec2::Zero()).all[0].stalled_s, 0.3, 1e-12);
+  EXPECT_NEAR(sut.at(at(500), Vec2::Zero()).all[0].position_m.x(), 1.5, 1e-12);
 }
 
 /// Hears robot 3, one metre away, ten times a second; the first `lost` of them do not come.
@@ -57,7 +57,9 @@ void hear_at_every_tick(NeighbourTable& sut, int count, int lost) {
   for (int i = 0; i < count; ++i) {
     ++sequence;
     if (i > 0 && i <= lost) continue;
-    sut.take(report(3, sequence, 100 * static_cast<int>(sequence), {1, 0}, {1, 0}), Vec2::Zero());
+    const int ms = 100 * static_cast<int>(sequence);
+    sut.take(report(3, sequence, ms, {1, 0}, {1, 0}), Vec2::Zero());
+    sut.at(at(ms), Vec2::Zero());
   }
 }
 
@@ -78,6 +80,7 @@ TEST(NeighbourTable, DoesNotTakeARobotThatWasOutOfRangeForLostWords) {
   auto sut = table();
   for (std::uint32_t i = 0; i < 40; ++i) {
     sut.take(report(3, 4 * i, static_cast<int>(400 * i), {5.5, 0}), Vec2::Zero());
+    sut.at(at(static_cast<int>(400 * i)), Vec2::Zero());
   }
 
   EXPECT_FALSE(sut.link().poor);
@@ -86,16 +89,15 @@ TEST(NeighbourTable, DoesNotTakeARobotThatWasOutOfRangeForLostWords) {
 TEST(NeighbourTable, KnowsAMotionAsLateAsWordsComeAndWhereTheyAreLostAsOldAsTheLast) {
   auto sut = table();
   NeighbourReport word = report(4, 1, 0, {1, 0.5}, {1, 0});
-  word.late_s = 0.05;
-  sut.take(word, Vec2::Zero());
-  EXPECT_NEAR(sut.at(at(400), Vec2::Zero())[0].stale_s, 0.05, 1e-6);
+  sut.take(word, Vec2::Zero(), milliseconds(50));
+  EXPECT_NEAR(sut.at(at(400), Vec2::Zero()).all[0].stale_s, 0.05, 1e-6);
 
   hear_at_every_tick(sut, 20, 5);
   ASSERT_TRUE(sut.link().poor);
   word.sequence = 2;
   word.as_of = at(1000000);
-  sut.take(word, Vec2::Zero());
-  const auto later = sut.at(at(1000400), Vec2::Zero());
+  sut.take(word, Vec2::Zero(), milliseconds(50));
+  const auto later = sut.at(at(1000400), Vec2::Zero()).all;
   ASSERT_EQ(later.size(), 1U);
   EXPECT_NEAR(later[0].stale_s, 0.4, 1e-6);
 }
@@ -104,7 +106,7 @@ TEST(NeighbourTable, GrowsARobotThatIsSilentForTooLong) {
   auto sut = table();
   sut.take(report(3, 1, 0, {1, 0}), Vec2::Zero());
 
-  const auto now = sut.at(at(900), Vec2::Zero());
+  const auto now = sut.at(at(900), Vec2::Zero()).all;
 
   ASSERT_EQ(now.size(), 1U);
   EXPECT_NEAR(now[0].radius_m, 0.2 + 1.5 * 0.2, 1e-12);
@@ -114,7 +116,7 @@ TEST(NeighbourTable, ForgetsRobotsOlderThanTheHorizon) {
   auto sut = table();
   sut.take(report(3, 1, 0, {1, 0}), Vec2::Zero());
 
-  EXPECT_TRUE(sut.at(at(1001), Vec2::Zero()).empty());
+  EXPECT_TRUE(sut.at(at(1001), Vec2::Zero()).all.empty());
 }
 
 TEST(NeighbourTable, DropsWhoLeavesTheSensingRangeUnheard) {
@@ -122,9 +124,9 @@ TEST(NeighbourTable, DropsWhoLeavesTheSensingRangeUnheard) {
   sut.take(report(3, 1, 0, {5.9, 0}, {1, 0}), Vec2::Zero());
   sut.take(report(4, 1, 0, {5.9, 0}), Vec2::Zero());
 
-  EXPECT_EQ(sut.at(at(200), Vec2::Zero()).size(), 1U);   // it went
-  EXPECT_EQ(sut.at(at(200), Vec2(-0.2, 0)).size(), 0U);  // I went
-  EXPECT_EQ(sut.at(at(200), Vec2::Zero()).size(), 0U);   // and must hear it again
+  EXPECT_EQ(sut.at(at(200), Vec2::Zero()).all.size(), 1U);   // it went
+  EXPECT_EQ(sut.at(at(200), Vec2(-0.2, 0)).all.size(), 0U);  // I went
+  EXPECT_EQ(sut.at(at(200), Vec2::Zero()).all.size(), 0U);   // and must hear it again
 }
 
 TEST(NeighbourTable, RefusesOldAndRepeatedReports) {
@@ -133,7 +135,7 @@ TEST(NeighbourTable, RefusesOldAndRepeatedReports) {
 
   EXPECT_EQ(sut.take(report(3, 5, 100, {2, 0}), Vec2::Zero()), NeighbourTable::Outcome::kDuplicate);
   EXPECT_EQ(sut.take(report(3, 4, 200, {2, 0}), Vec2::Zero()), NeighbourTable::Outcome::kStale);
-  EXPECT_EQ(sut.at(at(100), Vec2::Zero())[0].position_m.x(), 1.0);
+  EXPECT_EQ(sut.at(at(100), Vec2::Zero()).all[0].position_m.x(), 1.0);
 }
 
 TEST(NeighbourTable, AcceptsTheWrapOfTheSequence) {
@@ -159,7 +161,7 @@ TEST(NeighbourTable, KnowsPlacesToMicrometresFarOffAndLateInAMission) {
     const Vec2 other_m = own_m + Vec2(1.25, 0.5);
     sut.take(report(3, i, 1000 * (s + 100'000), other_m, {0.0, 2.0}), own_m);
 
-    const auto now = sut.at(at(1000 * (s + 100'000) + 300), own_m);
+    const auto now = sut.at(at(1000 * (s + 100'000) + 300), own_m).all;
 
     ASSERT_EQ(now.size(), 1U);
     EXPECT_LT((now[0].position_m - (other_m + Vec2(0.0, 0.6))).norm(), 1e-5);
@@ -214,7 +216,7 @@ TEST(NeighbourTable, BelievesWhatLookingAtEverybodyWould) {
     const SteadyTime now = at(100 * static_cast<int>(tick) + 50);
     std::map<std::uint32_t, Vec2> expected = naive.at(now, own_m);
 
-    for (const Neighbour& n : sut.at(now, own_m)) {
+    for (const Neighbour& n : sut.at(now, own_m).all) {
       ASSERT_TRUE(expected.contains(n.robot.value()));
       EXPECT_LT((n.position_m - expected[n.robot.value()]).norm(), 1e-4);
       expected.erase(n.robot.value());
@@ -226,12 +228,37 @@ TEST(NeighbourTable, BelievesWhatLookingAtEverybodyWould) {
   EXPECT_GT(believed, 10'000U);
 }
 
+TEST(NeighbourTable, TellsThoseFirstWhoAreClose) {
+  NeighbourTable sut({.fleet = Fleet(Fleet::Body{0.2, 1.5}),
+                      .keep_radius_m = 6.0,
+                      .reach_m = 4.0,
+                      .close_m = 1.5,
+                      .reach_growth_mps = 2.0,
+                      .period = milliseconds(100),
+                      .expected_silence = milliseconds(700),
+                      .forget_after = milliseconds(1000)});
+  for (std::uint32_t i = 0; i < 40; ++i) {  // 0.15 to 6 m away
+    sut.take(report(i, 1, 0, {0.0, 0.15 * (40 - i)}), Vec2::Zero());
+  }
+
+  const Neighbourhood fresh = sut.at(at(100), Vec2::Zero());
+  EXPECT_EQ(fresh.all.size(), 26U);
+  ASSERT_EQ(fresh.close.size(), 10U);
+  for (const Neighbour& n : fresh.close) EXPECT_LE(n.position_m.y(), 1.5);
+  EXPECT_EQ(fresh.close.data(), fresh.all.data());
+
+  // Who is silent for 0.2 s too long may be 0.4 m nearer by now.
+  const Neighbourhood old = sut.at(at(900), Vec2::Zero());
+  EXPECT_EQ(old.all.size(), 29U);
+  EXPECT_EQ(old.close.size(), 12U);
+}
+
 TEST(NeighbourTable, DropsWhoLeavesTheNeighbourhood) {
   auto sut = table();
   sut.take(report(3, 1, 0, {1, 0}), Vec2::Zero());
 
   EXPECT_EQ(sut.take(report(3, 2, 10, {7, 0}), Vec2::Zero()), NeighbourTable::Outcome::kFar);
-  EXPECT_TRUE(sut.at(at(10), Vec2::Zero()).empty());
+  EXPECT_TRUE(sut.at(at(10), Vec2::Zero()).all.empty());
 }
 
 }  // namespace

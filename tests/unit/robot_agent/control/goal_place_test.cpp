@@ -21,8 +21,11 @@ Vec2 keep(GoalPlace& place, const Vec2& position_m, const std::vector<Vec2>& oth
   for (const Vec2& other : others_m) {
     neighbours.push_back({.robot = RobotId(1), .position_m = other, .radius_m = 0.2});
   }
-  return place.keep(
-      {.now = at(0), .position_m = position_m, .neighbours = neighbours, .world = kOpen});
+  return place.keep({.now = at(0),
+                     .position_m = position_m,
+                     .neighbours = neighbours,
+                     .world = kOpen,
+                     .close = neighbours});
 }
 
 TEST(GoalPlace, IsReachedInTheGoalNearTheOwnPlace) {
@@ -88,6 +91,14 @@ TEST(GoalPlace, DoesNotLeaveTheGoalToMakeRoom) {
 
   EXPECT_LE(wish.x(), 1e-12);
   EXPECT_LT(wish.y(), 0.0);  // along the rim
+}
+
+TEST(GoalPlace, ComesBackFromBeyondTheRim) {
+  GoalPlace sut(kGoal, {12.9, 10}, {});
+
+  EXPECT_EQ(keep(sut, {12.85, 10}, {}), Vec2::Zero());
+  EXPECT_LT(keep(sut, {12.95, 10}, {}).x(), -0.05);
+  EXPECT_LT(keep(sut, {13.02, 10}, {}).x(), keep(sut, {12.95, 10}, {}).x());
 }
 
 }  // namespace

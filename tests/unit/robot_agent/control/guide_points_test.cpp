@@ -45,6 +45,13 @@ TEST(GuidePoints, FallsBackToTheLastItSees) {
   EXPECT_EQ(sut.update({6, 8}, walled()), Vec2(6, 12));  // pushed back behind it
 }
 
+TEST(GuidePoints, DoesNotFallBackFromWithinTheGoal) {
+  GuidePoints sut(kWay, {.sight_m = 30.0, .look_every = 1});
+  ASSERT_EQ(sut.update({10, 13}, walled()), Vec2(18, 5));
+
+  EXPECT_EQ(sut.update({6, 8}, walled(), true), Vec2(18, 5));
+}
+
 TEST(GuidePoints, GoesOnThroughAGapRatherThanBack) {
   // Below a block, 0.6 m above the floor; its own point is behind the block, the next beyond it.
   const World world = World::make({{0, 0}, {20, 20}},
