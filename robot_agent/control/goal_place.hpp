@@ -25,17 +25,17 @@ struct GoalPlaceOptions {
 /// robots that came before. Three rules, from what a robot hears alone, let everybody in:
 ///
 ///   - one that has come no nearer to its place for 2 s takes the place where it is, if it is in
-///   the
-///     goal's 99 % ellipse, and otherwise heads for the goal's mean, or again for its place;
+///     the goal's 99 % ellipse; otherwise it heads for the goal's mean, or again for its place;
 ///   - one that has arrived makes room: it moves away from neighbours nearer than room_gap,
 ///
-///       u = k Σ_j w_j (D_j − d_j) (x − x_j)/d_j      d_j distance of centres, D_j = r + r_j +
-///       room_gap w_j = outside_share for those outside of the ellipse, 1 for those farther out
-///       than itself,
-///             in Mahalanobis distance, and inner_share for the others
+///       u = k Σ_j w_j (D_j − d_j) (x − x_j)/d_j
 ///
-///     so that pressure from outside is passed on through the crowd to where there is room;
-///   - and it takes the place where that ends, not beyond the rim of the ellipse.
+///     with d_j the distance of the centres, D_j = r + r_j + room_gap, and w_j = outside_share for
+///     those outside of the ellipse, 1 for those farther out than itself in Mahalanobis distance,
+///     inner_share for the others, so that pressure from outside is passed on through the crowd to
+///     where there is room;
+///   - and it takes the place where that ends, not beyond the rim of the ellipse: from there on it
+///     comes back inwards, the faster the nearer to the edge.
 ///
 /// So a full goal is filled like a vessel, and one with room is left as planned.
 class GoalPlace {

@@ -35,13 +35,13 @@ struct Listeners {
 /// promises.
 ///
 ///   neighbour j:  n·u ≤ γ (gap − m) / (2T) + β max(0, n·v_j),   T = Δt + γλ + a max(0, τ_j − Δt)
-///                 n·u ≤ (gap − m/3) / (2Δt + λ) − max(0, −n·v_j)     n points to the neighbour,
-///                 v_j is
-///                                                                what it said of its velocity
-///                 n·u ≤ max(0, (gap_s − m/3) / (2Δt + λ))            gap_s, n to where it is if it
-///                                                                stalled after its last word
-///   obstacle o:   n·u ≤ (s − m_o) / (2Δt + λ) − max(0, −n·v_o)       n points into the obstacle
+///                 n·u ≤ (gap − m/3) / (2Δt + λ) − max(0, −n·v_j)
+///                 n·u ≤ max(0, (gap_s − m/3) / (2Δt + λ))
+///   obstacle o:   n·u ≤ (s − m_o) / (2Δt + λ) − max(0, −n·v_o)
 ///   bounds:       the same with the four walls of the world
+///
+/// n points to the neighbour, or into the obstacle; v_j is what the neighbour said of its velocity;
+/// gap_s, and its n, are to where it is if it stalled after its last word.
 ///
 /// What is promised, given speeds of at most v_max and commands that run out after 2Δt:
 ///

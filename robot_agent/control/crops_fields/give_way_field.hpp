@@ -16,9 +16,9 @@ struct GiveWayFieldOptions {
 
 /// Who is nearer to the goal goes first: not in the paper, whose robots may overlap.
 ///
-///   PF_way = k Σ_j (1 − gap_j/g0) (x − x_j)/‖x − x_j‖   for the j with gap_j < g0 that are nearer
-///   to
-///            this robot's immediate goal than itself
+///   PF_way = k Σ_j (1 − gap_j/g0) (x − x_j)/‖x − x_j‖
+///
+/// over the j with gap_j < g0 that are nearer to this robot's immediate goal than itself.
 ///
 /// Bodies that do not overlap and all press on form an arch before a door, for good: nobody can go
 /// on unless another goes back. With this one, of each two it is the farther one, so that there is
