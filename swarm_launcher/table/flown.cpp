@@ -118,15 +118,16 @@ Result<Flown> fly(const Mission& mission, const SimulationOptions& options, bool
   return flown;
 }
 
-Result<std::vector<Flown>> fly_seeds(const Mission& mission, std::uint32_t seeds,
-                                     const SimulationOptions& options) {
-  std::vector<std::optional<Result<Flown>>> results(seeds);
-  std::atomic<std::uint32_t> next = 0;
+Result<std::vector<std::vector<Flown>>> fly_in_turns(std::span<const Mission> missions,
+                                                     std::uint32_t seeds,
+                                                     const SimulationOptions& options) {
+  std::vector<std::optional<Result<Flown>>> results(missions.size() * seeds);
+  std::atomic<std::size_t> next = 0;
   const auto work = [&] {
-    for (std::uint32_t i = next++; i < seeds && shell::stop_requests() == 0; i = next++) {
+    for (std::size_t i = next++; i < results.size() && shell::stop_requests() == 0; i = next++) {
       SimulationOptions own = options;
-      own.seed = i + 1;
-      results[i] = fly(mission, own, i == 0);
+      own.seed = i / missions.size() + 1;
+      results[i] = fly(missions[i % missions.size()], own, own.seed == 1);
     }
   };
   {
@@ -134,11 +135,11 @@ Result<std::vector<Flown>> fly_seeds(const Mission& mission, std::uint32_t seeds
     for (unsigned i = 1; i < std::thread::hardware_concurrency(); ++i) others.emplace_back(work);
     work();
   }
-  std::vector<Flown> flown;
-  for (std::optional<Result<Flown>>& result : results) {
-    if (!result) return fail(ErrorCode::kEnvironment, "interrupted");
-    if (!*result) return tl::unexpected(result->error());
-    flown.push_back(**std::move(result));
+  std::vector<std::vector<Flown>> flown(missions.size());
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    if (!results[i]) return fail(ErrorCode::kEnvironment, "interrupted");
+    if (!*results[i]) return tl::unexpected(results[i]->error());
+    flown[i % missions.size()].push_back(**std::move(results[i]));
   }
   return flown;
 }

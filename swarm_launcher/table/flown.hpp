@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -45,9 +46,10 @@ struct Flown {
 /// Simulates and audits in memory.
 Result<Flown> fly(const Mission& mission, const SimulationOptions& options, bool draw);
 
-/// The same for seeds 1 … `seeds`, as many at a time as there are cores; the first one is drawn.
-/// Fails if one of them cannot be planned.
-Result<std::vector<Flown>> fly_seeds(const Mission& mission, std::uint32_t seeds,
-                                     const SimulationOptions& options = {});
+/// The same for seeds 1 … `seeds` of each mission, one flight of each in turn, as many at a time as
+/// there are cores; the first ones are drawn. Fails if one of them cannot be planned.
+Result<std::vector<std::vector<Flown>>> fly_in_turns(std::span<const Mission> missions,
+                                                     std::uint32_t seeds,
+                                                     const SimulationOptions& options = {});
 
 }  // namespace swarm::launcher

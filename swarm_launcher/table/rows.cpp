@@ -20,7 +20,7 @@ constexpr std::string_view kOurs =
 std::string cells(const Row& row) {
   const auto mean = [&](auto of) { return row.mean(of); };
   return fmt::format(
-      "{:.2f} | {:.1f} ({:.2f}) | {:.3f} | {:.0f} | {:.4g} | {:.3g} | {:.2f} / {:.2f}",
+      "{:.3g} | {:.1f} ({:.2f}) | {:.3f} | {:.0f} | {:.4g} | {:.3g} | {:.2f} / {:.2f}",
       mean([](const Flown& f) { return f.wall_s; }), mean([](const Flown& f) { return f.path_m; }),
       row.deviation([](const Flown& f) { return f.path_m; }),
       mean([](const Flown& f) { return f.ratio(); }),
@@ -62,10 +62,20 @@ Result<Mission> Rows::load(const std::string& name) const {
 Result<void> Rows::add(const std::string& name, const std::string& published,
                        const Mission& mission, std::uint32_t seeds,
                        const SimulationOptions& options) {
-  std::fprintf(stderr, "%s: %u robots, %u seed(s)\n", name.c_str(), mission.robots.count, seeds);
-  auto flown = fly_seeds(mission, seeds, options);
+  return add_in_turns({{name, published}}, {&mission, 1}, seeds, options);
+}
+
+Result<void> Rows::add_in_turns(const std::vector<Named>& named, std::span<const Mission> missions,
+                                std::uint32_t seeds, const SimulationOptions& options) {
+  for (std::size_t i = 0; i < missions.size(); ++i) {
+    std::fprintf(stderr, "%s: %u robots, %u seed(s)\n", named[i].name.c_str(),
+                 missions[i].robots.count, seeds);
+  }
+  auto flown = fly_in_turns(missions, seeds, options);
   if (!flown) return tl::unexpected(flown.error());
-  rows_.push_back({name, published, *std::move(flown)});
+  for (std::size_t i = 0; i < missions.size(); ++i) {
+    rows_.push_back({named[i].name, named[i].published, std::move((*flown)[i])});
+  }
   return {};
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -33,6 +34,13 @@ struct Row {
     return std::sqrt(mean([&](const Flown& f) { return (of(f) - m) * (of(f) - m); }));
   }
   template <class Of>
+  double median(Of of) const {
+    std::vector<double> sorted;
+    for (const Flown& f : flown) sorted.push_back(of(f));
+    std::sort(sorted.begin(), sorted.end());
+    return 0.5 * (sorted[(sorted.size() - 1) / 2] + sorted[sorted.size() / 2]);
+  }
+  template <class Of>
   double least(Of of) const {
     double low = of(flown.front());
     for (const Flown& f : flown) low = std::min(low, of(f));
@@ -56,11 +64,20 @@ class Rows {
   /// Flies a mission with seeds 1 … `seeds` and adds its row; progress goes to stderr.
   Result<void> add(const std::string& name, const std::string& published, const Mission& mission,
                    std::uint32_t seeds, const SimulationOptions& options = {});
+  /// Several missions at a time, one flight of each after the other: what else the machine does
+  /// meanwhile falls on all of them, so that their times can be compared.
+  struct Named {
+    std::string name;
+    std::string published;
+  };
+  Result<void> add_in_turns(const std::vector<Named>& named, std::span<const Mission> missions,
+                            std::uint32_t seeds, const SimulationOptions& options = {});
   /// The newest row shows where something fails: it need not hold.
   void may_fail() { rows_.back().must_hold = false; }
 
   const std::vector<Row>& all() const { return rows_; }
   const Row& newest() const { return rows_.back(); }
+  std::span<const Row> newest(std::size_t count) const { return std::span(rows_).last(count); }
 
   void say(const std::string& line) { text_ += line + "\n"; }
   /// The table of all rows.
