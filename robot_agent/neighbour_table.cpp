@@ -167,9 +167,9 @@ NeighbourTable::Outcome NeighbourTable::take(const NeighbourReport& report,
   return Outcome::kTaken;
 }
 
-/// Who is within reach, into the sieve. Most are not, and which ones is a coin toss: no
-/// branches. Those that are extrapolated out of the sensing range are gone: should they come back
-/// they will be heard.
+/// Who is within reach, into the sieve. Most are not, and which ones is a coin toss: no branches.
+/// Those that are extrapolated out of the sensing range are gone: should they come back they will
+/// be heard.
 void NeighbourTable::sift(std::int32_t now_us, const Vec2& own_position_m, Sieve& sieve) {
   const auto keep_m = static_cast<float>(options_.keep_radius_m);
   const auto growth_mps = static_cast<float>(options_.reach_growth_mps);

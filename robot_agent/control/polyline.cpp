@@ -19,19 +19,21 @@ Polyline::Polyline(const std::vector<Vec2>& vertices_m) {
   length_m_ = arc_.back();
 }
 
-std::size_t Polyline::segment_of(double s_m) const {
-  const auto after = std::upper_bound(arc_.begin() + 1, arc_.end() - 1, s_m);
-  return static_cast<std::size_t>(after - arc_.begin()) - 1;
+std::size_t Polyline::segment_of(double s_m, std::size_t near) const {
+  std::size_t i = std::min(near, arc_.size() - 2);
+  while (i + 2 < arc_.size() && arc_[i + 1] <= s_m) ++i;
+  while (i > 0 && arc_[i] > s_m) --i;
+  return i;
 }
 
-Polyline::Place Polyline::place(double s_m) const {
-  if (vertices_.size() == 1) return {vertices_.front(), Vec2::Zero()};
+Polyline::Place Polyline::place(double s_m, std::size_t near) const {
+  if (vertices_.size() == 1) return {vertices_.front(), Vec2::Zero(), 0};
   const double s = std::clamp(s_m, 0.0, length_m());
-  const std::size_t i = segment_of(s);
+  const std::size_t i = segment_of(s, near);
   const double piece_m = arc_[i + 1] - arc_[i];
   const double t = (s - arc_[i]) / piece_m;
   return {(1.0 - t) * vertices_[i] + t * vertices_[i + 1],
-          (vertices_[i + 1] - vertices_[i]) / piece_m};
+          (vertices_[i + 1] - vertices_[i]) / piece_m, i};
 }
 
 }  // namespace swarm::agent

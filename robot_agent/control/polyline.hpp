@@ -22,12 +22,14 @@ class Polyline {
   struct Place {
     Vec2 point_m = Vec2::Zero();
     Vec2 tangent = Vec2::Zero();  ///< unit; zero for a path of one point
+    std::size_t segment = 0;
   };
-  Place place(double s_m) const;
-  Vec2 at(double s_m) const { return place(s_m).point_m; }
+  /// Found the sooner the fewer segments it is from segment `near`.
+  Place place(double s_m, std::size_t near = 0) const;
+  Vec2 at(double s_m, std::size_t near = 0) const { return place(s_m, near).point_m; }
 
  private:
-  std::size_t segment_of(double s_m) const;
+  std::size_t segment_of(double s_m, std::size_t near) const;
   std::vector<Vec2> vertices_;
   std::vector<double> arc_;  // arc length at each vertex
   double length_m_ = 0.0;    // its last: asked at every tick

@@ -23,21 +23,25 @@ Pursuit::Pursuit(Polyline path, const World& world, const PursuitOptions& option
   const double most_m = options_.radius_m + options_.keep_clearance_m;
   const auto pieces = static_cast<std::size_t>(path_.length_m() / kSample_m) + 1;
   clearance_m_.reserve(pieces);
+  std::size_t segment = 0;
   for (std::size_t i = 0; i < pieces; ++i) {
     // The distance changes by at most the way: half a piece on both sides of the sample.
     const double s = (static_cast<double>(i) + 0.5) * kSample_m;
-    const double least_m = world.distance_m(path_.at(s)) - 0.5 * kSample_m;
+    const Polyline::Place at = path_.place(s, segment);
+    segment = at.segment;
+    const double least_m = world.distance_m(at.point_m) - 0.5 * kSample_m;
     clearance_m_.push_back(static_cast<float>(std::clamp(least_m, 0.0, most_m)));
   }
 }
 
+std::size_t Pursuit::piece_of(double s_m) const {
+  return std::min(clearance_m_.size() - 1, static_cast<std::size_t>(s_m / kSample_m));
+}
+
 double Pursuit::planned_clearance_m(double from_s_m, double to_s_m) const {
-  const auto piece = [&](double s) {
-    return std::min(clearance_m_.size() - 1, static_cast<std::size_t>(s / kSample_m));
-  };
-  const std::size_t last = piece(to_s_m);
-  float least_m = clearance_m_[piece(from_s_m)];
-  for (std::size_t i = piece(from_s_m) + 1; i <= last; ++i) {
+  const std::size_t last = piece_of(to_s_m);
+  float least_m = clearance_m_[piece_of(from_s_m)];
+  for (std::size_t i = piece_of(from_s_m) + 1; i <= last; ++i) {
     least_m = std::min(least_m, clearance_m_[i]);
   }
   return static_cast<double>(least_m);
@@ -45,7 +49,7 @@ double Pursuit::planned_clearance_m(double from_s_m, double to_s_m) const {
 
 void Pursuit::move_to(double s_m) {
   s_m_ = s_m;
-  here_ = path_.place(s_m);
+  here_ = path_.place(s_m, here_.segment);
 }
 
 void Pursuit::advance(const Vec2& position_m) {
@@ -85,11 +89,12 @@ Pursuit::Aim Pursuit::look(const Vec2& position_m, const World& world) {
   const auto visible = [&](double s) {
     const double planned = planned_clearance_m(std::min(s_m_, s), std::max(s_m_, s));
     const double wanted = std::max(options_.radius_m + kLeast_m, planned);
-    return world.segment_is_free(position_m, path_.at(s), std::min(wanted, own_clearance));
+    return world.segment_is_free(position_m, path_.at(s, here_.segment),
+                                 std::min(wanted, own_clearance));
   };
   const auto aim_at = [&](double s) {
     aim_s_m_ = s;
-    aim_m_ = path_.at(s);
+    aim_m_ = path_.at(s, here_.segment);
     return aim(position_m);
   };
   for (double ahead = options_.look_ahead_m; ahead > 0.1; ahead *= 0.5) {

@@ -45,6 +45,7 @@ class Pursuit {
   Vec2 end_m() const { return path_.vertices_m().back(); }
 
  private:
+  std::size_t piece_of(double s_m) const;
   void move_to(double s_m);
   void advance(const Vec2& position_m);
   Aim aim(const Vec2& position_m) const;

@@ -1,10 +1,11 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-// What control costs, one thread: a control period of a whole swarm in mid-flight on the SwarmPRM
-// map. The map grows with the swarm, so that a robot has ten neighbours within reach as in the
-// mission with 500. And who hears whom, by cells and by looking at everybody.
+// What control costs, one thread: a control period of a whole swarm in mid-flight, of 500 robots on
+// the SwarmPRM map and of any number on an open one. And who hears whom, by cells and by looking at
+// everybody.
 //   build/bench/bin/bench_simulation
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include <benchmark/benchmark.h>
@@ -16,46 +17,41 @@
 namespace swarm::launcher {
 namespace {
 
-constexpr double kRobotsOfMap = 500.0;
 constexpr double kIntoFlight_s = 40.0;
 
-Mixture scaled(const Mixture& mixture, double factor) {
-  std::vector<WeightedGaussian> components;
-  for (const WeightedGaussian& c : mixture.components()) {
-    components.push_back({c.weight, Gaussian::make(factor * c.gaussian.mean_m(),
-                                                   factor * factor * c.gaussian.covariance_m2())
-                                        .value()});
-  }
-  return Mixture::make(std::move(components)).value();
+/// The SwarmPRM map with as many robots as its paper has at most.
+Mission standin_mission() {
+  Mission mission = load_mission(SWARM_SOURCE_DIR "/deploy/missions/swarmprm_standin.yaml").value();
+  mission.robots.count = 500;
+  return mission;
 }
 
-Mission mission_of(std::uint32_t robots) {
-  Mission mission = load_mission(SWARM_SOURCE_DIR "/deploy/missions/swarmprm_standin.yaml").value();
-  const double factor = std::sqrt(robots / kRobotsOfMap);
-  std::vector<Obstacle> obstacles;
-  for (const Obstacle& obstacle : mission.world.obstacles()) {
-    std::vector<Vec2> vertices = std::get<Polygon>(obstacle).vertices_m();
-    for (Vec2& v : vertices) v *= factor;
-    obstacles.emplace_back(Polygon::make(std::move(vertices)).value());
-  }
-  const Box& bounds = mission.world.bounds_m();
-  mission.world =
-      World::make({factor * bounds.min_m, factor * bounds.max_m}, std::move(obstacles)).value();
-  mission.start = scaled(mission.start, factor);
-  mission.goal = scaled(mission.goal, factor);
-  for (double* length_m : {&mission.planner.connection_radius_m, &mission.planner.sigma_min_m,
-                           &mission.planner.sigma_max_m, &mission.planner.bridge_sigma_m}) {
-    *length_m *= factor;
-  }
+/// A swarm that flies across an open map, as dense whatever their number: what is around a robot is
+/// the same, but for the rim.
+Mission open_mission(std::uint32_t robots) {
+  constexpr double kAreaEach_m2 = 2.0, kWay_m = 150.0;
+  Mission mission = standin_mission();
+  const double sigma_m = std::sqrt(kAreaEach_m2 * robots / (4.0 * std::numbers::pi));
+  const double side_m = 8.0 * sigma_m;
+  const auto crowd_at = [&](double x_m) {
+    const Mat2 covariance_m2 = sigma_m * sigma_m * Mat2::Identity();
+    return Mixture::make({{1.0, Gaussian::make(Vec2(x_m, 0.5 * side_m), covariance_m2).value()}})
+        .value();
+  };
+  mission.world = World::make({{0.0, 0.0}, {side_m + kWay_m, side_m}}, {}).value();
+  mission.start = crowd_at(0.5 * side_m);
+  mission.goal = crowd_at(0.5 * side_m + kWay_m);
+  mission.planner.sigma_min_m = 0.9 * sigma_m;
+  mission.planner.sigma_max_m = 1.1 * sigma_m;
+  mission.planner.connection_radius_m = 2.0 * kWay_m;
+  mission.planner.bridge_share = 0.0;
   mission.robots.count = robots;
   mission.launcher.time_limit_s = 1e4;
   return mission;
 }
 
 // Time per iteration: of one control period of all robots. `per_agent` is that for one robot.
-void BM_Swarm(benchmark::State& state) {
-  const auto robots = static_cast<std::uint32_t>(state.range(0));
-  const Mission mission = mission_of(robots);
+void fly_on(benchmark::State& state, const Mission& mission) {
   Recording nothing(mission, Simulation::begin_utc(), false);
   SimulationObserver nobody;
   auto simulation = Simulation::make(mission, {}, nothing, nobody);
@@ -69,14 +65,20 @@ void BM_Swarm(benchmark::State& state) {
     if (!(*simulation)->step()) state.SkipWithError("the mission is over");
   }
   state.counters["per_agent"] =
-      benchmark::Counter(static_cast<double>(state.iterations()) * robots,
+      benchmark::Counter(static_cast<double>(state.iterations()) * mission.robots.count,
                          benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
-  state.SetComplexityN(robots);
+  state.SetComplexityN(mission.robots.count);
 }
-BENCHMARK(BM_Swarm)
+
+void BM_Swarm(benchmark::State& state) { fly_on(state, standin_mission()); }
+BENCHMARK(BM_Swarm)->Iterations(300)->Unit(benchmark::kMicrosecond);
+
+void BM_OpenMap(benchmark::State& state) {
+  fly_on(state, open_mission(static_cast<std::uint32_t>(state.range(0))));
+}
+BENCHMARK(BM_OpenMap)
     ->RangeMultiplier(10)
     ->Range(100, 10'000)
-    ->Arg(500)
     ->Iterations(300)
     ->Unit(benchmark::kMicrosecond)
     ->Complexity();
