@@ -143,8 +143,7 @@ class NeighbourTable {
   /// Words since the last at().
   struct Tally {
     std::uint32_t words = 0;
-    std::uint32_t came =
-        0;  // of which none is missing before, or both ends of the gap were in range
+    std::uint32_t came = 0;  // without a gap before, or with both its ends in range
     std::uint32_t lost = 0;
     std::int64_t late_us = 0;
   };
