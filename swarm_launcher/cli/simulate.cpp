@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "swarm_launcher/cli/commands.hpp"
 #include "swarm_launcher/table/table.hpp"
@@ -45,9 +46,9 @@ Command add_table(CLI::App& program) {
   const auto o = std::make_shared<TableOptions>();
   CLI::App* const table = program.add_subcommand(
       "table", "Simulate a paper's experiment: its table, its peers and ours side by side");
-  table->add_option("which", o->which, "swarmprm, rover, crops, diffusion or network")
+  table->add_option("which", o->which, "The experiment")
       ->required()
-      ->check(CLI::IsMember({"swarmprm", "rover", "crops", "diffusion", "network"}));
+      ->check(CLI::IsMember(std::vector<std::string>(kTables.begin(), kTables.end())));
   table->add_flag("--quick", o->quick, "Fewer robots and seeds");
   table->add_option("--missions", o->missions, "Where the mission files are");
   table->add_option("--out", o->out, "Directory for Markdown, JSON and pictures");

@@ -8,8 +8,8 @@
 
 namespace swarm::launcher {
 
-Recording::Recording(const Mission& mission, UtcTime begin, bool steps)
-    : mission_(mission), begin_(begin), keeps_steps_(steps), notes_(mission.robots.count) {}
+Recording::Recording(const Mission& mission, UtcTime begin, std::uint64_t keeps_every)
+    : mission_(mission), begin_(begin), keeps_every_(keeps_every), notes_(mission.robots.count) {}
 
 void Recording::note(RobotId robot, UtcTime at, std::string code, std::string text) {
   notes_[robot.value()].push_back({.stamp = at, .code = std::move(code), .text = std::move(text)});

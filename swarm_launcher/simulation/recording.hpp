@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -18,12 +19,15 @@ namespace swarm::launcher {
 /// recorded by several threads, each robot by one at a time.
 class Recording {
  public:
-  /// Nothing is kept if `steps` is false but where robots began and ended.
-  Recording(const Mission& mission, UtcTime begin, bool steps);
+  /// Keeps every so manieth period, from the first one on, and the last.
+  Recording(const Mission& mission, UtcTime begin, std::uint64_t keeps_every);
+  static constexpr std::uint64_t kFirstAndLast = std::numeric_limits<std::uint64_t>::max();
 
   /// Every robot makes one step in it.
   void begin_period() {
-    if (keeps_steps_ || periods_.size() < 2) periods_.emplace_back(notes_.size());
+    const bool last_is_kept = begun_ == 0 || (begun_ - 1) % keeps_every_ == 0;
+    if (last_is_kept) periods_.emplace_back(notes_.size());
+    ++begun_;
   }
   void step(RobotId robot, const blackbox::Step& step) { periods_.back()[robot.value()] = step; }
   void note(RobotId robot, UtcTime at, std::string code, std::string text);
@@ -47,7 +51,8 @@ class Recording {
 
   const Mission& mission_;
   UtcTime begin_;
-  bool keeps_steps_;
+  std::uint64_t keeps_every_;
+  std::uint64_t begun_ = 0;
   std::vector<std::vector<blackbox::Step>> periods_;  // each of all robots
   std::vector<std::vector<blackbox::Note>> notes_;    // of each robot
   Link link_;

@@ -133,7 +133,8 @@ Result<ExitCode> simulate_mission(const SimulateOptions& options) {
   }
 
   const auto begin = std::chrono::steady_clock::now();
-  Recording recording(*mission, Simulation::begin_utc(), options.record);
+  Recording recording(*mission, Simulation::begin_utc(),
+                      options.record ? 1 : Recording::kFirstAndLast);
   const SimulationOptions simulated{
       .seed = options.seed,
       .faults = options.faults,

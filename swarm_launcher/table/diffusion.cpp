@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <array>
+#include <span>
 
 #include <fmt/format.h>
 
@@ -16,12 +18,15 @@ struct Case {
   double radius_m;
   std::uint32_t robots;
   double tolerance_m2;
+  std::uint32_t seeds_of_descent = 20;  // it always goes on to the end
 };
 
 constexpr std::array<Case, 4> kCases{{{"diffusion_q", 0.1, 50, 0.045},
                                       {"diffusion_q", 0.05, 150, 0.035},
                                       {"diffusion_jie", 0.1, 200, 0.18},
                                       {"diffusion_jie", 0.05, 400, 0.11}}};
+constexpr std::array<Case, 2> kFineCases{
+    {{"diffusion_q", 0.01, 1000, 0.01, 4}, {"diffusion_jie", 0.01, 3000, 0.04, 4}}};
 constexpr double kTimeLimit_s = 60.0;
 
 /// A mission made for another radius: lengths and speeds near a robot go with it, the shape stays.
@@ -74,12 +79,10 @@ void draw_energy(Rows& rows, std::size_t index, const Case& c) {
                    lines));
 }
 
-}  // namespace
-
-Result<void> diffusion_experiment(Rows& rows) {
+Result<void> experiment(Rows& rows, std::span<const Case> cases) {
   std::string lines;
-  for (std::size_t i = 0; i < (rows.quick() ? 1 : kCases.size()); ++i) {
-    const Case& c = kCases[i];
+  for (std::size_t i = 0; i < (rows.quick() ? 1 : cases.size()); ++i) {
+    const Case& c = cases[i];
     auto mission = rows.load(c.mission);
     if (!mission) return tl::unexpected(mission.error());
     *mission = scaled(*std::move(mission), c);
@@ -90,12 +93,13 @@ Result<void> diffusion_experiment(Rows& rows) {
 
     mission->control.diffusion_time_s = 0.0;
     const std::string plain = fmt::format("{}, gradient descent", c.mission);
-    if (auto added = rows.add(plain, cells, *mission, seeds); !added) return added;
+    const std::uint32_t plain_seeds = std::min(seeds, c.seeds_of_descent);
+    if (auto added = rows.add(plain, cells, *mission, plain_seeds); !added) return added;
     rows.may_fail();
-    lines += fmt::format("| {} | {} | {} of {} | {} of {} | {:.4g} |\n", c.mission, cells, ours,
-                         seeds, formed(rows.newest(), c), seeds, rows.newest().mean([](auto& f) {
-                           return f.energy_m2.empty() ? 0.0 : f.energy_m2.back();
-                         }));
+    lines += fmt::format(
+        "| {} | {} | {} of {} | {} of {} | {:.4g} |\n", c.mission, cells, ours, seeds,
+        formed(rows.newest(), c), plain_seeds,
+        rows.newest().mean([](auto& f) { return f.energy_m2.empty() ? 0.0 : f.energy_m2.back(); }));
     draw_energy(rows, i, c);
   }
   rows.say_rows("shape", "N | r m | tolerance m²");
@@ -106,5 +110,11 @@ Result<void> diffusion_experiment(Rows& rows) {
       lines);
   return {};
 }
+
+}  // namespace
+
+Result<void> diffusion_experiment(Rows& rows) { return experiment(rows, kCases); }
+
+Result<void> fine_diffusion_experiment(Rows& rows) { return experiment(rows, kFineCases); }
 
 }  // namespace swarm::launcher

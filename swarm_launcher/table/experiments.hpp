@@ -19,6 +19,9 @@ Result<void> crops_experiment(Rows& rows);
 /// Intermittent diffusion's shapes with its N, r and tolerances, beside plain gradient descent.
 Result<void> diffusion_experiment(Rows& rows);
 
+/// The same with its smallest and most robots, of 1 cm: an hour.
+Result<void> fine_diffusion_experiment(Rows& rows);
+
 /// What loss, delay, noise and clocks out of step do to the SwarmPRM mission: no paper has this.
 Result<void> network_experiment(Rows& rows);
 

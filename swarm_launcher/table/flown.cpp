@@ -6,6 +6,7 @@
 #include <atomic>
 #include <chrono>
 #include <limits>
+#include <mutex>
 #include <optional>
 #include <thread>
 
@@ -19,6 +20,13 @@ namespace {
 
 // Distances to obstacles are looked at in every so manieth step.
 constexpr std::size_t kRiskEvery = 5;
+// Between two recorded points robots are taken to move straight. More are of no use, and of small
+// robots, controlled a thousand times a second, they would not fit into memory.
+constexpr double kPoints_hz = 200.0;
+
+std::uint64_t periods_a_point(const Mission& mission) {
+  return static_cast<std::uint64_t>(std::max(1.0, mission.control.rate_hz / kPoints_hz));
+}
 
 class PlanKept final : public SimulationObserver {
  public:
@@ -44,14 +52,14 @@ double risk_share(const monitor::RecordedRun& run) {
   return looked == 0 ? 0.0 : static_cast<double>(inside) / static_cast<double>(looked);
 }
 
-/// All robots are recorded at the same times, from the first step on.
+/// All robots are recorded at the same times, evenly from the first step on.
 std::vector<double> energy_m2(const monitor::RecordedRun& run) {
   const ControlSpec& control = run.mission.control;
   const double range_m = control.diffusion_range_m > 0.0 ? control.diffusion_range_m
                                                          : 10.0 * run.mission.robots.radius_m;
   const agent::CotangentOptions repulsion{control.diffusion_strength_m2, range_m};
-  const auto every =
-      static_cast<std::size_t>(std::max(1.0, Flown::kEnergyEvery_s * control.rate_hz));
+  const double points_hz = control.rate_hz / static_cast<double>(periods_a_point(run.mission));
+  const auto every = static_cast<std::size_t>(std::max(1.0, Flown::kEnergyEvery_s * points_hz));
   std::vector<double> energy;
   std::vector<agent::Neighbour> others;
   std::size_t steps = std::numeric_limits<std::size_t>::max();
@@ -78,7 +86,7 @@ std::vector<double> energy_m2(const monitor::RecordedRun& run) {
 
 Result<Flown> fly(const Mission& mission, const SimulationOptions& options, bool draw) {
   const auto begin = std::chrono::steady_clock::now();
-  Recording recording(mission, Simulation::begin_utc(), true);
+  Recording recording(mission, Simulation::begin_utc(), periods_a_point(mission));
   PlanKept plan;
   plan.scenes.push_back(first_scene(mission.world.obstacles().size()));
   auto simulation = Simulation::make(mission, options, recording, plan);
@@ -118,9 +126,10 @@ Result<Flown> fly(const Mission& mission, const SimulationOptions& options, bool
   return flown;
 }
 
-Result<std::vector<std::vector<Flown>>> fly_in_turns(std::span<const Mission> missions,
-                                                     std::uint32_t seeds,
-                                                     const SimulationOptions& options) {
+Result<std::vector<std::vector<Flown>>> fly_in_turns(
+    std::span<const Mission> missions, std::uint32_t seeds, const SimulationOptions& options,
+    const std::function<void(const Flown&)>& done) {
+  std::mutex telling;
   std::vector<std::optional<Result<Flown>>> results(missions.size() * seeds);
   std::atomic<std::size_t> next = 0;
   const auto work = [&] {
@@ -128,6 +137,8 @@ Result<std::vector<std::vector<Flown>>> fly_in_turns(std::span<const Mission> mi
       SimulationOptions own = options;
       own.seed = i / missions.size() + 1;
       results[i] = fly(missions[i % missions.size()], own, own.seed == 1);
+      const std::lock_guard lock(telling);
+      if (*results[i]) done(**results[i]);
     }
   };
   {

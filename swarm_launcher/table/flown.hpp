@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -47,9 +48,11 @@ struct Flown {
 Result<Flown> fly(const Mission& mission, const SimulationOptions& options, bool draw);
 
 /// The same for seeds 1 … `seeds` of each mission, one flight of each in turn, as many at a time as
-/// there are cores; the first ones are drawn. Fails if one of them cannot be planned.
+/// there are cores; the first ones are drawn. Fails if one of them cannot be planned. `done` is
+/// told of each, by one thread at a time.
 Result<std::vector<std::vector<Flown>>> fly_in_turns(std::span<const Mission> missions,
                                                      std::uint32_t seeds,
-                                                     const SimulationOptions& options = {});
+                                                     const SimulationOptions& options,
+                                                     const std::function<void(const Flown&)>& done);
 
 }  // namespace swarm::launcher

@@ -9,6 +9,7 @@
 
 #include "swarm_core/mission/mission_file.hpp"
 #include "swarm_core/shell/run_directory.hpp"
+#include "swarm_launcher/progress.hpp"
 
 namespace swarm::launcher {
 namespace {
@@ -20,7 +21,7 @@ constexpr std::string_view kOurs =
 std::string cells(const Row& row) {
   const auto mean = [&](auto of) { return row.mean(of); };
   return fmt::format(
-      "{:.3g} | {:.1f} ({:.2f}) | {:.3f} | {:.0f} | {:.4g} | {:.3g} | {:.2f} / {:.2f}",
+      "{:.3g} | {:.1f} ({:.2f}) | {:.3f} | {:.0f} | {:.4g} | {:.3g} | {:#.2g} / {:#.2g}",
       mean([](const Flown& f) { return f.wall_s; }), mean([](const Flown& f) { return f.path_m; }),
       row.deviation([](const Flown& f) { return f.path_m; }),
       mean([](const Flown& f) { return f.ratio(); }),
@@ -67,11 +68,19 @@ Result<void> Rows::add(const std::string& name, const std::string& published,
 
 Result<void> Rows::add_in_turns(const std::vector<Named>& named, std::span<const Mission> missions,
                                 std::uint32_t seeds, const SimulationOptions& options) {
+  Progress progress;
+  std::string title;
   for (std::size_t i = 0; i < missions.size(); ++i) {
-    std::fprintf(stderr, "%s: %u robots, %u seed(s)\n", named[i].name.c_str(),
-                 missions[i].robots.count, seeds);
+    title =
+        fmt::format("{}: {} robots, {} seed(s)", named[i].name, missions[i].robots.count, seeds);
+    if (i + 1 < missions.size()) progress.say(title);
   }
-  auto flown = fly_in_turns(missions, seeds, options);
+  progress.show(title, "");
+  std::size_t count = 0;
+  auto flown = fly_in_turns(missions, seeds, options, [&](const Flown& f) {
+    progress.show(title, fmt::format(" {} of {} flown, seed {} in {:.1f} s", ++count,
+                                     missions.size() * seeds, f.seed, f.wall_s));
+  });
   if (!flown) return tl::unexpected(flown.error());
   for (std::size_t i = 0; i < missions.size(); ++i) {
     rows_.push_back({named[i].name, named[i].published, std::move((*flown)[i])});

@@ -8,11 +8,12 @@ namespace swarm::launcher {
 
 Result<ExitCode> make_table(const TableOptions& options) {
   Rows rows(options);
-  const Result<void> made = options.which == "swarmprm"    ? swarmprm_experiment(rows)
-                            : options.which == "rover"     ? rover_experiment(rows)
-                            : options.which == "crops"     ? crops_experiment(rows)
-                            : options.which == "diffusion" ? diffusion_experiment(rows)
-                                                           : network_experiment(rows);
+  const Result<void> made = options.which == "swarmprm"         ? swarmprm_experiment(rows)
+                            : options.which == "rover"          ? rover_experiment(rows)
+                            : options.which == "crops"          ? crops_experiment(rows)
+                            : options.which == "diffusion"      ? diffusion_experiment(rows)
+                            : options.which == "diffusion_fine" ? fine_diffusion_experiment(rows)
+                                                                : network_experiment(rows);
   if (!made) return tl::unexpected(made.error());
   return rows.finish();
 }

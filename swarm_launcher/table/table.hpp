@@ -2,15 +2,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 #include "swarm_core/base/result.hpp"
 
 namespace swarm::launcher {
 
+inline constexpr std::array<std::string_view, 6> kTables{"swarmprm",  "rover",          "crops",
+                                                         "diffusion", "diffusion_fine", "network"};
+
 struct TableOptions {
-  std::string which;   ///< swarmprm, rover, crops, diffusion or network
+  std::string which;   ///< one of kTables
   bool quick = false;  ///< fewer robots and seeds, to see that it works
   std::filesystem::path missions = "deploy/missions";
   std::filesystem::path

@@ -52,7 +52,7 @@ Mission open_mission(std::uint32_t robots) {
 
 // Time per iteration: of one control period of all robots. `per_agent` is that for one robot.
 void fly_on(benchmark::State& state, const Mission& mission) {
-  Recording nothing(mission, Simulation::begin_utc(), false);
+  Recording nothing(mission, Simulation::begin_utc(), Recording::kFirstAndLast);
   SimulationObserver nobody;
   auto simulation = Simulation::make(mission, {}, nothing, nobody);
   if (!simulation) {

@@ -25,7 +25,7 @@ struct Flight {
 };
 
 Flight fly(const Mission& mission, const SimulationOptions& options) {
-  Recording recording(mission, Simulation::begin_utc(), true);
+  Recording recording(mission, Simulation::begin_utc(), 1);
   SimulationObserver nobody;
   auto simulation = Simulation::make(mission, options, recording, nobody);
   EXPECT_TRUE(simulation.has_value());
