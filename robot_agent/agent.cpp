@@ -190,7 +190,7 @@ Agent::Agent(const World& world, const AgentOptions& options)
       say_(options.say),
       method_(make_method(options)),
       moved_(options.underway),
-      rng_(options.seed) {}
+      rng_(std::make_unique<Rng>(options.seed)) {}
 
 void Agent::accept_plan(const FlowPlan& plan, const Vec2& position_m,
                         std::optional<PlanEntry> entry) {
@@ -248,7 +248,7 @@ AgentOutput Agent::tick(const AgentInput& input) {
 
   if (out.mode != RobotMode::kStopped) {
     const bool drives = out.mode == RobotMode::kMoving || out.mode == RobotMode::kArrived;
-    const Vec2 wished = drives ? method_->wish(view, arrived_, rng_) : method_->hold(view);
+    const Vec2 wished = drives ? method_->wish(view, arrived_, *rng_) : method_->hold(view);
     const bool gives_way = out.mode == RobotMode::kMoving && out.remaining_m > kSettling_m;
     out.velocity_mps = filter_.filter(input.position_m, wished, view.close, gives_way);
   }

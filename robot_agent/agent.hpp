@@ -90,7 +90,7 @@ class Agent {
 
   /// For whoever ticks many robots in turn: bring what a tick looks at into the cache, first the
   /// agent itself, then what it points to.
-  void prefetch() const { swarm::prefetch(this, sizeof(*this) - sizeof(rng_)); }
+  void prefetch() const { swarm::prefetch(this, sizeof(*this)); }
   void prefetch_owned() const {
     neighbours_.prefetch();
     swarm::prefetch(method_.get(),
@@ -125,7 +125,7 @@ class Agent {
   bool arrived_ = false;
   bool moved_ = false;
   Vec2 mean_mps_ = Vec2::Zero();  // of the commanded velocity
-  Rng rng_;                       // large and rarely used: last
+  std::unique_ptr<Rng> rng_;      // large and rarely used: apart
 };
 
 }  // namespace swarm::agent

@@ -4,9 +4,12 @@
 
 #include <cstdint>
 #include <memory>
+#include <variant>
 
+#include "robot_agent/drivers/double_integrator.hpp"
 #include "robot_agent/drivers/driver.hpp"
-#include "robot_agent/drivers/motion_model.hpp"
+#include "robot_agent/drivers/single_integrator.hpp"
+#include "robot_agent/drivers/unicycle.hpp"
 #include "swarm_core/base/random.hpp"
 #include "swarm_core/mission/mission.hpp"
 
@@ -26,7 +29,9 @@ struct SimulatedNoise {
 /// to stand, which one with inertia does as fast as it can. Deterministic in its seed.
 class SimulatedRobot final : public Driver {
  public:
-  SimulatedRobot(SteadyTime now, std::unique_ptr<MotionModel> model, const SimulatedNoise& noise,
+  using Model = std::variant<SingleIntegrator, DoubleIntegrator, Unicycle>;
+
+  SimulatedRobot(SteadyTime now, const Model& model, const SimulatedNoise& noise,
                  std::uint64_t seed);
   /// A single integrator that knows where it is.
   SimulatedRobot(SteadyTime now, const Vec2& position_m);
@@ -35,14 +40,15 @@ class SimulatedRobot final : public Driver {
   void command(SteadyTime now, const Vec2& velocity_mps, Duration valid_for) override;
 
  private:
+  MotionModel& model();
   Vec2 draw(double sigma_m);
 
-  std::unique_ptr<MotionModel> model_;
+  Model model_;
   SimulatedNoise noise_;
   Vec2 command_mps_ = Vec2::Zero();
   SteadyTime at_;
   SteadyTime valid_until_;
-  Rng rng_;  // large and rarely used: last
+  std::unique_ptr<Rng> rng_;  // large and rarely used: apart
 };
 
 /// The body a mission asks for, at rest; a unicycle has a random heading.

@@ -51,7 +51,7 @@ Simulation::Simulation(const Mission& mission, const SimulationOptions& options,
       air_(mission.world.bounds_m(), hears_farthest_m(mission), options.faults,
            mix_seed(options.seed, 0xA1B), kBegin),
       crew_(std::max<std::size_t>(options.threads, 1)),
-      ages_(crew_.size()),
+      collected_(crew_.size()),
       now_(kBegin) {}
 
 Result<std::unique_ptr<Simulation>> Simulation::make(const Mission& mission,
@@ -74,6 +74,7 @@ UtcTime Simulation::utc(SteadyTime t) const { return begin_utc() + (t - kBegin);
 
 void Simulation::place(const std::vector<Vec2>& positions_m) {
   robots_.reserve(positions_m.size());
+  has_news_.resize(positions_m.size());
   slots_.resize(options_.clocks_in_step ? 1 : kSlots);
   for (std::uint32_t i = 0; i < positions_m.size(); ++i) {
     const RobotId id(i);
@@ -83,7 +84,6 @@ void Simulation::place(const std::vector<Vec2>& positions_m) {
                                             mix_seed(mix_seed(options_.seed, 0xB0D), i)),
          .hears_m = hears_m(mission_, id),
          .heard_until = kBegin,
-         .output = {},
          .position_m = positions_m[i]});
     // As processes do: multiples of the golden ratio spread any number of them evenly.
     const double turn = i * (std::numbers::phi - 1.0);
@@ -154,23 +154,27 @@ void Simulation::report_status() {
   const auto every = std::max<std::uint64_t>(
       1,
       static_cast<std::uint64_t>(std::llround(mission_.control.rate_hz / mission_.link.status_hz)));
+  std::uint64_t in_turn = (every - periods_ % every) % every;
   for (std::uint32_t i = 0; i < robots_.size(); ++i) {
-    Robot& robot = robots_[i];
-    if (!robot.reported && (periods_ + i) % every != 0) continue;
-    robot.reported = false;
+    const bool is_in_turn = i == in_turn;
+    if (is_in_turn) in_turn += every;
+    if (!is_in_turn && has_news_[i] == 0) continue;
+    has_news_[i] = 0;
+    const Robot& robot = robots_[i];
     supervisor_.on_status(RobotId(i), {.has_plan = robot.agent.has_route(),
                                        .hears_neighbours = true,
-                                       .mode = robot.output.mode,
-                                       .settled = robot.output.settled,
+                                       .mode = robot.mode,
+                                       .settled = robot.settled,
                                        .scene_version = keeper_.planned_scene()});
     keeper_.hear({.robot = RobotId(i),
                   .position_m = robot.position_m,
-                  .arrived = robot.output.mode == RobotMode::kArrived},
-                 robot.output.mode == RobotMode::kMoving, now_);
+                  .arrived = robot.mode == RobotMode::kArrived},
+                 robot.mode == RobotMode::kMoving, now_);
   }
 }
 
-void Simulation::tick_robot(std::uint32_t id, SteadyTime now, Histogram* ages) {
+void Simulation::tick_robot(std::uint32_t id, SteadyTime now, Collected& collected) {
+  const bool looks_at_ages = (periods_ + id) % kAgesEvery == 0;
   Robot& robot = robots_[id];
   const agent::Measurement body = robot.body->measure(now);
   robot.position_m = body.position_m;
@@ -179,21 +183,29 @@ void Simulation::tick_robot(std::uint32_t id, SteadyTime now, Histogram* ages) {
               const Duration late = now - report.as_of;
               robot.agent.hear(report, robot.position_m, late);
               ++robot.received;
-              if (ages != nullptr) ages->add(late / std::chrono::microseconds(1));
+              if (looks_at_ages) collected.ages.add(late / std::chrono::microseconds(1));
             });
   robot.heard_until = now;
-  const RobotMode before = robot.output.mode;
-  robot.output = robot.agent.tick({.now = now,
-                                   .position_m = robot.position_m,
-                                   .phase = phase_,
-                                   .planner_alive = true,
-                                   .velocity_mps = body.velocity_mps});
-  const agent::AgentOutput& out = robot.output;
+  const RobotMode before = robot.mode;
+  const agent::AgentOutput out = robot.agent.tick({.now = now,
+                                                   .position_m = robot.position_m,
+                                                   .phase = phase_,
+                                                   .planner_alive = true,
+                                                   .velocity_mps = body.velocity_mps});
+  robot.mode = out.mode;
+  robot.settled = out.settled;
   robot.body->command(now, out.velocity_mps, 2 * period_);
 
   const RobotId robot_id(id);
   const UtcTime stamp = utc(now);
-  if (out.mode != before || out.settled) robot.reported = true;
+  if (out.say) {
+    collected.said.push_back({.robot = robot_id,
+                              .sequence = ++robot.sequence,
+                              .as_of = now,
+                              .position_m = robot.position_m,
+                              .velocity_mps = out.told_mps});
+  }
+  if (out.mode != before || out.settled) has_news_[id] = 1;
   if (out.mode != before)
     recording_.note(robot_id, stamp, "mode", std::string(to_string(out.mode)));
   recording_.step(robot_id,
@@ -216,7 +228,7 @@ void Simulation::prefetch(const Robot& robot) const {
 
 void Simulation::prefetch_owned(const Robot& robot) const {
   robot.agent.prefetch_owned();
-  constexpr std::size_t kStateOfBody = 128;
+  constexpr std::size_t kStateOfBody = sizeof(agent::SimulatedRobot);
   swarm::prefetch(robot.body.get(), kStateOfBody);
 }
 
@@ -229,23 +241,19 @@ void Simulation::tick_slot(std::size_t slot) {
     const std::size_t first = members.size() * part / parts;
     const std::size_t last = members.size() * (part + 1) / parts;
     for (std::size_t i = first; i < last; ++i) {
-      const std::uint32_t id = members[i];
       if (i + 2 < last) prefetch(robots_[members[i + 2]]);
       if (i + 1 < last) prefetch_owned(robots_[members[i + 1]]);
-      tick_robot(id, now, (periods_ + id) % kAgesEvery == 0 ? &ages_[part] : nullptr);
+      tick_robot(members[i], now, collected_[part]);
     }
   });
-  said_.clear();
-  for (const std::uint32_t id : members) {
-    Robot& robot = robots_[id];
-    if (!robot.output.say) continue;
-    said_.push_back({.robot = RobotId(id),
-                     .sequence = ++robot.sequence,
-                     .as_of = now,
-                     .position_m = robot.position_m,
-                     .velocity_mps = robot.output.told_mps});
+  std::vector<agent::NeighbourReport>& said = collected_.front().said;
+  for (std::size_t part = 1; part < parts; ++part) {
+    std::vector<agent::NeighbourReport>& more = collected_[part].said;
+    said.insert(said.end(), more.begin(), more.end());
+    more.clear();
   }
-  air_.post(now, said_);
+  air_.post(now, said);
+  said.clear();
 }
 
 bool Simulation::step() {
@@ -256,7 +264,7 @@ bool Simulation::step() {
       recording_.link().states_sent += robots_[i].sequence;
       recording_.link().states_received += robots_[i].received;
     }
-    for (const Histogram& ages : ages_) recording_.link().state_age.merge(ages);
+    for (const Collected& c : collected_) recording_.link().state_age.merge(c.ages);
     return false;
   }
   keep_planned();

@@ -79,11 +79,17 @@ class Simulation {
     std::unique_ptr<agent::Driver> body;
     double hears_m = 0.0;  // sensing range
     SteadyTime heard_until;
-    agent::AgentOutput output;
     Vec2 position_m = Vec2::Zero();
     std::uint32_t sequence = 0;
     std::uint32_t received = 0;
-    bool reported = false;
+    RobotMode mode = RobotMode::kWaiting;
+    bool settled = false;
+  };
+
+  /// What a thread collects.
+  struct Collected {
+    std::vector<agent::NeighbourReport> said;
+    Histogram ages;  // of the states that robots heard
   };
 
   Simulation(const Mission& mission, const SimulationOptions& options, Recording& recording,
@@ -100,7 +106,7 @@ class Simulation {
   void tick_slot(std::size_t slot);
   void prefetch(const Robot& robot) const;
   void prefetch_owned(const Robot& robot) const;
-  void tick_robot(std::uint32_t id, SteadyTime now, Histogram* ages);
+  void tick_robot(std::uint32_t id, SteadyTime now, Collected& collected);
 
   const Mission& mission_;
   SimulationOptions options_;
@@ -117,8 +123,9 @@ class Simulation {
   Crew crew_;
   std::vector<Robot> robots_;
   std::vector<std::vector<std::uint32_t>> slots_;  // robots that tick together
-  std::vector<agent::NeighbourReport> said_;
-  std::vector<Histogram> ages_;  // one a thread
+  std::vector<Collected> collected_;               // one a thread
+  // Those who report their status out of turn. Apart from robots_: most are only looked at.
+  std::vector<std::uint8_t> has_news_;
   SteadyTime now_;
   std::uint64_t periods_ = 0;
   double plan_ms_ = 0.0;

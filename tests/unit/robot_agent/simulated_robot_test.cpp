@@ -67,7 +67,7 @@ double variance(double sum, double sum_of_squares, int n) {
 }
 
 TEST(SimulatedRobot, AddsMotionNoiseToEveryStepUnderCommand) {
-  SimulatedRobot sut(at(0), std::make_unique<SingleIntegrator>(Vec2(0, 0)), {.motion_m = 0.1}, 7);
+  SimulatedRobot sut(at(0), SingleIntegrator(Vec2(0, 0)), {.motion_m = 0.1}, 7);
   constexpr int kSteps = 20'000;
   double sum = 0.0;
   double squares = 0.0;
@@ -92,7 +92,7 @@ TEST(SimulatedRobot, AddsMotionNoiseToEveryStepUnderCommand) {
 }
 
 TEST(SimulatedRobot, MeasuresWithNoiseAndKnowsBetter) {
-  SimulatedRobot sut(at(0), std::make_unique<SingleIntegrator>(Vec2(3, 4)), {.position_m = 0.2}, 7);
+  SimulatedRobot sut(at(0), SingleIntegrator(Vec2(3, 4)), {.position_m = 0.2}, 7);
   constexpr int kSteps = 20'000;
   double sum = 0.0;
   double squares = 0.0;
