@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "robot_agent/drivers/lag.hpp"
 #include "swarm_core/mission/placement.hpp"
@@ -97,27 +98,45 @@ CropsOptions crops_options(const Mission& mission, const BodySpec& body) {
   };
 }
 
-std::unique_ptr<ControlMethod> make_method(const AgentOptions& options) {
-  if (options.method == "intermittent_diffusion") {
-    return std::make_unique<IntermittentDiffusion>(options.diffusion);
+IntermittentDiffusionOptions diffusion_options(const Mission& mission, const BodySpec& body) {
+  const ControlSpec& c = mission.control;
+  return {.shape = mission.goal_shape,
+          .goal = mission.goal,
+          .repulsion = {.strength_m2 = c.diffusion_strength_m2,
+                        .range_m =
+                            c.diffusion_range_m > 0.0 ? c.diffusion_range_m : 10.0 * body.radius_m},
+          .diffusion = {.noise_mps05 = c.diffusion_noise_mps05,
+                        .time_s = c.diffusion_time_s,
+                        .clearance_m = body.radius_m + mission.safety.obstacle_margin_m},
+          .obstacles = {.radius_m = body.radius_m,
+                        .gap_m = c.obstacle_gap_m,
+                        .push_mps = c.obstacle_push_mps},
+          .radius_m = body.radius_m,
+          .tolerance_m2 = c.diffusion_tolerance_m2,
+          .gain_hz = c.diffusion_gain_hz,
+          .cruise_mps = std::min(c.cruise_mps, body.speed_max_mps),
+          .period = from_seconds(1.0 / c.rate_hz),
+          .flow_time = from_seconds(c.diffusion_flow_s)};
+}
+
+std::variant<Apf, Crops, IntermittentDiffusion> make_method(const Shared<AgentOptions>& options) {
+  if (options->method == "intermittent_diffusion") {
+    return IntermittentDiffusion(options.part(&AgentOptions::diffusion));
   }
-  if (options.method == "crops") return std::make_unique<Crops>(options.crops);
-  return std::make_unique<Apf>(options.apf);
+  if (options->method == "crops") return Crops(options.part(&AgentOptions::crops));
+  return Apf(options.part(&AgentOptions::apf));
 }
 
 }  // namespace
 
-AgentOptions agent_options(const Mission& mission, RobotId robot, std::uint64_t seed) {
+Shared<AgentOptions> agent_options(const Mission& mission, RobotId robot) {
   const BodySpec& body = body_of(mission.robots, robot);
   const ControlSpec& c = mission.control;
   const LinkSpec& l = mission.link;
   const Duration period = from_seconds(1.0 / c.rate_hz);
   const double cruise_mps = std::min(c.cruise_mps, body.speed_max_mps);
   const double hear_m = body.hear_radius_m > 0.0 ? body.hear_radius_m : l.hear_radius_m;
-  return {
-      .robot = robot,
-      .share = stratified_share(robot.value(), mission.robots.count),
-      .seed = mix_seed(seed, robot.value()),
+  return AgentOptions{
       .method = c.method,
       .route = {.radius_m = body.radius_m},
       .apf = {.pursuit = {.look_ahead_m = c.look_ahead_s * cruise_mps,
@@ -135,23 +154,7 @@ AgentOptions agent_options(const Mission& mission, RobotId robot, std::uint64_t 
                          .duration = from_seconds(c.escape_s),
                          .spread_m = c.escape_spread_m,
                          .radius_m = body.radius_m}},
-      .diffusion = {.shape = mission.goal_shape,
-                    .goal = mission.goal,
-                    .repulsion = {.strength_m2 = c.diffusion_strength_m2,
-                                  .range_m = c.diffusion_range_m > 0.0 ? c.diffusion_range_m
-                                                                       : 10.0 * body.radius_m},
-                    .diffusion = {.noise_mps05 = c.diffusion_noise_mps05,
-                                  .time_s = c.diffusion_time_s,
-                                  .clearance_m = body.radius_m + mission.safety.obstacle_margin_m},
-                    .obstacles = {.radius_m = body.radius_m,
-                                  .gap_m = c.obstacle_gap_m,
-                                  .push_mps = c.obstacle_push_mps},
-                    .radius_m = body.radius_m,
-                    .tolerance_m2 = c.diffusion_tolerance_m2,
-                    .gain_hz = c.diffusion_gain_hz,
-                    .cruise_mps = cruise_mps,
-                    .period = period,
-                    .flow_time = from_seconds(c.diffusion_flow_s)},
+      .diffusion = diffusion_options(mission, body),
       .crops = crops_options(mission, body),
       .safety = {.radius_m = body.radius_m,
                  .speed_max_mps = body.speed_max_mps,
@@ -180,34 +183,37 @@ AgentOptions agent_options(const Mission& mission, RobotId robot, std::uint64_t 
   };
 }
 
-Agent::Agent(const World& world, const AgentOptions& options)
+AgentIdentity agent_identity(const Mission& mission, RobotId robot) {
+  return {.robot = robot, .share = stratified_share(robot.value(), mission.robots.count)};
+}
+
+Agent::Agent(const World& world, Shared<AgentOptions> options, const AgentIdentity& self)
     : world_(&world),
-      share_(options.share),
-      route_options_(options.route),
-      mean_share_(std::min(1.0, to_seconds(options.safety.period) / kMeanOver_s)),
-      neighbours_(options.neighbours),
-      filter_(world, options.safety),
-      say_(options.say),
-      method_(make_method(options)),
-      moved_(options.underway),
-      rng_(std::make_unique<Rng>(options.seed)) {}
+      options_(std::move(options)),
+      mean_share_(std::min(1.0, to_seconds(options_->safety.period) / kMeanOver_s)),
+      neighbours_(options_.part(&AgentOptions::neighbours)),
+      filter_(world, options_.part(&AgentOptions::safety)),
+      say_(options_.part(&AgentOptions::say)),
+      method_(make_method(options_)),
+      moved_(self.underway),
+      way_{.share = self.share} {}
 
 void Agent::accept_plan(const FlowPlan& plan, const Vec2& position_m,
                         std::optional<PlanEntry> entry) {
-  if (has_route_ && plan.digest() == plan_digest_) return;
-  const RouteOptions& o = route_options_;
+  if (has_route_ && plan.digest() == way_.plan_digest) return;
+  const RouteOptions& o = options_->route;
   Route route = entry && is_near_source(plan, entry->source, position_m)
                     ? route_from_source(plan, entry->source, entry->share, position_m, *world_, o)
-                : moved_ || entry ? route_from_here(plan, share_, position_m, *world_, o)
-                                  : route_from_start(plan, share_, position_m, *world_, o);
+                : moved_ || entry ? route_from_here(plan, way_.share, position_m, *world_, o)
+                                  : route_from_start(plan, way_.share, position_m, *world_, o);
   keep_place(route, position_m);
-  method_->see_goals(plan);
-  method_->begin(route, *world_);
-  goal_ = route.goal;
-  way_end_m_ = route.path.vertices_m().back();
+  method().see_goals(plan);
+  method().begin(route, *world_);
+  way_.goal = route.goal;
+  way_.end_m = route.path.vertices_m().back();
   has_route_ = true;
-  plan_digest_ = plan.digest();
-  way_begin_m_ = route.path.at(0.0);
+  way_.plan_digest = plan.digest();
+  way_.begin_m = route.path.at(0.0);
   arrived_ = false;
 }
 
@@ -215,10 +221,10 @@ void Agent::accept_plan(const FlowPlan& plan, const Vec2& position_m,
 /// stir those who wait for the last ones.
 void Agent::keep_place(Route& route, const Vec2& position_m) const {
   constexpr double kSame_m = 1e-6;
-  const bool same_goal = has_route_ && (route.goal.mean_m() - goal_.mean_m()).norm() < kSame_m;
+  const bool same_goal = has_route_ && (route.goal.mean_m() - way_.goal.mean_m()).norm() < kSame_m;
   if (!same_goal || !route.goal.contains_99(position_m)) return;
-  if (!world_->segment_is_free(position_m, way_end_m_, route_options_.radius_m)) return;
-  route.path = Polyline({position_m, way_end_m_});
+  if (!world_->segment_is_free(position_m, way_.end_m, options_->route.radius_m)) return;
+  route.path = Polyline({position_m, way_.end_m});
   route.stations = {route.stations.back()};
   route.stations.back().at_m = route.path.length_m();
 }
@@ -231,24 +237,24 @@ RobotMode Agent::decide_mode(const AgentInput& input) const {
   return RobotMode::kMoving;
 }
 
-AgentOutput Agent::tick(const AgentInput& input) {
+AgentOutput Agent::tick(const AgentInput& input, Rng& rng) {
   const Neighbourhood hood = neighbours_.at(input.now, input.position_m);
   const ControlView view{.now = input.now,
                          .position_m = input.position_m,
                          .neighbours = hood.all,
                          .world = *world_,
                          .close = hood.close};
-  if (has_route_ && input.phase != MissionPhase::kReady) arrived_ = method_->has_arrived(view);
+  if (has_route_ && input.phase != MissionPhase::kReady) arrived_ = method().has_arrived(view);
   AgentOutput out;
   out.mode = decide_mode(input);
   moved_ = moved_ || out.mode == RobotMode::kMoving;
   out.believed = view.neighbours;
   out.neighbours = static_cast<std::uint16_t>(std::min<std::size_t>(neighbours_.known(), 0xFFFF));
-  out.remaining_m = has_route_ ? method_->remaining_m() : 0.0;
+  out.remaining_m = has_route_ ? method().remaining_m() : 0.0;
 
   if (out.mode != RobotMode::kStopped) {
     const bool drives = out.mode == RobotMode::kMoving || out.mode == RobotMode::kArrived;
-    const Vec2 wished = drives ? method_->wish(view, arrived_, *rng_) : method_->hold(view);
+    const Vec2 wished = drives ? method().wish(view, arrived_, rng) : method().hold(view);
     const bool gives_way = out.mode == RobotMode::kMoving && out.remaining_m > kSettling_m;
     out.velocity_mps = filter_.filter(input.position_m, wished, view.close, gives_way);
   }

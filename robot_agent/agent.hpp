@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <variant>
 
 #include "robot_agent/control/apf.hpp"
 #include "robot_agent/control/control_method.hpp"
@@ -16,16 +17,14 @@
 #include "robot_agent/neighbour_table.hpp"
 #include "robot_agent/say_policy.hpp"
 #include "swarm_core/base/random.hpp"
+#include "swarm_core/base/shared.hpp"
 #include "swarm_core/mission/mission.hpp"
 #include "swarm_core/mission/phase.hpp"
 
 namespace swarm::agent {
 
+/// What robots with the same body have in common.
 struct AgentOptions {
-  RobotId robot;
-  double share = 0.0;  ///< of the stratified draw, see stratified_share()
-  std::uint64_t seed = 0;
-  bool underway = false;       ///< respawned: it may be anywhere along its way
   std::string method = "apf";  ///< of control
   RouteOptions route;
   ApfOptions apf;
@@ -36,8 +35,21 @@ struct AgentOptions {
   SayOptions say;
 };
 
-/// The options of one robot of a mission.
-AgentOptions agent_options(const Mission& mission, RobotId robot, std::uint64_t seed);
+/// What is a robot's own.
+struct AgentIdentity {
+  RobotId robot;
+  double share = 0.0;     ///< of the stratified draw, see stratified_share()
+  bool underway = false;  ///< respawned: it may be anywhere along its way
+};
+
+/// The options of a robot of a mission, and of any other with its body.
+Shared<AgentOptions> agent_options(const Mission& mission, RobotId robot);
+AgentIdentity agent_identity(const Mission& mission, RobotId robot);
+
+/// What it draws from.
+inline Rng agent_rng(RobotId robot, std::uint64_t seed) {
+  return Rng(mix_seed(seed, robot.value()));
+}
 
 /// Where this robot enters a plan that was made in mid-flight.
 struct PlanEntry {
@@ -68,12 +80,12 @@ struct AgentOutput {
 };
 
 /// One robot: turns the flow, the map and what it hears of its neighbours into its velocity, alone.
-/// A pure function of its inputs and its seed; the control loop cannot fail, it holds. tick() does
-/// not allocate once warm.
+/// A pure function of its inputs and what it draws; the control loop cannot fail, it holds. tick()
+/// does not allocate once warm.
 class Agent {
  public:
   /// \pre the world outlives the agent
-  Agent(const World& world, const AgentOptions& options);
+  Agent(const World& world, Shared<AgentOptions> options, const AgentIdentity& self);
 
   /// Takes a plan. One with the digest of the present one changes nothing, so a restarted planner
   /// that publishes the same flow does not make robots start over. Without an entry a robot finds
@@ -86,46 +98,52 @@ class Agent {
     return neighbours_.take(report, own_position_m, late);
   }
 
-  AgentOutput tick(const AgentInput& input);
+  AgentOutput tick(const AgentInput& input, Rng& rng);
 
   /// For whoever ticks many robots in turn: bring what a tick looks at into the cache, first the
   /// agent itself, then what it points to.
-  void prefetch() const { swarm::prefetch(this, sizeof(*this)); }
-  void prefetch_owned() const {
-    neighbours_.prefetch();
-    swarm::prefetch(method_.get(),
-                    std::max({sizeof(Apf), sizeof(Crops), sizeof(IntermittentDiffusion)}));
-  }
+  void prefetch() const { swarm::prefetch(this, sizeof(*this) - sizeof(way_)); }
+  void prefetch_neighbours() const { neighbours_.prefetch(); }
 
   bool has_route() const { return has_route_; }
   /// Index of the goal (sink of the plan) this robot is at or goes to. \pre has_route()
-  std::uint32_t goal(const Vec2& position_m) const { return method_->goal(position_m); }
+  std::uint32_t goal(const Vec2& position_m) const { return method().goal(position_m); }
   /// Where the present way begins. \pre has_route()
-  const Vec2& way_begin_m() const { return way_begin_m_; }
+  const Vec2& way_begin_m() const { return way_.begin_m; }
   /// How often it freed itself from a deadlock.
-  std::uint32_t escapes() const { return method_->escapes(); }
+  std::uint32_t escapes() const { return method().escapes(); }
 
  private:
+  const ControlMethod& method() const {
+    return std::visit([](const ControlMethod& any) -> const ControlMethod& { return any; },
+                      method_);
+  }
+  ControlMethod& method() {
+    return std::visit([](ControlMethod& any) -> ControlMethod& { return any; }, method_);
+  }
   void keep_place(Route& route, const Vec2& position_m) const;
   RobotMode decide_mode(const AgentInput& input) const;
 
   const World* world_;
-  double share_;
-  RouteOptions route_options_;
+  Shared<AgentOptions> options_;
   double mean_share_;  // of a tick, in mean_mps_
   NeighbourTable neighbours_;
   SafetyFilter filter_;
   SayPolicy say_;
-  std::unique_ptr<ControlMethod> method_;
+  std::variant<Apf, Crops, IntermittentDiffusion> method_;
+  Vec2 mean_mps_ = Vec2::Zero();  // of the commanded velocity
   bool has_route_ = false;
-  std::uint64_t plan_digest_ = 0;
-  Vec2 way_begin_m_ = Vec2::Zero();
-  Vec2 way_end_m_ = Vec2::Zero();
-  Gaussian goal_;
   bool arrived_ = false;
   bool moved_ = false;
-  Vec2 mean_mps_ = Vec2::Zero();  // of the commanded velocity
-  std::unique_ptr<Rng> rng_;      // large and rarely used: apart
+  /// What only a new plan is compared with: last.
+  struct Way {
+    double share;
+    std::uint64_t plan_digest = 0;
+    Vec2 begin_m = Vec2::Zero();
+    Vec2 end_m = Vec2::Zero();
+    Gaussian goal{};
+  };
+  Way way_;
 };
 
 }  // namespace swarm::agent

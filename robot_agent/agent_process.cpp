@@ -171,11 +171,13 @@ Result<void> AgentProcess::Impl::make_robots(std::uint64_t seed) {
                                  .process_id = static_cast<std::uint32_t>(::getpid()),
                                  .radius_m = body_of(mission.robots, id).radius_m,
                                  .stamp = utc_now()});
-    auto body = make_simulated_body(body_of(mission.robots, id), std::chrono::steady_clock::now(),
-                                    *place, mix_seed(mix_seed(seed, id.value()), kBodySeed));
-    AgentOptions agent = agent_options(mission, id, seed);
-    agent.underway = *place != (*places)[id.value()];
-    robots.emplace_back(world, agent, std::move(body), std::move(*box));
+    auto body = std::make_unique<SimulatedRobot>(
+        make_simulated_body(body_of(mission.robots, id), std::chrono::steady_clock::now(), *place,
+                            mix_seed(mix_seed(seed, id.value()), kBodySeed)));
+    AgentIdentity self = agent_identity(mission, id);
+    self.underway = *place != (*places)[id.value()];
+    robots.emplace_back(world, agent_options(mission, id), self, agent_rng(id, seed),
+                        std::move(body), std::move(*box));
   }
   return {};
 }

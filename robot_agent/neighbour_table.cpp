@@ -3,6 +3,7 @@
 #include "robot_agent/neighbour_table.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace swarm::agent {
 namespace {
@@ -44,13 +45,13 @@ struct NeighbourTable::Sieve {
   std::vector<Neighbour> neighbours;
 };
 
-NeighbourTable::NeighbourTable(const NeighbourOptions& options)
-    : options_(options),
-      period_s_(to_seconds(options.period)),
-      silence_s_(to_seconds(options.expected_silence)),
-      period_us_(to_us(options.period)),
-      silence_us_(to_us(options.expected_silence)),
-      forget_after_us_(to_us(options.forget_after)),
+NeighbourTable::NeighbourTable(Shared<NeighbourOptions> options)
+    : options_(std::move(options)),
+      period_s_(to_seconds(options_->period)),
+      silence_s_(to_seconds(options_->expected_silence)),
+      period_us_(to_us(options_->period)),
+      silence_us_(to_us(options_->expected_silence)),
+      forget_after_us_(to_us(options_->forget_after)),
       index_(kFirstSlots, kFree) {
   fours_.reserve(kFirstSlots / kSlotsEach / kLanes);
 }
@@ -102,7 +103,7 @@ void NeighbourTable::count_lost(const Four& four, std::size_t lane, const Neighb
                                 std::int32_t as_of_us, const Vec2& own_position_m) {
   const std::uint32_t lost = report.sequence - four.sequence[lane] - 1U;
   if (lost > 0) {
-    const double inside_m = kInside * options_.keep_radius_m;
+    const double inside_m = kInside * options_->keep_radius_m;
     const Vec2 before_m = here_m_ + Vec2(four.x_m[lane], four.y_m[lane]);
     if (as_of_us - four.as_of_us[lane] > silence_us_ ||
         (before_m - own_position_m).squaredNorm() > inside_m * inside_m) {
@@ -145,7 +146,7 @@ NeighbourTable::Outcome NeighbourTable::take(const NeighbourReport& report,
       count_lost(four, lane, report, as_of_us, own_position_m);
     }
   }
-  const double keep_squared = options_.keep_radius_m * options_.keep_radius_m;
+  const double keep_squared = options_->keep_radius_m * options_->keep_radius_m;
   if ((report.position_m - own_position_m).squaredNorm() > keep_squared) {
     if (is_known) fours_[slot / kLanes].as_of_us[slot % kLanes] = kGone;
     return Outcome::kFar;
@@ -171,11 +172,11 @@ NeighbourTable::Outcome NeighbourTable::take(const NeighbourReport& report,
 /// Those that are extrapolated out of the sensing range are gone: should they come back they will
 /// be heard.
 void NeighbourTable::sift(std::int32_t now_us, const Vec2& own_position_m, Sieve& sieve) {
-  const auto keep_m = static_cast<float>(options_.keep_radius_m);
-  const auto growth_mps = static_cast<float>(options_.reach_growth_mps);
+  const auto keep_m = static_cast<float>(options_->keep_radius_m);
+  const auto growth_mps = static_cast<float>(options_->reach_growth_mps);
   const auto period_s = static_cast<float>(period_s_);
-  const float reach_now_m = static_cast<float>(options_.reach_m) - growth_mps * period_s;
-  const auto beyond_close_m = static_cast<float>(options_.reach_m - options_.close_m);
+  const float reach_now_m = static_cast<float>(options_->reach_m) - growth_mps * period_s;
+  const auto beyond_close_m = static_cast<float>(options_->reach_m - options_->close_m);
   const auto own_x_m = static_cast<float>(own_position_m.x() - here_m_.x());
   const auto own_y_m = static_cast<float>(own_position_m.y() - here_m_.y());
   // What is too old is as old as it is, anything else at most as late as words are.
@@ -208,8 +209,10 @@ void NeighbourTable::sift(std::int32_t now_us, const Vec2& own_position_m, Sieve
     const Float4 close_m = reach_m - beyond_close_m;
     const Int4 is_close = in_reach & (away_squared <= close_m * close_m);
     const Int4 is_far = in_reach & ~is_close;
-    f.as_of_us = is_gone ? all(kGone) : f.as_of_us;
     gone -= is_gone;
+    const Int4 left = is_gone & (f.as_of_us != all(kGone));
+    if ((left[0] | left[1] | left[2] | left[3]) != 0)
+      f.as_of_us = is_gone ? all(kGone) : f.as_of_us;
     sieve.fours[i] = {x_m, y_m, age_us};
 #pragma GCC unroll 4
     for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
@@ -233,17 +236,17 @@ void NeighbourTable::believe(std::size_t known, const Vec2& own_position_m, cons
   const Sieve::Four& sifted = sieve.fours[known / kLanes];
   const std::size_t lane = known % kLanes;
   const double age_s = in_s(sifted.age_us[lane]);
-  const double radius_m = options_.fleet.of(four.robot[lane]).radius_m;
+  const double radius_m = options_->fleet.of(four.robot[lane]).radius_m;
   n.robot = four.robot[lane];
   n.position_m = here_m_ + Vec2(sifted.x_m[lane], sifted.y_m[lane]);
   n.velocity_mps = {four.vx_mps[lane], four.vy_mps[lane]};
   n.radius_m = radius_m;
   if (sifted.age_us[lane] > silence_us_) {
-    n.radius_m += options_.fleet.of(n.robot).speed_max_mps * (age_s - silence_s_);
+    n.radius_m += options_->fleet.of(n.robot).speed_max_mps * (age_s - silence_s_);
   }
   n.stale_s = std::min(age_s, std::max(in_s(four.late_us[lane]), link_.late_s));
   if (link_.poor && n.velocity_mps.squaredNorm() > kStands_mps * kStands_mps) {
-    const double speaks_within_m = options_.near_m + options_.radius_m + radius_m;
+    const double speaks_within_m = options_->near_m + options_->radius_m + radius_m;
     const Vec2 spoke_at_m = here_m_ + Vec2(four.x_m[lane], four.y_m[lane]);
     if ((spoke_at_m - own_position_m).squaredNorm() < speaks_within_m * speaks_within_m) {
       n.stale_s = age_s;

@@ -11,6 +11,7 @@
 #include "swarm_core/base/lanes.hpp"
 #include "swarm_core/base/linalg.hpp"
 #include "swarm_core/base/prefetch.hpp"
+#include "swarm_core/base/shared.hpp"
 #include "swarm_core/base/time.hpp"
 #include "swarm_core/mission/fleet.hpp"
 
@@ -74,7 +75,7 @@ struct NeighbourOptions {
 /// once warm.
 class NeighbourTable {
  public:
-  explicit NeighbourTable(const NeighbourOptions& options);
+  explicit NeighbourTable(Shared<NeighbourOptions> options);
 
   enum class Outcome { kTaken, kDuplicate, kStale, kFar };
 
@@ -128,7 +129,7 @@ class NeighbourTable {
                Neighbour& n) const;
   void sweep();
 
-  NeighbourOptions options_;
+  Shared<NeighbourOptions> options_;
   double period_s_;
   double silence_s_;  // that is expected
   std::int32_t period_us_;

@@ -20,12 +20,13 @@ std::int64_t to_ns(UtcTime t) { return t.time_since_epoch().count(); }
 
 }  // namespace
 
-Robot::Robot(const World& world, const AgentOptions& options, std::unique_ptr<Driver> driver,
-             blackbox::Writer box)
-    : id_(options.robot),
-      agent_(world, options),
+Robot::Robot(const World& world, Shared<AgentOptions> options, const AgentIdentity& self, Rng rng,
+             std::unique_ptr<Driver> driver, blackbox::Writer box)
+    : id_(self.robot),
+      agent_(world, std::move(options), self),
       driver_(std::move(driver)),
-      box_(std::move(box)) {}
+      box_(std::move(box)),
+      rng_(rng) {}
 
 void Robot::step(const Tick& tick, const Inbox& inbox, const NewPlan* new_plan,
                  Histogram& state_age) {
@@ -57,7 +58,8 @@ void Robot::step(const Tick& tick, const Inbox& inbox, const NewPlan* new_plan,
                          .position_m = position_m_,
                          .phase = inbox.mission().phase(),
                          .planner_alive = inbox.mission().planner_alive(tick.now),
-                         .velocity_mps = body.velocity_mps});
+                         .velocity_mps = body.velocity_mps},
+                        rng_);
   mode_changed_ = !stepped_ || output_.mode != before;
   stepped_ = true;
   driver_->command(tick.now, output_.velocity_mps, 2 * tick.period);

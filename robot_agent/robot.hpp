@@ -17,8 +17,8 @@ namespace swarm::agent {
 /// One robot of a process: its agent, its body, its black box, and what it says of itself.
 class Robot {
  public:
-  Robot(const World& world, const AgentOptions& options, std::unique_ptr<Driver> driver,
-        blackbox::Writer box);
+  Robot(const World& world, Shared<AgentOptions> options, const AgentIdentity& self, Rng rng,
+        std::unique_ptr<Driver> driver, blackbox::Writer box);
 
   struct Tick {
     SteadyTime now;
@@ -63,6 +63,7 @@ class Robot {
   std::uint32_t ticks_ = 0;
   std::uint32_t late_ticks_ = 0;
   std::optional<link::RobotStateMessage> to_say_;
+  Rng rng_;
 };
 
 }  // namespace swarm::agent

@@ -16,20 +16,20 @@ constexpr double kLeastError_m = 0.01;  // and of less than this never
 bool SayPolicy::must_say(const SayInput& input) const {
   if (!last_) return true;
   const Duration silent = input.now - last_->now;
-  if (silent >= options_.interval_max) return true;
+  if (silent >= options_->interval_max) return true;
   const double silent_s = to_seconds(silent);
-  const double period_s = to_seconds(options_.period);
+  const double period_s = to_seconds(options_->period);
   // What is said now is used when it was heard; until then they have the last word.
   if (silent_s + std::max(period_s, input.link.late_s) > input.listeners.patience_s) return true;
   const bool stands =
       input.velocity_mps == last_->velocity_mps && input.velocity_mps.norm() < kStands_mps;
-  if (input.link.poor && input.listeners.nearest_gap_m < options_.near_m && !stands) return true;
+  if (input.link.poor && input.listeners.nearest_gap_m < options_->near_m && !stands) return true;
   // Whoever turns only now will be where nobody expects it before it can speak again.
   const Vec2 off_m = last_->position_m + silent_s * last_->velocity_mps - input.position_m;
   const Vec2 soon_off_m = off_m + period_s * (last_->velocity_mps - input.velocity_mps);
   // Where robots touch each other almost, a few centimetres decide who may move.
   const double error_m =
-      std::min(std::max(kOfGap * input.listeners.nearest_gap_m, kLeastError_m), options_.error_m);
+      std::min(std::max(kOfGap * input.listeners.nearest_gap_m, kLeastError_m), options_->error_m);
   return std::max(off_m.norm(), soon_off_m.norm()) > error_m;
 }
 

@@ -3,10 +3,12 @@
 #pragma once
 
 #include <optional>
+#include <utility>
 
 #include "robot_agent/control/safety_filter.hpp"
 #include "robot_agent/neighbour_table.hpp"
 #include "swarm_core/base/linalg.hpp"
+#include "swarm_core/base/shared.hpp"
 #include "swarm_core/base/time.hpp"
 
 namespace swarm::agent {
@@ -31,15 +33,20 @@ struct SayInput {
 /// same and speaks before the difference matters, and before its silence does.
 class SayPolicy {
  public:
-  explicit SayPolicy(const SayOptions& options) : options_(options) {}
+  explicit SayPolicy(Shared<SayOptions> options) : options_(std::move(options)) {}
 
   bool must_say(const SayInput& input) const;
 
-  void said(const SayInput& input) { last_ = input; }
+  void said(const SayInput& input) { last_ = {input.now, input.position_m, input.velocity_mps}; }
 
  private:
-  SayOptions options_;
-  std::optional<SayInput> last_;
+  Shared<SayOptions> options_;
+  struct Word {
+    SteadyTime now;
+    Vec2 position_m = Vec2::Zero();
+    Vec2 velocity_mps = Vec2::Zero();
+  };
+  std::optional<Word> last_;
 };
 
 }  // namespace swarm::agent

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <utility>
+
 #include "robot_agent/control/attraction.hpp"
 #include "robot_agent/control/control_method.hpp"
 #include "robot_agent/control/density_attraction.hpp"
@@ -10,6 +12,7 @@
 #include "robot_agent/control/obstacle_repulsion.hpp"
 #include "robot_agent/control/pursuit.hpp"
 #include "robot_agent/goal_watch.hpp"
+#include "swarm_core/base/shared.hpp"
 
 namespace swarm::agent {
 
@@ -31,7 +34,8 @@ struct ApfOptions {
 /// intermittent diffusion where the sum of them has a local minimum.
 class Apf final : public ControlMethod {
  public:
-  explicit Apf(const ApfOptions& options) : options_(options), escape_(options.escape) {}
+  explicit Apf(Shared<ApfOptions> options)
+      : options_(std::move(options)), escape_(options_.part(&ApfOptions::escape)) {}
 
   void begin(const Route& route, const World& world) override;
   bool has_arrived(const ControlView& view) override;
@@ -44,7 +48,7 @@ class Apf final : public ControlMethod {
  private:
   Vec2 repulsion(const ControlView& view) const;
 
-  ApfOptions options_;
+  Shared<ApfOptions> options_;
   Pursuit pursuit_;
   DensityAttraction density_;
   DiffusionEscape escape_;

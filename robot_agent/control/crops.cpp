@@ -18,8 +18,8 @@ constexpr double kLastSteps_m = 0.25;  // the approach is no slower than from he
 
 void Crops::begin(const Route& route, const World&) {
   sink_ = route.sink;
-  guide_ = GuidePoints(route.path, options_.guide);
-  place_ = GoalPlace(route.goal, guide_.end_m(), options_.place);
+  guide_ = GuidePoints(route.path, options_.part(&CropsOptions::guide));
+  place_ = GoalPlace(route.goal, guide_.end_m(), options_.part(&CropsOptions::place));
   remaining_m_ = route.path.length_m();
   escape_.forget();
 }
@@ -47,29 +47,29 @@ Vec2 Crops::wish(const ControlView& view, bool arrived, Rng& rng) {
   const Vec2 escape = escape_.update(x, rng);
   // A stuck robot dares to go where walls are near, as in the paper's code; the safety filter minds
   // them.
-  const double wall_share = escape_.is_stuck() ? options_.stuck_wall_share : 1.0;
+  const double wall_share = escape_.is_stuck() ? options_->stuck_wall_share : 1.0;
   const std::array<Vec2, 6> fields{
-      wall_share * obstacle_field(x, view.world, options_.obstacle),
-      presses ? Vec2(Vec2::Zero()) : separation_field(x, view.neighbours, options_.separation),
-      is_blocked ? Vec2(Vec2::Zero()) : give_way_field(x, aim_m, view.close, options_.give_way),
-      goal_field(x, aim_m, options_.goal),
-      heading_field(x, view.neighbours, options_.heading),
+      wall_share * obstacle_field(x, view.world, options_->obstacle),
+      presses ? Vec2(Vec2::Zero()) : separation_field(x, view.neighbours, options_->separation),
+      is_blocked ? Vec2(Vec2::Zero()) : give_way_field(x, aim_m, view.close, options_->give_way),
+      goal_field(x, aim_m, options_->goal),
+      heading_field(x, view.neighbours, options_->heading),
       escape};
   const Vec2 sum = superposition(fields);
   const double strength = sum.norm();
-  double speed_mps = options_.cruise_mps;
+  double speed_mps = options_->cruise_mps;
   if (at_end) {
     const double left_m = std::max(kLastSteps_m, (aim_m - x).norm());
-    speed_mps = std::min(speed_mps, options_.approach_gain_hz * left_m);
+    speed_mps = std::min(speed_mps, options_->approach_gain_hz * left_m);
   }
-  return speed_mps / std::max(strength, options_.full_strength) * sum;
+  return speed_mps / std::max(strength, options_->full_strength) * sum;
 }
 
 Vec2 Crops::hold(const ControlView& view) {
   escape_.forget();
   place_.wait(view.now);
-  return neighbour_repulsion(view.position_m, view.close, {.radius_m = options_.guide.radius_m}) +
-         obstacle_repulsion(view.position_m, view.world, {.radius_m = options_.guide.radius_m});
+  return neighbour_repulsion(view.position_m, view.close, {.radius_m = options_->guide.radius_m}) +
+         obstacle_repulsion(view.position_m, view.world, {.radius_m = options_->guide.radius_m});
 }
 
 }  // namespace swarm::agent

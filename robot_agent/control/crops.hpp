@@ -11,6 +11,7 @@
 #include "robot_agent/control/crops_fields/separation_field.hpp"
 #include "robot_agent/control/goal_place.hpp"
 #include "robot_agent/control/guide_points.hpp"
+#include "swarm_core/base/shared.hpp"
 
 namespace swarm::agent {
 
@@ -40,7 +41,8 @@ struct CropsOptions {
 ///   - where the fields cancel, a robot stands instead of shaking at full speed.
 class Crops final : public ControlMethod {
  public:
-  explicit Crops(const CropsOptions& options) : options_(options), escape_(options.escape) {}
+  explicit Crops(Shared<CropsOptions> options)
+      : options_(std::move(options)), escape_(options_->escape) {}
 
   void begin(const Route& route, const World& world) override;
   bool has_arrived(const ControlView& view) override;
@@ -51,7 +53,7 @@ class Crops final : public ControlMethod {
   std::uint32_t escapes() const override { return escape_.escapes(); }
 
  private:
-  CropsOptions options_;
+  Shared<CropsOptions> options_;
   GuidePoints guide_;
   GoalPlace place_;
   EscapeWalk escape_;

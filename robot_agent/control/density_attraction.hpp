@@ -7,6 +7,7 @@
 
 #include "robot_agent/control/route.hpp"
 #include "robot_agent/neighbour_table.hpp"
+#include "swarm_core/base/shared.hpp"
 
 namespace swarm::agent {
 
@@ -29,14 +30,14 @@ struct DensityAttractionOptions {
 class DensityAttraction {
  public:
   DensityAttraction() = default;
-  DensityAttraction(std::span<const Station> stations, const DensityAttractionOptions& options);
+  DensityAttraction(std::span<const Station> stations, Shared<DensityAttractionOptions> options);
 
   Vec2 pull(const Vec2& position_m, double progress_m, std::span<const Neighbour> neighbours);
 
  private:
   void move_to(double progress_m);
 
-  DensityAttractionOptions options_;
+  Shared<DensityAttractionOptions> options_;
   std::vector<Station> stations_;
   std::size_t leg_ = 0;         // of stations_
   double planned_at_m_ = -1.0;  // progress `planned_` is of

@@ -21,14 +21,14 @@ void DiffusionEscape::forget() {
 }
 
 Vec2 DiffusionEscape::diffuse(const ControlView& view, Rng& rng) const {
-  const double range_m = kRange * options_.radius_m;
+  const double range_m = kRange * options_->radius_m;
   const DiffusionPotential potential{
       .neighbours = view.neighbours,
       .repulsion = {.strength_m2 = kStrength * range_m * range_m, .range_m = range_m}};
   return virtual_diffusion(view.position_m, potential, view.world, true,
-                           {.noise_mps05 = widening_ * options_.spread_m,
+                           {.noise_mps05 = widening_ * options_->spread_m,
                             .time_s = 1.0,
-                            .clearance_m = 1.1 * options_.radius_m},
+                            .clearance_m = 1.1 * options_->radius_m},
                            rng);
 }
 
@@ -38,21 +38,21 @@ std::optional<Vec2> DiffusionEscape::update(const ControlView& view, double prog
     forget();
     return std::nullopt;
   }
-  if (!watching_ || progress_m > best_progress_m_ + options_.progress_m) {
+  if (!watching_ || progress_m > best_progress_m_ + options_->progress_m) {
     if (!target_m_) widening_ = 1.0;
     watching_ = true;
     best_progress_m_ = progress_m;
     best_at_ = view.now;
   }
   if (target_m_) {
-    const bool reached = (*target_m_ - view.position_m).norm() < kReached * options_.radius_m;
+    const bool reached = (*target_m_ - view.position_m).norm() < kReached * options_->radius_m;
     if (!reached && view.now < until_) return target_m_;
     target_m_.reset();
     best_at_ = view.now;
   }
-  if (view.now - best_at_ < options_.stuck_after) return std::nullopt;
+  if (view.now - best_at_ < options_->stuck_after) return std::nullopt;
   target_m_ = diffuse(view, rng);
-  until_ = view.now + options_.duration;
+  until_ = view.now + options_->duration;
   best_progress_m_ = progress_m;
   widening_ = std::min(2.0 * widening_, kWideningMax);
   ++escapes_;

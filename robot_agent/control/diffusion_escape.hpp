@@ -3,9 +3,11 @@
 #pragma once
 
 #include <optional>
+#include <utility>
 
 #include "robot_agent/control/control_method.hpp"
 #include "robot_agent/control/virtual_diffusion.hpp"
+#include "swarm_core/base/shared.hpp"
 
 namespace swarm::agent {
 
@@ -24,7 +26,7 @@ struct EscapeOptions {
 /// by one that spreads twice as far, up to four times.
 class DiffusionEscape {
  public:
-  explicit DiffusionEscape(const EscapeOptions& options) : options_(options) {}
+  explicit DiffusionEscape(Shared<EscapeOptions> options) : options_(std::move(options)) {}
 
   /// Where to go instead of following the way; empty unless the robot is escaping. `progress_m`
   /// grows along the way. `wants_to_move` false (waiting, arrived) forgets everything.
@@ -39,7 +41,7 @@ class DiffusionEscape {
  private:
   Vec2 diffuse(const ControlView& view, Rng& rng) const;
 
-  EscapeOptions options_;
+  Shared<EscapeOptions> options_;
   bool watching_ = false;
   double best_progress_m_ = 0.0;
   SteadyTime best_at_;

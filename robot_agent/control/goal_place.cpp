@@ -15,8 +15,8 @@ constexpr double kRim = 8.2;       // squared Mahalanobis distance; the 99 % ell
 
 }  // namespace
 
-GoalPlace::GoalPlace(const Gaussian& goal, const Vec2& place_m, const GoalPlaceOptions& options)
-    : options_(options), goal_(goal), place_m_(place_m) {}
+GoalPlace::GoalPlace(const Gaussian& goal, const Vec2& place_m, Shared<GoalPlaceOptions> options)
+    : options_(std::move(options)), goal_(goal), place_m_(place_m) {}
 
 bool GoalPlace::has_arrived(SteadyTime now, const Vec2& position_m) {
   const bool inside = goal_.contains_99(position_m);
@@ -49,15 +49,15 @@ Vec2 GoalPlace::room(const ControlView& view) const {
   for (const Neighbour& n : view.close) {
     const Vec2 away_m = view.position_m - n.position_m;
     const double distance_m = away_m.norm();
-    const double lacking_m = options_.radius_m + n.radius_m + options_.room_gap_m - distance_m;
+    const double lacking_m = options_->radius_m + n.radius_m + options_->room_gap_m - distance_m;
     if (lacking_m <= 0.0 || distance_m < 1e-9) continue;
     const double its = goal_.mahalanobis_squared(n.position_m);
-    const double share = its > kChiSquared2Dof99 ? options_.outside_share
+    const double share = its > kChiSquared2Dof99 ? options_->outside_share
                          : its > own             ? 1.0
-                                                 : options_.inner_share;
+                                                 : options_->inner_share;
     push += share * lacking_m / distance_m * away_m;
   }
-  return options_.room_gain_hz * push;
+  return options_->room_gain_hz * push;
 }
 
 Vec2 GoalPlace::keep(const ControlView& view) {
@@ -67,7 +67,7 @@ Vec2 GoalPlace::keep(const ControlView& view) {
   if (beyond_rim > 0.0) {
     const Vec2 inwards = (goal_.mean_m() - view.position_m).normalized();
     const double share = beyond_rim / (kChiSquared2Dof99 - kRim);
-    push += (share * options_.approach_max_mps - std::min(0.0, push.dot(inwards))) * inwards;
+    push += (share * options_->approach_max_mps - std::min(0.0, push.dot(inwards))) * inwards;
   }
   if (push != Vec2::Zero()) {
     place_m_ = view.position_m;
@@ -76,7 +76,7 @@ Vec2 GoalPlace::keep(const ControlView& view) {
   const Vec2 way_m = place_m_ - view.position_m;
   const double left_m = way_m.norm();
   if (left_m < kAtRest_m) return Vec2::Zero();
-  const double speed = std::min(options_.approach_max_mps, options_.approach_gain_hz * left_m);
+  const double speed = std::min(options_->approach_max_mps, options_->approach_gain_hz * left_m);
   return speed / left_m * way_m;
 }
 

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "robot_agent/control/control_method.hpp"
+#include "swarm_core/base/shared.hpp"
 #include "swarm_core/gmm/gaussian.hpp"
 
 namespace swarm::agent {
@@ -41,7 +42,7 @@ struct GoalPlaceOptions {
 class GoalPlace {
  public:
   GoalPlace() = default;
-  GoalPlace(const Gaussian& goal, const Vec2& place_m, const GoalPlaceOptions& options);
+  GoalPlace(const Gaussian& goal, const Vec2& place_m, Shared<GoalPlaceOptions> options);
 
   /// Asked once a tick. Arrived: in the ellipse and within 1 m of its place.
   bool has_arrived(SteadyTime now, const Vec2& position_m);
@@ -71,7 +72,7 @@ class GoalPlace {
  private:
   Vec2 room(const ControlView& view) const;
 
-  GoalPlaceOptions options_;
+  Shared<GoalPlaceOptions> options_;
   Gaussian goal_;
   Vec2 place_m_ = Vec2::Zero();
   double nearest_m_ = std::numeric_limits<double>::infinity();

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "robot_agent/control/route.hpp"
+#include "swarm_core/base/shared.hpp"
 #include "swarm_core/world/world.hpp"
 
 namespace swarm::agent {
@@ -31,7 +32,7 @@ struct GuidePointsOptions {
 class GuidePoints {
  public:
   GuidePoints() = default;
-  GuidePoints(const Polyline& path, const GuidePointsOptions& options);
+  GuidePoints(const Polyline& path, Shared<GuidePointsOptions> options);
 
   /// Which point to go to from here. No allocation. \pre the path was not empty
   const Vec2& update(const Vec2& position_m, const World& world, bool in_goal = false);
@@ -48,7 +49,7 @@ class GuidePoints {
             double clearance_m) const;
   void look(const Vec2& position_m, const World& world, bool in_goal);
 
-  GuidePointsOptions options_;
+  Shared<GuidePointsOptions> options_;
   std::vector<Vec2> points_m_;
   std::vector<double> behind_m_;  // of the way from each to the end
   std::size_t at_ = 0;

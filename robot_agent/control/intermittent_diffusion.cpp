@@ -46,23 +46,35 @@ ShapeField shape_of(const std::vector<WeightedGaussian>& components) {
   return *std::move(shape);
 }
 
-IntermittentDiffusion::IntermittentDiffusion(const IntermittentDiffusionOptions& options)
-    : options_(options), shape_(options.shape) {}
+IntermittentDiffusion::IntermittentDiffusion(Shared<IntermittentDiffusionOptions> options)
+    : options_(std::move(options)), shape_(options_->shape) {}
 
 void IntermittentDiffusion::see_goals(const FlowPlan& plan) {
   goals_.clear();
-  bool drawn = options_.shape != nullptr;
+  bool drawn = options_->shape != nullptr;
   for (const std::uint32_t sink : plan.sinks()) {
     const PlanNode& node = plan.nodes()[sink];
     goals_.push_back({node.mass, node.gaussian});
-    drawn = drawn && is_goal_of(options_.goal, node.gaussian);
+    drawn = drawn && is_goal_of(options_->goal, node.gaussian);
   }
   // Another goal than the mission's is known by its mixture alone.
-  shape_ = drawn ? options_.shape : std::make_shared<const ShapeField>(shape_of(goals_));
+  shape_ = drawn ? options_->shape : std::make_shared<const ShapeField>(shape_of(goals_));
+  weigh_goals();
+}
+
+/// Logarithms are for far from all goals, so that they still differ.
+void IntermittentDiffusion::weigh_goals() {
+  log_weights_.clear();
+  for (const WeightedGaussian& g : goals_) {
+    log_weights_.push_back(std::log(g.weight) - 0.5 * std::log(g.gaussian.determinant()));
+  }
 }
 
 void IntermittentDiffusion::begin(const Route& route, const World&) {
-  if (goals_.empty()) goals_.push_back({1.0, route.goal});
+  if (goals_.empty()) {
+    goals_.push_back({1.0, route.goal});
+    weigh_goals();
+  }
   if (shape_ == nullptr) shape_ = std::make_shared<const ShapeField>(shape_of(goals_));
   begun_ = false;
   resting_ = false;
@@ -71,19 +83,20 @@ void IntermittentDiffusion::begin(const Route& route, const World&) {
 }
 
 std::uint32_t IntermittentDiffusion::goal(const Vec2& position_m) const {
-  const auto density = [&](const WeightedGaussian& g) {
-    // The logarithm, so that far from all goals they still differ.
-    return std::log(g.weight) - 0.5 * g.gaussian.mahalanobis_squared(position_m) -
-           0.5 * std::log(g.gaussian.determinant());
-  };
-  const auto best =
-      std::max_element(goals_.begin(), goals_.end(),
-                       [&](const auto& a, const auto& b) { return density(a) < density(b); });
-  return static_cast<std::uint32_t>(best - goals_.begin());
+  std::size_t best = 0;
+  double most = -std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < goals_.size(); ++i) {
+    const double log_density =
+        log_weights_[i] - 0.5 * goals_[i].gaussian.mahalanobis_squared(position_m);
+    if (log_density <= most) continue;
+    most = log_density;
+    best = i;
+  }
+  return static_cast<std::uint32_t>(best);
 }
 
 double IntermittentDiffusion::reach_m(const ControlView& view) const {
-  double nearest_squared = options_.repulsion.range_m * options_.repulsion.range_m;
+  double nearest_squared = options_->repulsion.range_m * options_->repulsion.range_m;
   for (const Neighbour& n : view.neighbours) {
     nearest_squared = std::min(nearest_squared, (n.position_m - view.position_m).squaredNorm());
   }
@@ -93,20 +106,20 @@ double IntermittentDiffusion::reach_m(const ControlView& view) const {
 const IntermittentDiffusion::Felt& IntermittentDiffusion::feel(const ControlView& view) {
   if (felt_ && felt_->at == view.now) return *felt_;
   const double reach = reach_m(view);
-  CotangentOptions repulsion = options_.repulsion;
+  CotangentOptions repulsion = options_->repulsion;
   if (resting_) repulsion.fade_share = kFadeAtRest;
   felt_ = {view.now, reach, cotangent_repulsion(view.position_m, view.neighbours, repulsion, reach),
            shape_attraction(view.position_m, *shape_)};
   energy_m2_ = felt_->repulsion.energy_m2 + felt_->shape.energy_m2;
-  arrived_ = energy_m2_ <= (arrived_ ? 1.0 : kArrive) * options_.tolerance_m2;
+  arrived_ = energy_m2_ <= (arrived_ ? 1.0 : kArrive) * options_->tolerance_m2;
   return *felt_;
 }
 
 Vec2 IntermittentDiffusion::descend(const Potential& potential, double reach_m) const {
-  const double period_s = to_seconds(options_.period);
-  const double gain_hz = std::min(options_.gain_hz, 1.0 / (potential.curvature * period_s));
+  const double period_s = to_seconds(options_->period);
+  const double gain_hz = std::min(options_->gain_hz, 1.0 / (potential.curvature * period_s));
   const Vec2 wish_mps = -gain_hz * potential.gradient_m;
-  const double limit_mps = std::min(options_.cruise_mps, reach_m / period_s);
+  const double limit_mps = std::min(options_->cruise_mps, reach_m / period_s);
   const double speed_mps = wish_mps.norm();
   return speed_mps > limit_mps ? Vec2(limit_mps / speed_mps * wish_mps) : wish_mps;
 }
@@ -119,18 +132,18 @@ bool IntermittentDiffusion::has_arrived(const ControlView& view) {
 void IntermittentDiffusion::enter(Phase phase, const ControlView& view, Rng& rng) {
   phase_ = phase;
   begun_ = true;
-  const double flow_s = to_seconds(options_.flow_time);
+  const double flow_s = to_seconds(options_->flow_time);
   // Robots of a crowd must not leave it all at once; on the way there is time to give way.
   until_ = view.now + from_seconds(phase == Phase::kShape
                                        ? uniform(rng, 0.2, 1.0) * flow_s
-                                       : flow_s + 2.0 * target_.width_m / options_.cruise_mps);
+                                       : flow_s + 2.0 * target_.width_m / options_->cruise_mps);
 }
 
 void IntermittentDiffusion::diffuse(const ControlView& view, Rng& rng) {
-  const DiffusionPotential potential{shape_.get(), view.neighbours, options_.repulsion};
+  const DiffusionPotential potential{shape_.get(), view.neighbours, options_->repulsion};
   const Vec2 end_m =
-      virtual_diffusion(view.position_m, potential, view.world, true, options_.diffusion, rng);
-  target_ = target_from(view.position_m, end_m, options_.radius_m);
+      virtual_diffusion(view.position_m, potential, view.world, true, options_->diffusion, rng);
+  target_ = target_from(view.position_m, end_m, options_->radius_m);
   ++diffusions_;
   enter(Phase::kTarget, view, rng);
 }
@@ -141,14 +154,14 @@ Vec2 IntermittentDiffusion::wish(const ControlView& view, bool, Rng& rng) {
 
   const double to_target_m = (target_.end_m - view.position_m).norm();
   if (phase_ == Phase::kTarget &&
-      (view.now >= until_ || to_target_m < kReached * options_.radius_m ||
-       energy_m2_ <= kRoom * options_.tolerance_m2)) {
+      (view.now >= until_ || to_target_m < kReached * options_->radius_m ||
+       energy_m2_ <= kRoom * options_->tolerance_m2)) {
     enter(Phase::kShape, view, rng);
   } else if (phase_ == Phase::kShape && view.now >= until_) {
-    if (!arrived_ && options_.diffusion.time_s > 0.0) {
+    if (!arrived_ && options_->diffusion.time_s > 0.0) {
       diffuse(view, rng);
     } else {
-      resting_ = options_.diffusion.time_s > 0.0;
+      resting_ = options_->diffusion.time_s > 0.0;
       enter(Phase::kShape, view, rng);
     }
   }
@@ -159,14 +172,14 @@ Vec2 IntermittentDiffusion::wish(const ControlView& view, bool, Rng& rng) {
   remaining_m_ = to_target ? to_target_m : std::sqrt(felt.shape.energy_m2);
   resting_ = resting_ && arrived_ && !to_target;
   return descend(v, felt.reach_m) +
-         obstacle_repulsion(view.position_m, view.world, options_.obstacles);
+         obstacle_repulsion(view.position_m, view.world, options_->obstacles);
 }
 
 Vec2 IntermittentDiffusion::hold(const ControlView& view) {
   begun_ = false;
   const Felt& felt = feel(view);
   return descend(felt.repulsion, felt.reach_m) +
-         obstacle_repulsion(view.position_m, view.world, options_.obstacles);
+         obstacle_repulsion(view.position_m, view.world, options_->obstacles);
 }
 
 }  // namespace swarm::agent

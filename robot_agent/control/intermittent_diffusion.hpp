@@ -11,6 +11,7 @@
 #include "robot_agent/control/obstacle_repulsion.hpp"
 #include "robot_agent/control/target_attraction.hpp"
 #include "robot_agent/control/virtual_diffusion.hpp"
+#include "swarm_core/base/shared.hpp"
 #include "swarm_core/gmm/mixture.hpp"
 #include "swarm_core/world/shape_field.hpp"
 
@@ -51,7 +52,7 @@ struct IntermittentDiffusionOptions {
 /// shorten or turn a step.
 class IntermittentDiffusion final : public ControlMethod {
  public:
-  explicit IntermittentDiffusion(const IntermittentDiffusionOptions& options);
+  explicit IntermittentDiffusion(Shared<IntermittentDiffusionOptions> options);
 
   void see_goals(const FlowPlan& plan) override;
   void begin(const Route& route, const World& world) override;
@@ -76,15 +77,17 @@ class IntermittentDiffusion final : public ControlMethod {
     Potential shape;      // F
   };
 
+  void weigh_goals();
   const Felt& feel(const ControlView& view);
   void enter(Phase phase, const ControlView& view, Rng& rng);
   void diffuse(const ControlView& view, Rng& rng);
   double reach_m(const ControlView& view) const;
   Vec2 descend(const Potential& potential, double reach_m) const;
 
-  IntermittentDiffusionOptions options_;
+  Shared<IntermittentDiffusionOptions> options_;
   std::shared_ptr<const ShapeField> shape_;
   std::vector<WeightedGaussian> goals_;
+  std::vector<double> log_weights_;  // of each, over the root of its determinant
   Phase phase_ = Phase::kShape;
   bool begun_ = false;  // a phase is on
   SteadyTime until_;    // of the phase

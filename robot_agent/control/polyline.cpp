@@ -19,21 +19,19 @@ Polyline::Polyline(const std::vector<Vec2>& vertices_m) {
   length_m_ = arc_.back();
 }
 
-std::size_t Polyline::segment_of(double s_m, std::size_t near) const {
+Polyline::Segment Polyline::segment(double s_m, std::size_t near) const {
+  if (vertices_.size() == 1) return {.begin_m = vertices_.front(), .end_m = vertices_.front()};
   std::size_t i = std::min(near, arc_.size() - 2);
   while (i + 2 < arc_.size() && arc_[i + 1] <= s_m) ++i;
   while (i > 0 && arc_[i] > s_m) --i;
-  return i;
+  return {i, vertices_[i], vertices_[i + 1], arc_[i], arc_[i + 1]};
 }
 
-Polyline::Place Polyline::place(double s_m, std::size_t near) const {
-  if (vertices_.size() == 1) return {vertices_.front(), Vec2::Zero(), 0};
-  const double s = std::clamp(s_m, 0.0, length_m());
-  const std::size_t i = segment_of(s, near);
-  const double piece_m = arc_[i + 1] - arc_[i];
-  const double t = (s - arc_[i]) / piece_m;
-  return {(1.0 - t) * vertices_[i] + t * vertices_[i + 1],
-          (vertices_[i + 1] - vertices_[i]) / piece_m, i};
+Polyline::Place Polyline::Segment::place(double s_m) const {
+  const double length_m = end_s_m - begin_s_m;
+  if (length_m <= 0.0) return {begin_m, Vec2::Zero()};
+  const double t = (std::clamp(s_m, begin_s_m, end_s_m) - begin_s_m) / length_m;
+  return {(1.0 - t) * begin_m + t * end_m, (end_m - begin_m) / length_m};
 }
 
 }  // namespace swarm::agent

@@ -22,14 +22,24 @@ class Polyline {
   struct Place {
     Vec2 point_m = Vec2::Zero();
     Vec2 tangent = Vec2::Zero();  ///< unit; zero for a path of one point
-    std::size_t segment = 0;
   };
-  /// Found the sooner the fewer segments it is from segment `near`.
-  Place place(double s_m, std::size_t near = 0) const;
-  Vec2 at(double s_m, std::size_t near = 0) const { return place(s_m, near).point_m; }
+  struct Segment {
+    std::size_t index = 0;
+    Vec2 begin_m = Vec2::Zero();
+    Vec2 end_m = Vec2::Zero();
+    double begin_s_m = 0.0;
+    double end_s_m = 0.0;
+
+    bool holds(double s_m) const { return begin_s_m <= s_m && s_m < end_s_m; }
+    /// Of an s outside of it: its begin or end.
+    Place place(double s_m) const;
+  };
+  /// The segment of an arc length, or of the nearest one the path has. Found the sooner the fewer
+  /// segments it is from the `near`-th one.
+  Segment segment(double s_m, std::size_t near = 0) const;
+  Vec2 at(double s_m, std::size_t near = 0) const { return segment(s_m, near).place(s_m).point_m; }
 
  private:
-  std::size_t segment_of(double s_m, std::size_t near) const;
   std::vector<Vec2> vertices_;
   std::vector<double> arc_;  // arc length at each vertex
   double length_m_ = 0.0;    // its last: asked at every tick

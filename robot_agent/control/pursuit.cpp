@@ -18,18 +18,21 @@ constexpr double kKeepAim_m = 1.5;  // an aim this far ahead is kept between two
 
 }  // namespace
 
-Pursuit::Pursuit(Polyline path, const World& world, const PursuitOptions& options)
-    : path_(std::move(path)), options_(options), here_(path_.place(0.0)) {
-  const double most_m = options_.radius_m + options_.keep_clearance_m;
+Pursuit::Pursuit(Polyline path, const World& world, Shared<PursuitOptions> options)
+    : path_(std::move(path)),
+      options_(std::move(options)),
+      segment_(path_.segment(0.0)),
+      here_(segment_.place(0.0)) {
+  const double most_m = options_->radius_m + options_->keep_clearance_m;
   const auto pieces = static_cast<std::size_t>(path_.length_m() / kSample_m) + 1;
   clearance_m_.reserve(pieces);
   std::size_t segment = 0;
   for (std::size_t i = 0; i < pieces; ++i) {
     // The distance changes by at most the way: half a piece on both sides of the sample.
     const double s = (static_cast<double>(i) + 0.5) * kSample_m;
-    const Polyline::Place at = path_.place(s, segment);
-    segment = at.segment;
-    const double least_m = world.distance_m(at.point_m) - 0.5 * kSample_m;
+    const Polyline::Segment on = path_.segment(s, segment);
+    segment = on.index;
+    const double least_m = world.distance_m(on.place(s).point_m) - 0.5 * kSample_m;
     clearance_m_.push_back(static_cast<float>(std::clamp(least_m, 0.0, most_m)));
   }
 }
@@ -49,7 +52,8 @@ double Pursuit::planned_clearance_m(double from_s_m, double to_s_m) const {
 
 void Pursuit::move_to(double s_m) {
   s_m_ = s_m;
-  here_ = path_.place(s_m, here_.segment);
+  if (!segment_.holds(s_m)) segment_ = path_.segment(s_m, segment_.index);
+  here_ = segment_.place(s_m);
 }
 
 void Pursuit::advance(const Vec2& position_m) {
@@ -57,10 +61,10 @@ void Pursuit::advance(const Vec2& position_m) {
   const double length = path_.length_m();
   while (s_m_ < length) {
     const Vec2 offset = position_m - here_.point_m;
-    const bool near = offset.norm() < options_.passed_m;
+    const bool near = offset.norm() < options_->passed_m;
     // Only beside the way does "ahead of s" mean passed: a way that doubles back has points far off
     // whose tangents say the same.
-    const bool beside = offset.norm() < options_.look_ahead_m && offset.dot(here_.tangent) > 0.0;
+    const bool beside = offset.norm() < options_->look_ahead_m && offset.dot(here_.tangent) > 0.0;
     if (!near && !beside) break;
     move_to(std::min(length, s_m_ + kStep_m));
   }
@@ -77,27 +81,27 @@ Pursuit::Aim Pursuit::update(const Vec2& position_m, const World& world) {
     --looks_in_;
     return aim(position_m);
   }
-  looks_in_ = options_.look_every;
+  looks_in_ = options_->look_every;
   return look(position_m, world);
 }
 
 Pursuit::Aim Pursuit::look(const Vec2& position_m, const World& world) {
   const double length = path_.length_m();
-  const double most_m = options_.radius_m + std::max(kLeast_m, options_.keep_clearance_m);
+  const double most_m = options_->radius_m + std::max(kLeast_m, options_->keep_clearance_m);
   const double own_clearance =
       std::max(0.0, world.distance_up_to_m(position_m, most_m + kTouch_m) - kTouch_m);
   const auto visible = [&](double s) {
     const double planned = planned_clearance_m(std::min(s_m_, s), std::max(s_m_, s));
-    const double wanted = std::max(options_.radius_m + kLeast_m, planned);
-    return world.segment_is_free(position_m, path_.at(s, here_.segment),
+    const double wanted = std::max(options_->radius_m + kLeast_m, planned);
+    return world.segment_is_free(position_m, path_.at(s, segment_.index),
                                  std::min(wanted, own_clearance));
   };
   const auto aim_at = [&](double s) {
     aim_s_m_ = s;
-    aim_m_ = path_.at(s, here_.segment);
+    aim_m_ = path_.at(s, segment_.index);
     return aim(position_m);
   };
-  for (double ahead = options_.look_ahead_m; ahead > 0.1; ahead *= 0.5) {
+  for (double ahead = options_->look_ahead_m; ahead > 0.1; ahead *= 0.5) {
     const double s = std::min(length, s_m_ + ahead);
     if (visible(s)) return aim_at(s);
   }

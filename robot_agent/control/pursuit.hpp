@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "robot_agent/control/polyline.hpp"
+#include "swarm_core/base/shared.hpp"
 #include "swarm_core/world/world.hpp"
 
 namespace swarm::agent {
@@ -29,7 +30,7 @@ struct PursuitOptions {
 class Pursuit {
  public:
   Pursuit() = default;
-  Pursuit(Polyline path, const World& world, const PursuitOptions& options);
+  Pursuit(Polyline path, const World& world, Shared<PursuitOptions> options);
 
   struct Aim {
     Vec2 point_m = Vec2::Zero();
@@ -53,10 +54,11 @@ class Pursuit {
   double planned_clearance_m(double from_s_m, double to_s_m) const;
 
   Polyline path_;
-  PursuitOptions options_;
+  Shared<PursuitOptions> options_;
   double s_m_ = 0.0;
-  Polyline::Place here_;  // at s_m_
-  double aim_s_m_ = 0.0;  // of the last visible aim
+  Polyline::Segment segment_;  // that s_m_ is on; the others are far off in memory
+  Polyline::Place here_;       // at s_m_
+  double aim_s_m_ = 0.0;       // of the last visible aim
   Vec2 aim_m_ = Vec2::Zero();
   std::uint32_t looks_in_ = 0;  // ticks until the next look
   std::vector<float>

@@ -41,63 +41,63 @@ struct SafetyFilter::Lines {
   }
 };
 
-SafetyFilter::SafetyFilter(const World& world, const SafetyOptions& options)
-    : world_(world), options_(options), fresh_(pace(0.0)) {}
+SafetyFilter::SafetyFilter(const World& world, Shared<SafetyOptions> options)
+    : world_(world), options_(std::move(options)), fresh_(pace(0.0)) {}
 
 void SafetyFilter::collect_obstacles(const Vec2& position_m, Lines& lines) const {
-  const double horizon_s = 2.0 * to_seconds(options_.period) + options_.lag_s;
-  const double reach_m = options_.speed_max_mps * horizon_s + options_.obstacle_margin_m;
+  const double horizon_s = 2.0 * to_seconds(options_->period) + options_->lag_s;
+  const double reach_m = options_->speed_max_mps * horizon_s + options_->obstacle_margin_m;
   const auto keep_off = [&](const Vec2& towards, double surface_gap_m, double coming_mps = 0.0) {
     if (surface_gap_m > reach_m + coming_mps * horizon_s) return;
-    const double bound = (surface_gap_m - options_.obstacle_margin_m) / horizon_s - coming_mps;
+    const double bound = (surface_gap_m - options_->obstacle_margin_m) / horizon_s - coming_mps;
     // One inside withdraws as fast as it can; to ask for more would freeze it.
     lines.make_room(1);
-    lines.buffer[lines.count++] = {towards, std::max(bound, -kWithdraw * options_.speed_max_mps)};
+    lines.buffer[lines.count++] = {towards, std::max(bound, -kWithdraw * options_->speed_max_mps)};
   };
-  const double searched_m = options_.radius_m + reach_m + world_.fastest_mps() * horizon_s;
+  const double searched_m = options_->radius_m + reach_m + world_.fastest_mps() * horizon_s;
   world_.convex_boxes().for_each_within({position_m, position_m}, searched_m, [&](std::uint32_t i) {
     const ConvexObstacle& obstacle = world_.convex_obstacles()[i];
     const SignedDistance sd = obstacle.signed_distance(position_m);
-    keep_off(-sd.gradient, sd.distance_m - options_.radius_m,
+    keep_off(-sd.gradient, sd.distance_m - options_->radius_m,
              std::max(0.0, sd.gradient.dot(obstacle.velocity_mps)));
   });
   const Box& bounds = world_.bounds_m();
-  keep_off({-1.0, 0.0}, position_m.x() - bounds.min_m.x() - options_.radius_m);
-  keep_off({1.0, 0.0}, bounds.max_m.x() - position_m.x() - options_.radius_m);
-  keep_off({0.0, -1.0}, position_m.y() - bounds.min_m.y() - options_.radius_m);
-  keep_off({0.0, 1.0}, bounds.max_m.y() - position_m.y() - options_.radius_m);
+  keep_off({-1.0, 0.0}, position_m.x() - bounds.min_m.x() - options_->radius_m);
+  keep_off({1.0, 0.0}, bounds.max_m.x() - position_m.x() - options_->radius_m);
+  keep_off({0.0, -1.0}, position_m.y() - bounds.min_m.y() - options_->radius_m);
+  keep_off({0.0, 1.0}, bounds.max_m.y() - position_m.y() - options_->radius_m);
   lines.obstacles = lines.count;
 }
 
 /// The time in which a neighbour's half of the gap may be closed, and what follows from it.
 SafetyFilter::Pace SafetyFilter::pace(double stale_s) const {
-  const double period_s = to_seconds(options_.period);
-  const double time_s = period_s + options_.gap_share * options_.lag_s +
-                        options_.stale_gain * std::max(0.0, stale_s - period_s);
-  const double given_up_m = options_.speed_max_mps * std::max(stale_s, period_s);
+  const double period_s = to_seconds(options_->period);
+  const double time_s = period_s + options_->gap_share * options_->lag_s +
+                        options_->stale_gain * std::max(0.0, stale_s - period_s);
+  const double given_up_m = options_->speed_max_mps * std::max(stale_s, period_s);
   return {
-      .closing_hz = options_.gap_share / (2.0 * time_s),
+      .closing_hz = options_->gap_share / (2.0 * time_s),
       // If it stops at once …
       .follow = stale_s > kFollows * period_s
                     ? 0.0
-                    : std::min(options_.follow_share,
-                               kFollowMargin * options_.neighbour_margin_m / given_up_m),
+                    : std::min(options_->follow_share,
+                               kFollowMargin * options_->neighbour_margin_m / given_up_m),
   };
 }
 
 void SafetyFilter::collect_neighbours(const Vec2& position_m, std::span<const Neighbour> neighbours,
                                       Lines& lines) const {
-  const double period_s = to_seconds(options_.period);
-  const double horizon_s = 2.0 * period_s + options_.lag_s;
-  const double v_max = options_.speed_max_mps;
-  const double margin_m = options_.neighbour_margin_m;
+  const double period_s = to_seconds(options_->period);
+  const double horizon_s = 2.0 * period_s + options_->lag_s;
+  const double v_max = options_->speed_max_mps;
+  const double margin_m = options_->neighbour_margin_m;
   const double evading_hz = 1.0 / horizon_s;
   const double stalled_reach_m = kEvade * margin_m + v_max * horizon_s;
   lines.make_room(2 * neighbours.size());
   HalfPlane* next = lines.buffer.data() + lines.count;
   for (const Neighbour& n : neighbours) {
     const Pace late = n.stale_s > kFresh * period_s ? pace(n.stale_s) : fresh_;
-    const double sum_m = options_.radius_m + n.radius_m;
+    const double sum_m = options_->radius_m + n.radius_m;
     const Vec2 offset = n.position_m - position_m;
     const double distance = offset.norm();
     // Robots believed to be in the same spot part to opposite sides by chance.
@@ -129,21 +129,21 @@ std::optional<HalfPlane> SafetyFilter::off_stalled(const Vec2& position_m, const
   const Vec2 offset = n.position_m + std::clamp(share, 0.0, 1.0) * back - position_m;
   const double distance = offset.norm();
   if (distance < 1e-9) return std::nullopt;  // we are where it would be: it went on
-  const double bound = (distance - sum_m - kEvade * options_.neighbour_margin_m) /
-                       (2.0 * to_seconds(options_.period) + options_.lag_s);
-  if (bound >= options_.speed_max_mps) return std::nullopt;
+  const double bound = (distance - sum_m - kEvade * options_->neighbour_margin_m) /
+                       (2.0 * to_seconds(options_->period) + options_->lag_s);
+  if (bound >= options_->speed_max_mps) return std::nullopt;
   return HalfPlane{offset / distance, std::max(bound, 0.0)};
 }
 
 Listeners SafetyFilter::listeners(const Vec2& position_m, const Vec2& velocity_mps,
                                   std::span<const Neighbour> neighbours) const {
-  const double horizon_s = 2.0 * to_seconds(options_.period) + options_.lag_s;
-  const double kept_m = kEvade * options_.neighbour_margin_m;
+  const double horizon_s = 2.0 * to_seconds(options_->period) + options_->lag_s;
+  const double kept_m = kEvade * options_->neighbour_margin_m;
   Listeners found;
   for (const Neighbour& n : neighbours) {
     const Vec2 offset = position_m - n.position_m;
     const double distance = offset.norm();
-    const double gap_m = distance - options_.radius_m - n.radius_m;
+    const double gap_m = distance - options_->radius_m - n.radius_m;
     found.nearest_gap_m = std::min(found.nearest_gap_m, gap_m);
     const double leaving_m2ps = offset.dot(velocity_mps);
     // Who comes and whom it leaves are coin tosses: no branches.
@@ -153,7 +153,7 @@ Listeners SafetyFilter::listeners(const Vec2& position_m, const Vec2& velocity_m
     found.patience_s =
         std::min(found.patience_s, (spare_m2 + never_m2) / std::max(leaving_m2ps, kStands_m2ps));
   }
-  found.patience_s += horizon_s - options_.lag_s;
+  found.patience_s += horizon_s - options_->lag_s;
   return found;
 }
 
@@ -167,7 +167,7 @@ Vec2 SafetyFilter::least_violation(const Vec2& wish_mps, Lines& lines) const {
       const double bound = all[i].bound_mps;
       if (bound < 0.0) lines.relaxed[i].bound_mps = std::min(0.0, bound + by_mps);
     }
-    return nearest_velocity(wish_mps, lines.relaxed, options_.speed_max_mps);
+    return nearest_velocity(wish_mps, lines.relaxed, options_->speed_max_mps);
   };
   double low = 0.0;
   double high = 0.0;
@@ -188,7 +188,7 @@ Vec2 SafetyFilter::least_violation(const Vec2& wish_mps, Lines& lines) const {
 }
 
 Vec2 SafetyFilter::nearest(const Vec2& wish_mps, Lines& lines) const {
-  if (auto u = nearest_velocity(wish_mps, lines.all(), options_.speed_max_mps)) return *u;
+  if (auto u = nearest_velocity(wish_mps, lines.all(), options_->speed_max_mps)) return *u;
   return least_violation(wish_mps, lines);
 }
 

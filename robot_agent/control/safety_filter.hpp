@@ -8,6 +8,7 @@
 
 #include "robot_agent/control/half_plane_qp.hpp"
 #include "robot_agent/neighbour_table.hpp"
+#include "swarm_core/base/shared.hpp"
 #include "swarm_core/world/world.hpp"
 
 namespace swarm::agent {
@@ -72,7 +73,7 @@ struct Listeners {
 /// trusts it.
 class SafetyFilter {
  public:
-  SafetyFilter(const World& world, const SafetyOptions& options);
+  SafetyFilter(const World& world, Shared<SafetyOptions> options);
 
   /// No allocation once warm. Cost: O(obstacles in reach + neighbours). `gives_way` allows the turn
   /// to the right: not where robots settle.
@@ -99,7 +100,7 @@ class SafetyFilter {
   Vec2 least_violation(const Vec2& wish_mps, Lines& lines) const;
 
   const World& world_;
-  SafetyOptions options_;
+  Shared<SafetyOptions> options_;
   Pace fresh_;  // of neighbours that are known at once
 };
 

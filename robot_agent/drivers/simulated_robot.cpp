@@ -24,7 +24,9 @@ SimulatedRobot::Model model_of(const BodySpec& body, const Vec2& position_m, std
 
 SimulatedRobot::SimulatedRobot(SteadyTime now, const Model& model, const SimulatedNoise& noise,
                                std::uint64_t seed)
-    : model_(model), noise_(noise), at_(now), rng_(std::make_unique<Rng>(seed)) {}
+    : model_(model), noise_(noise), at_(now) {
+  if (noise_.motion_m > 0.0 || noise_.position_m > 0.0) rng_ = std::make_unique<Rng>(seed);
+}
 
 SimulatedRobot::SimulatedRobot(SteadyTime now, const Vec2& position_m)
     : SimulatedRobot(now, SingleIntegrator(position_m), {}, 0) {}
@@ -70,11 +72,11 @@ void SimulatedRobot::command(SteadyTime now, const Vec2& velocity_mps, Duration 
   valid_until_ = now + valid_for;
 }
 
-std::unique_ptr<Driver> make_simulated_body(const BodySpec& body, SteadyTime now,
-                                            const Vec2& position_m, std::uint64_t seed) {
+SimulatedRobot make_simulated_body(const BodySpec& body, SteadyTime now, const Vec2& position_m,
+                                   std::uint64_t seed) {
   const SimulatedNoise noise{body.motion_noise_m, body.position_noise_m};
-  return std::make_unique<SimulatedRobot>(now, model_of(body, position_m, mix_seed(seed, 1)), noise,
-                                          mix_seed(seed, 2));
+  return SimulatedRobot(now, model_of(body, position_m, mix_seed(seed, 1)), noise,
+                        mix_seed(seed, 2));
 }
 
 }  // namespace swarm::agent

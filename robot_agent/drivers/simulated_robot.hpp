@@ -48,11 +48,11 @@ class SimulatedRobot final : public Driver {
   Vec2 command_mps_ = Vec2::Zero();
   SteadyTime at_;
   SteadyTime valid_until_;
-  std::unique_ptr<Rng> rng_;  // large and rarely used: apart
+  std::unique_ptr<Rng> rng_;  // none without noise: it is large
 };
 
 /// The body a mission asks for, at rest; a unicycle has a random heading.
-std::unique_ptr<Driver> make_simulated_body(const BodySpec& body, SteadyTime now,
-                                            const Vec2& position_m, std::uint64_t seed);
+SimulatedRobot make_simulated_body(const BodySpec& body, SteadyTime now, const Vec2& position_m,
+                                   std::uint64_t seed);
 
 }  // namespace swarm::agent

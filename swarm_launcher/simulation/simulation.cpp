@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <utility>
 
 #include <fmt/format.h>
 
-#include "robot_agent/drivers/simulated_robot.hpp"
 #include "swarm_core/mission/placement.hpp"
 
 namespace swarm::launcher {
@@ -74,12 +74,17 @@ UtcTime Simulation::utc(SteadyTime t) const { return begin_utc() + (t - kBegin);
 
 void Simulation::place(const std::vector<Vec2>& positions_m) {
   robots_.reserve(positions_m.size());
+  rngs_.reserve(positions_m.size());
   has_news_.resize(positions_m.size());
+  std::map<const BodySpec*, Shared<agent::AgentOptions>> alike;
   slots_.resize(options_.clocks_in_step ? 1 : kSlots);
   for (std::uint32_t i = 0; i < positions_m.size(); ++i) {
     const RobotId id(i);
+    const auto [options, is_first] = alike.try_emplace(&body_of(mission_.robots, id));
+    if (is_first) options->second = agent::agent_options(mission_, id);
+    rngs_.push_back(agent::agent_rng(id, options_.seed));
     robots_.push_back(
-        {.agent = {world_, agent::agent_options(mission_, id, options_.seed)},
+        {.agent = {world_, options->second, agent::agent_identity(mission_, id)},
          .body = agent::make_simulated_body(body_of(mission_.robots, id), kBegin, positions_m[i],
                                             mix_seed(mix_seed(options_.seed, 0xB0D), i)),
          .hears_m = hears_m(mission_, id),
@@ -173,10 +178,12 @@ void Simulation::report_status() {
   }
 }
 
-void Simulation::tick_robot(std::uint32_t id, SteadyTime now, Collected& collected) {
+void Simulation::tick_robot(std::uint32_t id, SteadyTime now, const Upcoming& upcoming,
+                            Collected& collected) {
   const bool looks_at_ages = (periods_ + id) % kAgesEvery == 0;
   Robot& robot = robots_[id];
-  const agent::Measurement body = robot.body->measure(now);
+  if (upcoming.next != nullptr) upcoming.next->agent.prefetch_neighbours();
+  const agent::Measurement body = robot.body.measure(now);
   robot.position_m = body.position_m;
   air_.hear(RobotId(id), robot.position_m, robot.hears_m, robot.heard_until, now,
             [&](const agent::NeighbourReport& report) {
@@ -186,15 +193,17 @@ void Simulation::tick_robot(std::uint32_t id, SteadyTime now, Collected& collect
               if (looks_at_ages) collected.ages.add(late / std::chrono::microseconds(1));
             });
   robot.heard_until = now;
+  if (upcoming.second != nullptr) prefetch(*upcoming.second);
   const RobotMode before = robot.mode;
   const agent::AgentOutput out = robot.agent.tick({.now = now,
                                                    .position_m = robot.position_m,
                                                    .phase = phase_,
                                                    .planner_alive = true,
-                                                   .velocity_mps = body.velocity_mps});
+                                                   .velocity_mps = body.velocity_mps},
+                                                  rngs_[id]);
   robot.mode = out.mode;
   robot.settled = out.settled;
-  robot.body->command(now, out.velocity_mps, 2 * period_);
+  robot.body.command(now, out.velocity_mps, 2 * period_);
 
   const RobotId robot_id(id);
   const UtcTime stamp = utc(now);
@@ -219,17 +228,11 @@ void Simulation::tick_robot(std::uint32_t id, SteadyTime now, Collected& collect
                    .neighbours = out.neighbours});
 }
 
-// A swarm is larger than the cache: what a tick needs is fetched two robots ahead, where it points
-// to one robot ahead.
+// A swarm is larger than the cache: a robot is fetched two robots ahead, the neighbours it knows
+// one robot ahead, a part at a time, for the memory takes only so many orders at once.
 void Simulation::prefetch(const Robot& robot) const {
   robot.agent.prefetch();
   swarm::prefetch(&robot.body, sizeof(Robot) - sizeof(robot.agent));
-}
-
-void Simulation::prefetch_owned(const Robot& robot) const {
-  robot.agent.prefetch_owned();
-  constexpr std::size_t kStateOfBody = sizeof(agent::SimulatedRobot);
-  swarm::prefetch(robot.body.get(), kStateOfBody);
 }
 
 void Simulation::tick_slot(std::size_t slot) {
@@ -241,9 +244,9 @@ void Simulation::tick_slot(std::size_t slot) {
     const std::size_t first = members.size() * part / parts;
     const std::size_t last = members.size() * (part + 1) / parts;
     for (std::size_t i = first; i < last; ++i) {
-      if (i + 2 < last) prefetch(robots_[members[i + 2]]);
-      if (i + 1 < last) prefetch_owned(robots_[members[i + 1]]);
-      tick_robot(members[i], now, collected_[part]);
+      const Upcoming upcoming{.next = i + 1 < last ? &robots_[members[i + 1]] : nullptr,
+                              .second = i + 2 < last ? &robots_[members[i + 2]] : nullptr};
+      tick_robot(members[i], now, upcoming, collected_[part]);
     }
   });
   std::vector<agent::NeighbourReport>& said = collected_.front().said;

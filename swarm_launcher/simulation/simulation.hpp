@@ -10,7 +10,7 @@
 
 #include "planner_service/plan_keeper.hpp"
 #include "robot_agent/agent.hpp"
-#include "robot_agent/drivers/driver.hpp"
+#include "robot_agent/drivers/simulated_robot.hpp"
 #include "swarm_core/base/result.hpp"
 #include "swarm_core/mission/link_faults.hpp"
 #include "swarm_core/mission/mission.hpp"
@@ -76,7 +76,7 @@ class Simulation {
  private:
   struct Robot {
     agent::Agent agent;
-    std::unique_ptr<agent::Driver> body;
+    agent::SimulatedRobot body;
     double hears_m = 0.0;  // sensing range
     SteadyTime heard_until;
     Vec2 position_m = Vec2::Zero();
@@ -84,6 +84,12 @@ class Simulation {
     std::uint32_t received = 0;
     RobotMode mode = RobotMode::kWaiting;
     bool settled = false;
+  };
+
+  /// Who is ticked after a robot; null: nobody.
+  struct Upcoming {
+    const Robot* next;
+    const Robot* second;
   };
 
   /// What a thread collects.
@@ -105,8 +111,7 @@ class Simulation {
   void report_status();
   void tick_slot(std::size_t slot);
   void prefetch(const Robot& robot) const;
-  void prefetch_owned(const Robot& robot) const;
-  void tick_robot(std::uint32_t id, SteadyTime now, Collected& collected);
+  void tick_robot(std::uint32_t id, SteadyTime now, const Upcoming& upcoming, Collected& collected);
 
   const Mission& mission_;
   SimulationOptions options_;
@@ -122,6 +127,7 @@ class Simulation {
   Air air_;
   Crew crew_;
   std::vector<Robot> robots_;
+  std::vector<Rng> rngs_;                          // of each; large and rarely used
   std::vector<std::vector<std::uint32_t>> slots_;  // robots that tick together
   std::vector<Collected> collected_;               // one a thread
   // Those who report their status out of turn. Apart from robots_: most are only looked at.

@@ -50,6 +50,7 @@ FlowPlan plan_over_the_block() {
 struct Swarm {
   Mission spec;
   std::vector<Agent> agents;
+  std::vector<Rng> rngs;
   std::vector<Vec2> positions;
   std::vector<Vec2> velocities;
   std::vector<AgentOutput> outputs;
@@ -58,7 +59,9 @@ struct Swarm {
 
   explicit Swarm(std::uint32_t robots) : spec(mission(robots)) {
     for (std::uint32_t i = 0; i < robots; ++i) {
-      agents.emplace_back(spec.world, agent_options(spec, RobotId(i), 1));
+      agents.emplace_back(spec.world, agent_options(spec, RobotId(i)),
+                          agent_identity(spec, RobotId(i)));
+      rngs.push_back(agent_rng(RobotId(i), 1));
       positions.emplace_back(8.0 + 1.2 * (i % 4), 5.0 + 1.2 * (i / 4));
       velocities.emplace_back(Vec2::Zero());
     }
@@ -74,7 +77,7 @@ struct Swarm {
             {RobotId(static_cast<std::uint32_t>(j)), sequence, now, positions[j], velocities[j]},
             positions[i]);
       }
-      outputs[i] = agents[i].tick({now, positions[i], phase, planner_alive});
+      outputs[i] = agents[i].tick({now, positions[i], phase, planner_alive}, rngs[i]);
     }
     for (std::size_t i = 0; i < agents.size(); ++i) {
       velocities[i] = outputs[i].velocity_mps;
@@ -169,10 +172,10 @@ TEST(Agent, DoesNotGoBackToWhereItsGroupWasWhenItComesBackLate) {
 
 TEST(Agent, DoesNotGoBackToItsStartWhenItIsRespawned) {
   Swarm sut(1);
-  AgentOptions options = agent_options(sut.spec, RobotId(0), 1);
-  options.underway = true;
+  AgentIdentity self = agent_identity(sut.spec, RobotId(0));
+  self.underway = true;
   sut.agents.clear();
-  sut.agents.emplace_back(sut.spec.world, options);
+  sut.agents.emplace_back(sut.spec.world, agent_options(sut.spec, RobotId(0)), self);
   sut.positions[0] = {37.5, 10};  // behind the block: in sight of the goal, not of the start
   sut.agents[0].accept_plan(plan_over_the_block(), sut.positions[0]);
 
@@ -221,9 +224,9 @@ TEST(Agent, TellsHowItsBodyMovesIfThatDiffersFromItsCommand) {
   Swarm sut(1);
   sut.agents[0].accept_plan(plan_over_the_block(), sut.positions[0]);
   AgentInput input{sut.now, sut.positions[0], MissionPhase::kRunning, true};
-  const AgentOutput obeys = sut.agents[0].tick(input);
+  const AgentOutput obeys = sut.agents[0].tick(input, sut.rngs[0]);
   input.velocity_mps = Vec2(0.1, -0.2);
-  const AgentOutput lags = sut.agents[0].tick(input);
+  const AgentOutput lags = sut.agents[0].tick(input, sut.rngs[0]);
 
   EXPECT_EQ(obeys.told_mps, obeys.velocity_mps);
   EXPECT_EQ(lags.told_mps, Vec2(0.1, -0.2));
@@ -263,7 +266,7 @@ TEST(Agent, EvadesWhileItHolds) {
                      sut.positions[0]);
 
   const AgentOutput out =
-      sut.agents[0].tick({sut.now, sut.positions[0], MissionPhase::kPaused, true});
+      sut.agents[0].tick({sut.now, sut.positions[0], MissionPhase::kPaused, true}, sut.rngs[0]);
 
   EXPECT_EQ(out.mode, RobotMode::kHolding);
   EXPECT_LT(out.velocity_mps.x(), 0.0);

@@ -35,7 +35,7 @@ std::pair<double, double> fly(const BodySpec& spec, const World& world, std::vec
   const std::size_t n = positions.size();
   SafetyFilter filter(world, options);
   SteadyTime now{};
-  std::vector<std::unique_ptr<Driver>> bodies;
+  std::vector<SimulatedRobot> bodies;
   for (std::size_t i = 0; i < n; ++i) {
     bodies.push_back(make_simulated_body(spec, now, positions[i], i));
   }
@@ -51,10 +51,10 @@ std::pair<double, double> fly(const BodySpec& spec, const World& world, std::vec
             {RobotId(static_cast<std::uint32_t>(j)), positions[j], velocities[j], spec.radius_m});
       }
       const Vec2 wish = 1.5 * (goals[i] - positions[i]).normalized();
-      bodies[i]->command(now, filter.filter(positions[i], wish, neighbours), milliseconds(200));
+      bodies[i].command(now, filter.filter(positions[i], wish, neighbours), milliseconds(200));
     }
     for (std::size_t i = 0; i < n; ++i) {
-      const Measurement m = bodies[i]->measure(now + milliseconds(100));
+      const Measurement m = bodies[i].measure(now + milliseconds(100));
       positions[i] = m.position_m;
       velocities[i] = m.velocity_mps.value();
     }

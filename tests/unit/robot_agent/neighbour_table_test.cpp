@@ -16,13 +16,13 @@ using std::chrono::milliseconds;
 SteadyTime at(int ms) { return SteadyTime(milliseconds(ms)); }
 
 NeighbourTable table() {
-  return NeighbourTable({.radius_m = 0.2,
-                         .fleet = Fleet(Fleet::Body{0.2, 1.5}),
-                         .keep_radius_m = 6.0,
-                         .near_m = 1.0,
-                         .period = milliseconds(100),
-                         .expected_silence = milliseconds(700),
-                         .forget_after = milliseconds(1000)});
+  return NeighbourTable(NeighbourOptions{.radius_m = 0.2,
+                                         .fleet = Fleet(Fleet::Body{0.2, 1.5}),
+                                         .keep_radius_m = 6.0,
+                                         .near_m = 1.0,
+                                         .period = milliseconds(100),
+                                         .expected_silence = milliseconds(700),
+                                         .forget_after = milliseconds(1000)});
 }
 
 NeighbourReport report(std::uint32_t robot, std::uint32_t sequence, int ms, Vec2 position,
@@ -229,14 +229,14 @@ TEST(NeighbourTable, BelievesWhatLookingAtEverybodyWould) {
 }
 
 TEST(NeighbourTable, TellsThoseFirstWhoAreClose) {
-  NeighbourTable sut({.fleet = Fleet(Fleet::Body{0.2, 1.5}),
-                      .keep_radius_m = 6.0,
-                      .reach_m = 4.0,
-                      .close_m = 1.5,
-                      .reach_growth_mps = 2.0,
-                      .period = milliseconds(100),
-                      .expected_silence = milliseconds(700),
-                      .forget_after = milliseconds(1000)});
+  NeighbourTable sut(NeighbourOptions{.fleet = Fleet(Fleet::Body{0.2, 1.5}),
+                                      .keep_radius_m = 6.0,
+                                      .reach_m = 4.0,
+                                      .close_m = 1.5,
+                                      .reach_growth_mps = 2.0,
+                                      .period = milliseconds(100),
+                                      .expected_silence = milliseconds(700),
+                                      .forget_after = milliseconds(1000)});
   for (std::uint32_t i = 0; i < 40; ++i) {  // 0.15 to 6 m away
     sut.take(report(i, 1, 0, {0.0, 0.15 * (40 - i)}), Vec2::Zero());
   }

@@ -47,17 +47,17 @@ TEST(SimulatedRobot, StopsByItselfWhenTheCommandRunsOut) {
 TEST(SimulatedRobot, BrakesWhenTheCommandRunsOut) {
   for (const std::string model : {"unicycle", "double_integrator"}) {
     const BodySpec body{.model = model, .speed_max_mps = 1.5, .acceleration_max_mps2 = 3.0};
-    const auto sut = make_simulated_body(body, at(0), {0, 0}, 1);
-    sut->command(at(0), {1.5, 0}, milliseconds(5000));
-    sut->measure(at(4000));
-    const Vec2 before = sut->measure(at(5000)).position_m;
+    SimulatedRobot sut = make_simulated_body(body, at(0), {0, 0}, 1);
+    sut.command(at(0), {1.5, 0}, milliseconds(5000));
+    sut.measure(at(4000));
+    const Vec2 before = sut.measure(at(5000)).position_m;
 
-    const Measurement late = sut->measure(at(7000));
+    const Measurement late = sut.measure(at(7000));
 
     EXPECT_TRUE(late.command_expired);
     EXPECT_NEAR((late.expired_position_m - before).norm(), 0.0, 1e-9) << model;
     EXPECT_NEAR(late.position_m.x() - before.x(), 1.5 * 1.5 / (2 * 3.0), 0.01) << model;
-    EXPECT_EQ(sut->measure(at(8000)).position_m, late.position_m) << model;
+    EXPECT_EQ(sut.measure(at(8000)).position_m, late.position_m) << model;
   }
 }
 
@@ -111,10 +111,10 @@ TEST(SimulatedRobot, MeasuresWithNoiseAndKnowsBetter) {
 TEST(SimulatedRobot, RepeatsItselfForTheSameSeedOnly) {
   const BodySpec body{.model = "unicycle", .motion_noise_m = 0.01, .position_noise_m = 0.05};
   const auto end = [&](std::uint64_t seed) {
-    const auto robot = make_simulated_body(body, at(0), {0, 0}, seed);
-    robot->command(at(0), {1, 0}, milliseconds(3000));
-    robot->measure(at(1000));
-    return robot->measure(at(2000)).position_m;
+    SimulatedRobot robot = make_simulated_body(body, at(0), {0, 0}, seed);
+    robot.command(at(0), {1, 0}, milliseconds(3000));
+    robot.measure(at(1000));
+    return robot.measure(at(2000)).position_m;
   };
 
   EXPECT_EQ(end(1), end(1));

@@ -43,6 +43,7 @@ FlowPlan through_the_door(const Mission& m) {
 struct Swarm {
   Mission spec;
   std::vector<Agent> agents;
+  std::vector<Rng> rngs;
   std::vector<Vec2> positions;
   std::vector<Vec2> velocities;
   std::vector<AgentOutput> outputs;
@@ -53,7 +54,9 @@ struct Swarm {
   explicit Swarm(std::uint32_t robots) : spec(through_a_door(robots)) {
     const FlowPlan plan = through_the_door(spec);
     for (std::uint32_t i = 0; i < robots; ++i) {
-      agents.emplace_back(spec.world, agent_options(spec, RobotId(i), 1));
+      agents.emplace_back(spec.world, agent_options(spec, RobotId(i)),
+                          agent_identity(spec, RobotId(i)));
+      rngs.push_back(agent_rng(RobotId(i), 1));
       positions.emplace_back(4.5 + 0.8 * (i % 4), 8.4 + 0.8 * (i / 4));
       velocities.emplace_back(Vec2::Zero());
       agents.back().accept_plan(plan, positions.back());
@@ -70,7 +73,8 @@ struct Swarm {
             {RobotId(static_cast<std::uint32_t>(j)), sequence, now, positions[j], velocities[j]},
             positions[i]);
       }
-      outputs[i] = agents[i].tick({now, positions[i] + error_m, MissionPhase::kRunning, true});
+      outputs[i] =
+          agents[i].tick({now, positions[i] + error_m, MissionPhase::kRunning, true}, rngs[i]);
     }
     for (std::size_t i = 0; i < agents.size(); ++i) {
       velocities[i] = outputs[i].velocity_mps;
@@ -148,7 +152,7 @@ TEST(Crops, OnlyKeepsOffWhileItIsHeld) {
                      sut.positions[0]);
 
   const AgentOutput out =
-      sut.agents[0].tick({sut.now, sut.positions[0], MissionPhase::kPaused, true});
+      sut.agents[0].tick({sut.now, sut.positions[0], MissionPhase::kPaused, true}, sut.rngs[0]);
 
   EXPECT_EQ(out.mode, RobotMode::kHolding);
   EXPECT_LT(out.velocity_mps.x(), 0.0);

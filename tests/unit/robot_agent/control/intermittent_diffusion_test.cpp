@@ -30,11 +30,11 @@ class Swarm {
       : mission_(mission), filtered_(filtered), positions_m_(*place_robots(mission, seed)) {
     velocities_mps_.assign(positions_m_.size(), Vec2::Zero());
     for (std::uint32_t i = 0; i < mission_.robots.count; ++i) {
-      const AgentOptions options = agent_options(mission_, RobotId(i), seed);
-      methods_.emplace_back(options.diffusion);
+      const Shared<AgentOptions> options = agent_options(mission_, RobotId(i));
+      methods_.emplace_back(options->diffusion);
       methods_.back().begin(Route{}, mission_.world);
-      filters_.emplace_back(mission_.world, options.safety);
-      rngs_.emplace_back(options.seed);
+      filters_.emplace_back(mission_.world, options->safety);
+      rngs_.emplace_back(agent_rng(RobotId(i), seed));
     }
   }
 
@@ -176,8 +176,11 @@ TEST(IntermittentDiffusion, AgentsThatHearEachOtherByDeadReckoningComeToRest) {
   std::vector<Vec2> positions_m = *place_robots(mission, 1);
   const auto robots = static_cast<std::uint32_t>(positions_m.size());
   std::vector<Agent> agents;
+  std::vector<Rng> rngs;
   for (std::uint32_t i = 0; i < robots; ++i) {
-    agents.emplace_back(mission.world, agent_options(mission, RobotId(i), 1));
+    agents.emplace_back(mission.world, agent_options(mission, RobotId(i)),
+                        agent_identity(mission, RobotId(i)));
+    rngs.push_back(agent_rng(RobotId(i), 1));
     agents.back().accept_plan(plan, positions_m[i]);
   }
   std::vector<AgentOutput> outputs(robots);
@@ -197,7 +200,7 @@ TEST(IntermittentDiffusion, AgentsThatHearEachOtherByDeadReckoningComeToRest) {
     }
     settled = 0;
     for (std::uint32_t i = 0; i < robots; ++i) {
-      outputs[i] = agents[i].tick({now, positions_m[i], MissionPhase::kRunning, true});
+      outputs[i] = agents[i].tick({now, positions_m[i], MissionPhase::kRunning, true}, rngs[i]);
       settled += outputs[i].settled ? 1 : 0;
     }
     for (std::uint32_t i = 0; i < robots; ++i) {
@@ -229,7 +232,7 @@ TEST(IntermittentDiffusion, StepsKeepTheBoundAndLoseEnergy) {
 
 TEST(IntermittentDiffusion, ArrivesWithHysteresis) {
   const Mission mission = letter_q();
-  IntermittentDiffusion method(agent_options(mission, RobotId(0), 1).diffusion);
+  IntermittentDiffusion method(agent_options(mission, RobotId(0))->diffusion);
   method.begin(Route{}, mission.world);
   const Vec2 on_letter_m(3.6, 0.35);
   // Alone, F + G is the squared distance to the stroke's edge, 0.25 m from its middle.
@@ -253,7 +256,7 @@ TEST(IntermittentDiffusion, GoalIsTheComponentOfTheLargestDensity) {
                                          {g({10, 0}, 1), MissionTime(5), 0.5},
                                          {g({20, 0}, 3), MissionTime(9), 0.5}},
                                         {{0, 1, 0.5}, {0, 2, 0.5}});
-  IntermittentDiffusion method({});
+  IntermittentDiffusion method(IntermittentDiffusionOptions{});
 
   method.see_goals(plan);
   method.begin(Route{}, World{});
