@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <algorithm>
-#include <memory>
+#include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <variant>
@@ -44,6 +44,22 @@ struct AgentIdentity {
 
 /// The options of a robot of a mission, and of any other with its body.
 Shared<AgentOptions> agent_options(const Mission& mission, RobotId robot);
+
+/// The same for one robot after the other: made once for each body. \pre the mission outlives it
+class AgentOptionsOf {
+ public:
+  explicit AgentOptionsOf(const Mission& mission) : mission_(mission) {}
+  const Shared<AgentOptions>& operator()(RobotId robot) {
+    const auto [found, is_new] = by_body_.try_emplace(&body_of(mission_.robots, robot));
+    if (is_new) found->second = agent_options(mission_, robot);
+    return found->second;
+  }
+
+ private:
+  const Mission& mission_;
+  std::map<const BodySpec*, Shared<AgentOptions>> by_body_;
+};
+
 AgentIdentity agent_identity(const Mission& mission, RobotId robot);
 
 /// What it draws from.

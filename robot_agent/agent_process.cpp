@@ -157,6 +157,7 @@ Result<void> AgentProcess::Impl::make_robots(std::uint64_t seed) {
   const auto places = place_robots(mission, seed);
   if (!places) return tl::unexpected(places.error());
   robots.reserve(options.count);
+  AgentOptionsOf options_of(mission);
   for (std::uint32_t i = 0; i < options.count; ++i) {
     const RobotId id(options.first.value() + i);
     const auto box_file = blackbox::file_of(options.run_dir, id);
@@ -176,8 +177,8 @@ Result<void> AgentProcess::Impl::make_robots(std::uint64_t seed) {
                             mix_seed(mix_seed(seed, id.value()), kBodySeed)));
     AgentIdentity self = agent_identity(mission, id);
     self.underway = *place != (*places)[id.value()];
-    robots.emplace_back(world, agent_options(mission, id), self, agent_rng(id, seed),
-                        std::move(body), std::move(*box));
+    robots.emplace_back(world, options_of(id), self, agent_rng(id, seed), std::move(body),
+                        std::move(*box));
   }
   return {};
 }

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <map>
 #include <numbers>
 #include <utility>
 
@@ -76,15 +75,13 @@ void Simulation::place(const std::vector<Vec2>& positions_m) {
   robots_.reserve(positions_m.size());
   rngs_.reserve(positions_m.size());
   has_news_.resize(positions_m.size());
-  std::map<const BodySpec*, Shared<agent::AgentOptions>> alike;
+  agent::AgentOptionsOf options_of(mission_);
   slots_.resize(options_.clocks_in_step ? 1 : kSlots);
   for (std::uint32_t i = 0; i < positions_m.size(); ++i) {
     const RobotId id(i);
-    const auto [options, is_first] = alike.try_emplace(&body_of(mission_.robots, id));
-    if (is_first) options->second = agent::agent_options(mission_, id);
     rngs_.push_back(agent::agent_rng(id, options_.seed));
     robots_.push_back(
-        {.agent = {world_, options->second, agent::agent_identity(mission_, id)},
+        {.agent = {world_, options_of(id), agent::agent_identity(mission_, id)},
          .body = agent::make_simulated_body(body_of(mission_.robots, id), kBegin, positions_m[i],
                                             mix_seed(mix_seed(options_.seed, 0xB0D), i)),
          .hears_m = hears_m(mission_, id),
