@@ -5,7 +5,6 @@
 #include <chrono>
 #include <cstdio>
 #include <fstream>
-#include <thread>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -23,9 +22,6 @@
 
 namespace swarm::launcher {
 namespace {
-
-// Below, waking a second thread twice a period costs more than it brings.
-constexpr std::uint32_t kRobotsPerThread = 400;
 
 /// Writes what happens into the run directory.
 class DirectoryObserver final : public SimulationObserver {
@@ -102,11 +98,6 @@ Result<ExitCode> summarise_unrecorded(const Simulation& simulation, const Measur
 }
 
 }  // namespace
-
-std::size_t useful_threads(std::uint32_t robots) {
-  const std::size_t cores = std::max(1U, std::thread::hardware_concurrency());
-  return std::clamp<std::size_t>(robots / kRobotsPerThread, 1, cores);
-}
 
 Result<ExitCode> simulate_mission(const SimulateOptions& options) {
   auto mission = load_mission(options.mission_file);

@@ -24,10 +24,6 @@ struct SimulateOptions {
   bool json = false;
 };
 
-/// Threads that make a simulation of so many robots faster: more than one only where a control
-/// period is long against waking the others.
-std::size_t useful_threads(std::uint32_t robots);
-
 /// `swarm_launcher simulate`: the mission in lock-step, in one process, as fast as it goes; the
 /// same run directory and audit as of a real run. Result on stdout, progress on stderr.
 Result<ExitCode> simulate_mission(const SimulateOptions& options);

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 #include <numbers>
+#include <thread>
 #include <utility>
 
 #include <fmt/format.h>
@@ -19,6 +20,8 @@ namespace {
 constexpr SteadyTime kBegin{std::chrono::seconds(1000)};
 // Of a control period, with clocks out of step.
 constexpr std::size_t kSlots = 10;
+// Below, waking a second thread twice a period costs more than it brings.
+constexpr std::uint32_t kRobotsPerThread = 400;
 // A robot's states' ages are looked at in every so manieth period.
 constexpr std::uint64_t kAgesEvery = 10;
 
@@ -65,6 +68,11 @@ Result<std::unique_ptr<Simulation>> Simulation::make(const Mission& mission,
   made->keeper_.take_scene(made->scene_);
   made->place(*positions_m);
   return made;
+}
+
+std::size_t useful_threads(std::uint32_t robots) {
+  const std::size_t cores = std::max(1U, std::thread::hardware_concurrency());
+  return std::clamp<std::size_t>(robots / kRobotsPerThread, 1, cores);
 }
 
 UtcTime Simulation::begin_utc() { return std::chrono::sys_days{std::chrono::year{2026} / 1 / 1}; }

@@ -29,6 +29,10 @@ struct SimulationOptions {
   std::size_t threads = 1;
 };
 
+/// Threads that make a simulation of so many robots faster: more than one only where a control
+/// period is long against waking the others.
+std::size_t useful_threads(std::uint32_t robots);
+
 /// Told what happens in a simulation.
 class SimulationObserver {
  public:

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-// What control costs, one thread: a control period of a whole swarm in mid-flight, of 500 robots on
+// What control costs: a control period of a whole swarm in mid-flight, of 500 robots on
 // the SwarmPRM map and of any number on an open one. And who hears whom, by cells and by looking at
 // everybody.
 //   build/bench/bin/bench_simulation
@@ -51,10 +51,12 @@ Mission open_mission(std::uint32_t robots) {
 }
 
 // Time per iteration: of one control period of all robots. `per_agent` is that for one robot.
-void fly_on(benchmark::State& state, const Mission& mission) {
+void fly_on(benchmark::State& state, const Mission& mission, std::size_t threads) {
   Recording nothing(mission, Simulation::begin_utc(), Recording::kFirstAndLast);
   SimulationObserver nobody;
-  auto simulation = Simulation::make(mission, {}, nothing, nobody);
+  SimulationOptions options;
+  options.threads = threads;
+  auto simulation = Simulation::make(mission, options, nothing, nobody);
   if (!simulation) {
     state.SkipWithError(simulation.error().message.c_str());
     return;
@@ -70,17 +72,30 @@ void fly_on(benchmark::State& state, const Mission& mission) {
   state.SetComplexityN(mission.robots.count);
 }
 
-void BM_Swarm(benchmark::State& state) { fly_on(state, standin_mission()); }
+void BM_Swarm(benchmark::State& state) { fly_on(state, standin_mission(), 1); }
 BENCHMARK(BM_Swarm)->Iterations(300)->Unit(benchmark::kMicrosecond);
 
 void BM_OpenMap(benchmark::State& state) {
-  fly_on(state, open_mission(static_cast<std::uint32_t>(state.range(0))));
+  fly_on(state, open_mission(static_cast<std::uint32_t>(state.range(0))), 1);
 }
 BENCHMARK(BM_OpenMap)
     ->RangeMultiplier(10)
     ->Range(100, 10'000)
     ->Iterations(300)
     ->Unit(benchmark::kMicrosecond)
+    ->Complexity();
+
+/// With as many threads as `simulate` takes by itself.
+void BM_OpenMapByAllCores(benchmark::State& state) {
+  const auto robots = static_cast<std::uint32_t>(state.range(0));
+  fly_on(state, open_mission(robots), useful_threads(robots));
+}
+BENCHMARK(BM_OpenMapByAllCores)
+    ->RangeMultiplier(10)
+    ->Range(100, 10'000)
+    ->Iterations(300)
+    ->Unit(benchmark::kMicrosecond)
+    ->UseRealTime()
     ->Complexity();
 
 /// Robots that all speak, as densely as a swarm in flight.
