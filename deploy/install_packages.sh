@@ -6,6 +6,11 @@ here=$(cd "$(dirname "$0")" && pwd)
 
 missing=""
 [ $# -gt 0 ] || set -- "$here/packages.txt"
+for list in "$@"; do
+  [ -r "$list" ] && continue
+  echo "$list: not a list of packages. Usage: deploy/install_packages.sh [LIST …] (default: deploy/packages.txt)" >&2
+  exit 2
+done
 for line in $(cat "$@" | sed 's/#.*//'); do
   package=${line%|*}
   [ "$line" = "$package" ] || ! command -v "${line#*|}" >/dev/null || continue
