@@ -4,12 +4,15 @@
 
 #include <utility>
 
+#include "swarm_core/base/assert.hpp"
 #include "swarm_core/blackbox/blackbox_file.hpp"
 
 namespace swarm::launcher {
 
 Recording::Recording(const Mission& mission, UtcTime begin, std::uint64_t keeps_every)
-    : mission_(mission), begin_(begin), keeps_every_(keeps_every), notes_(mission.robots.count) {}
+    : mission_(mission), begin_(begin), keeps_every_(keeps_every), notes_(mission.robots.count) {
+  SWARM_ASSERT(keeps_every >= 1);
+}
 
 void Recording::note(RobotId robot, UtcTime at, std::string code, std::string text) {
   notes_[robot.value()].push_back({.stamp = at, .code = std::move(code), .text = std::move(text)});

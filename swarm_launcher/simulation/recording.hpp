@@ -19,7 +19,7 @@ namespace swarm::launcher {
 /// recorded by several threads, each robot by one at a time.
 class Recording {
  public:
-  /// Keeps every so manieth period, from the first one on, and the last.
+  /// Keeps every so manieth period, from the first one on, and the last. \pre keeps_every ≥ 1
   Recording(const Mission& mission, UtcTime begin, std::uint64_t keeps_every);
   static constexpr std::uint64_t kFirstAndLast = std::numeric_limits<std::uint64_t>::max();
 

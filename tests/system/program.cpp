@@ -12,10 +12,19 @@
 #include <unistd.h>
 
 namespace swarm::test {
+namespace {
+
+std::filesystem::path new_folder() {
+  const std::string to_fill_in(6, 'X');
+  std::string pattern =
+      (std::filesystem::temp_directory_path() / ("swarmflow-" + to_fill_in)).string();
+  return ::mkdtemp(pattern.data());
+}
+
+}  // namespace
 
 Program::Program(const std::string& name, const std::vector<std::string>& arguments) {
-  std::string pattern = (std::filesystem::temp_directory_path() / "swarmflow-XXXXXX").string();
-  folder_ = ::mkdtemp(pattern.data());
+  folder_ = new_folder();
   std::vector<std::string> words = {std::string(SWARM_BIN_DIR) + "/" + name};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> argv;
@@ -57,10 +66,7 @@ int Program::wait(std::chrono::seconds guard) {
 std::string Program::out() const { return read_text(folder_ / "out"); }
 std::string Program::err() const { return read_text(folder_ / "err"); }
 
-TemporaryFolder::TemporaryFolder() {
-  std::string pattern = (std::filesystem::temp_directory_path() / "swarmflow-XXXXXX").string();
-  path_ = ::mkdtemp(pattern.data());
-}
+TemporaryFolder::TemporaryFolder() { path_ = new_folder(); }
 
 TemporaryFolder::~TemporaryFolder() {
   if (::testing::Test::HasFailure()) return;

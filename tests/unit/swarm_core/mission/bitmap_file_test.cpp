@@ -45,9 +45,8 @@ std::string text_of(std::span<const unsigned char> bytes) { return {bytes.begin(
 class BitmapFile : public testing::Test {
  protected:
   void SetUp() override {
-    std::string pattern = testing::TempDir() + "bitmap_XXXXXX";
-    ASSERT_NE(mkdtemp(pattern.data()), nullptr);
-    folder_ = pattern;
+    folder_ = std::filesystem::temp_directory_path() / ("bitmap-" + std::to_string(::getpid()));
+    std::filesystem::create_directories(folder_);
   }
   void TearDown() override { std::filesystem::remove_all(folder_); }
 
