@@ -14,7 +14,7 @@
 /// become domain objects only through swarm_link/validation.hpp.
 namespace swarm::link {
 
-inline constexpr std::uint16_t kSchemaVersion = 3;
+inline constexpr std::uint16_t kSchemaVersion = 4;
 inline constexpr std::size_t kMaxCellStates = 256;
 
 /// Event::source of whoever is not a robot.
@@ -51,6 +51,7 @@ struct PlanMessage {
   std::uint64_t epoch = 0;
   std::uint64_t scene_version = 0;
   std::int64_t t0_utc_ns = 0;
+  double excess_m = 0;
   std::vector<PlanNodeMessage> nodes{};
   std::vector<PlanLegMessage> legs{};
   std::vector<PlanEntryMessage> entries{};
@@ -99,6 +100,8 @@ struct HeartbeatMessage {
   std::uint64_t sequence_number = 0;
   std::int64_t stamp_utc_ns = 0;
   double mission_time_s = 0;
+  double plan_time_s = 0;
+  double plan_rate = 0;
   bool operator==(const HeartbeatMessage&) const = default;
 };
 
@@ -139,6 +142,7 @@ struct RobotStatusMessage {
   bool settled = false;
   double x_m = 0, y_m = 0;
   double remaining_m = 0;
+  double lag_s = 0;
   double nearest_gap_m = 0;
   std::uint32_t neighbours_heard = 0;
   std::uint32_t ticks = 0, late_ticks = 0;
@@ -154,6 +158,7 @@ struct StatusMessage {
   std::uint64_t plan_epoch = 0;
   std::uint64_t plan_scene_version = 0;
   std::int64_t stamp_utc_ns = 0;
+  double plan_time_s = 0;
   std::vector<RobotStatusMessage> robots{};
   std::vector<std::uint32_t> refused{};          ///< by RefusalReason
   std::vector<HistogramBinMessage> state_age{};  ///< bins of Histogram that are not empty

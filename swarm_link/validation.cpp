@@ -145,6 +145,7 @@ Checked<FlowPlan> check_plan(const PlanMessage& message, const WireLimits& limit
   }
   auto plan = FlowPlan::make(std::move(nodes), std::move(legs));
   if (!plan) return refuse(RefusalReason::kBadMass);  // all else was checked above
+  if (!std::isfinite(message.excess_m)) return refuse(RefusalReason::kNotFinite);
   if (message.entries.size() > limits.robots) return refuse(RefusalReason::kOutOfRange);
   for (const PlanEntryMessage& entry : message.entries) {
     if (entry.source != kAnySource && entry.source >= plan->sources().size()) {
@@ -156,7 +157,10 @@ Checked<FlowPlan> check_plan(const PlanMessage& message, const WireLimits& limit
 
 Checked<void> check_heartbeat(const HeartbeatMessage& message) {
   if (message.schema_version != kSchemaVersion) return refuse(RefusalReason::kSchema);
-  if (!std::isfinite(message.mission_time_s)) return refuse(RefusalReason::kNotFinite);
+  if (!all_finite(message.mission_time_s, message.plan_time_s, message.plan_rate)) {
+    return refuse(RefusalReason::kNotFinite);
+  }
+  if (message.plan_rate < 0.0 || message.plan_rate > 1.0) return refuse(RefusalReason::kOutOfRange);
   if (!is_one_of_first(message.phase, MissionPhase::kStopped)) {
     return refuse(RefusalReason::kOutOfRange);
   }
@@ -174,8 +178,9 @@ Checked<void> check_command(const CommandMessage& message) {
 Checked<void> check_status(const StatusMessage& message, const WireLimits& limits) {
   if (message.schema_version != kSchemaVersion) return refuse(RefusalReason::kSchema);
   if (!fits_wire(message)) return refuse(RefusalReason::kOversized);
+  if (!std::isfinite(message.plan_time_s)) return refuse(RefusalReason::kNotFinite);
   for (const RobotStatusMessage& robot : message.robots) {
-    if (!all_finite(robot.x_m, robot.y_m, robot.remaining_m, robot.nearest_gap_m)) {
+    if (!all_finite(robot.x_m, robot.y_m, robot.remaining_m, robot.lag_s, robot.nearest_gap_m)) {
       return refuse(RefusalReason::kNotFinite);
     }
     if (robot.robot_id >= limits.robots || !is_one_of_first(robot.mode, RobotMode::kStopped) ||

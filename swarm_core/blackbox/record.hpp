@@ -35,6 +35,10 @@ struct Step {
   std::uint8_t mode = 0;             ///< link::RobotMode
   std::uint8_t goal = kNoGoal;       ///< sink of the plan this robot goes to
   std::uint16_t neighbours = 0;      ///< robots it believed near
+  std::uint32_t plan_version = 0;    ///< of the plan followed in time; 0: it follows none in time
+  float plan_time_s = 0.0F;          ///< τ, that plan's clock, as the robot has it
+  float reference_x_m = 0.0F;        ///< x_ref(τ): where the plan has this robot at τ
+  float reference_y_m = 0.0F;
   static constexpr std::uint8_t kNoGoal = 255;
 };
 

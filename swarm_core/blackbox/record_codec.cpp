@@ -31,6 +31,7 @@ class Encoder {
   }
   /// RTPS carries multiples of four bytes: so is what is recorded, or a replay would change it.
   void finish() { out_.resize((out_.size() + 3) / 4 * 4); }
+  void put(float value) { put(std::bit_cast<std::uint32_t>(value)); }
   void put(double value) { put(std::bit_cast<std::uint64_t>(value)); }
   void put(UtcTime stamp) { put(static_cast<std::uint64_t>(stamp.time_since_epoch().count())); }
   void put(const Vec2& v) {
@@ -69,6 +70,11 @@ class Decoder {
   }
   double get_double() {
     const double value = std::bit_cast<double>(get<std::uint64_t>());
+    good_ = good_ && std::isfinite(value);
+    return value;
+  }
+  float get_float() {
+    const float value = std::bit_cast<float>(get<std::uint32_t>());
     good_ = good_ && std::isfinite(value);
     return value;
   }
@@ -119,6 +125,10 @@ void put(Encoder& out, RobotId robot, const Step& step) {
   out.put(step.mode);
   out.put(step.goal);
   out.put(step.neighbours);
+  out.put(step.plan_version);
+  out.put(step.plan_time_s);
+  out.put(step.reference_x_m);
+  out.put(step.reference_y_m);
 }
 
 void put(Encoder& out, RobotId robot, const Belief& belief) {
@@ -174,6 +184,10 @@ RobotId get(Decoder& in, Step& step) {
   step.mode = in.get<std::uint8_t>();
   step.goal = in.get<std::uint8_t>();
   step.neighbours = in.get<std::uint16_t>();
+  step.plan_version = in.get<std::uint32_t>();
+  step.plan_time_s = in.get_float();
+  step.reference_x_m = in.get_float();
+  step.reference_y_m = in.get_float();
   return robot;
 }
 

@@ -81,12 +81,15 @@ struct PlannerSpec {
 
 struct ControlSpec {
   std::string method = "apf";  ///< or crops, intermittent_diffusion
+  /// apf: keep the plan's times (plan), or travel the planned path at one's own speed (free).
+  std::string tracking = "plan";
   double rate_hz = 10.0;
-  double cruise_mps = 1.45;         ///< wished speed along the flow
-  double look_ahead_s = 8.0;        ///< pursuit: how far ahead along the own route a robot aims
-  double keep_clearance_m = 1.0;    ///< pursuit: planned clearance up to this is not cut away
-  double density_push_mps = 0.05;   ///< apf: at a density of twice the planned one
-  double neighbour_gap_m = 1.0;     ///< d0: neighbours nearer than this push
+  double cruise_mps = 1.45;        ///< largest desired speed along the path
+  double look_ahead_s = 8.0;       ///< pursuit: how far ahead on its path a robot aims
+  double pace_gain_hz = 0.3;       ///< tracking plan: speed per metre behind the reference position
+  double keep_clearance_m = 1.0;   ///< pursuit: planned clearance up to this is not cut away
+  double density_push_mps = 0.05;  ///< apf: at a density of twice the planned one
+  double neighbour_gap_m = 1.0;    ///< d0: neighbours nearer than this push
   double neighbour_push_mps = 0.6;  ///< speed of that push at contact
   double obstacle_gap_m = 0.5;      ///< obstacles nearer than this push
   double obstacle_push_mps = 1.0;
@@ -132,6 +135,15 @@ struct TimingSpec {
   double clock_skew_refuse_s = 10.0;
 };
 
+/// The plan's clock τ: how far it slows down when the swarm falls behind the plan.
+struct PlanClockSpec {
+  double lag_quantile = 0.75;    ///< of the robots' lags; the clock looks at this one
+  double lag_free_s = 2.0;       ///< up to this lag τ advances with time
+  double lag_stop_s = 8.0;       ///< at this lag it would stand still, were there no least rate
+  double rate_min = 0.2;         ///< τ advances at least this fast; 1 = the clock never slows down
+  double hopeless_lag_s = 30.0;  ///< robots later than this do not slow it down; they are named
+};
+
 struct LauncherSpec {
   double starts_per_s = 60.0;
   std::uint32_t starting_max = 8;  ///< processes started and not heard yet
@@ -166,6 +178,7 @@ struct Mission {
   SafetySpec safety;
   LinkSpec link;
   TimingSpec timing;
+  PlanClockSpec plan_clock;
   LauncherSpec launcher;
   std::vector<ScriptEvent> script;  ///< ordered by at_s
 };

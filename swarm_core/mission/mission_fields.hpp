@@ -40,6 +40,7 @@ inline constexpr std::array<std::string_view, 3> kPlannerSamplers{"fit", "halton
 inline constexpr std::array<std::string_view, 2> kDensityCaps{"timed", "static"};
 inline constexpr std::array<std::string_view, 3> kControlMethods{"apf", "crops",
                                                                  "intermittent_diffusion"};
+inline constexpr std::array<std::string_view, 2> kTracking{"plan", "free"};
 inline constexpr std::array<std::string_view, 3> kRobotModels{"single_integrator", "unicycle",
                                                               "double_integrator"};
 inline constexpr std::array<std::string_view, 8> kScriptActions{
@@ -86,10 +87,11 @@ inline constexpr std::array<Field<PlannerSpec>, 20> kPlanner{{
     {"crops_goal_radius_m", &PlannerSpec::crops_goal_radius_m, between(0.1, 1000)},
 }};
 
-inline constexpr std::array<Field<ControlSpec>, 20> kControl{{
+inline constexpr std::array<Field<ControlSpec>, 21> kControl{{
     {"rate_hz", &ControlSpec::rate_hz, between(0.5, 1000)},
     {"cruise_mps", &ControlSpec::cruise_mps, positive(100)},
     {"look_ahead_s", &ControlSpec::look_ahead_s, between(0, 600)},
+    {"pace_gain_hz", &ControlSpec::pace_gain_hz, between(0, 100)},
     {"keep_clearance_m", &ControlSpec::keep_clearance_m, between(0, 100)},
     {"density_push_mps", &ControlSpec::density_push_mps, between(0, 100)},
     {"neighbour_gap_m", &ControlSpec::neighbour_gap_m, between(0, 100)},
@@ -135,6 +137,14 @@ inline constexpr std::array<Field<TimingSpec>, 5> kTiming{{
     {"neighbour_forget_s", &TimingSpec::neighbour_forget_s, positive(60)},
     {"clock_skew_warn_s", &TimingSpec::clock_skew_warn_s, positive(3600)},
     {"clock_skew_refuse_s", &TimingSpec::clock_skew_refuse_s, positive(3600)},
+}};
+
+inline constexpr std::array<Field<PlanClockSpec>, 5> kPlanClock{{
+    {"lag_quantile", &PlanClockSpec::lag_quantile, between(0.5, 1)},
+    {"lag_free_s", &PlanClockSpec::lag_free_s, between(0, 3600)},
+    {"lag_stop_s", &PlanClockSpec::lag_stop_s, positive(3600)},
+    {"rate_min", &PlanClockSpec::rate_min, between(0.01, 1)},
+    {"hopeless_lag_s", &PlanClockSpec::hopeless_lag_s, positive(1e6)},
 }};
 
 inline constexpr std::array<Field<LauncherSpec>, 7> kLauncher{{

@@ -56,6 +56,7 @@ class MissionReader {
     read_section(top, "safety", mission_.safety, mission_fields::kSafety);
     read_section(top, "link", mission_.link, mission_fields::kLink);
     read_section(top, "timing", mission_.timing, mission_fields::kTiming);
+    read_section(top, "plan_clock", mission_.plan_clock, mission_fields::kPlanClock);
     read_section(top, "launcher", mission_.launcher, mission_fields::kLauncher);
     if (const Node* node = top.take("script")) read_script(*node);
     top.finish();
@@ -90,6 +91,7 @@ class MissionReader {
     MapReader keys(*node, std::string(key), violations_);
     if constexpr (std::is_same_v<Section, ControlSpec>) {
       read_choice(keys, "method", mission_fields::kControlMethods, section.method);
+      read_choice(keys, "tracking", mission_fields::kTracking, section.tracking);
     }
     if constexpr (std::is_same_v<Section, PlannerSpec>) {
       read_choice(keys, "method", mission_fields::kPlannerMethods, section.method);

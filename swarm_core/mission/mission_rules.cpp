@@ -43,7 +43,7 @@ double least_hear_radius_m(const Mission& mission) {
 
 std::vector<BrokenRule> broken_rules(const Mission& mission) {
   const auto& [name, world, robots, start, goal, goal_shape, planner, control, safety, link, timing,
-               launcher, script] = mission;
+               plan_clock, launcher, script] = mission;
   Rules rules;
   rules.at_most({"planner.sigma_min_m", planner.sigma_min_m},
                 {"planner.sigma_max_m", planner.sigma_max_m});
@@ -68,6 +68,10 @@ std::vector<BrokenRule> broken_rules(const Mission& mission) {
   }
   rules.at_most({"timing.clock_skew_warn_s", timing.clock_skew_warn_s},
                 {"timing.clock_skew_refuse_s", timing.clock_skew_refuse_s});
+  rules.below({"plan_clock.lag_free_s", plan_clock.lag_free_s},
+              {"plan_clock.lag_stop_s", plan_clock.lag_stop_s});
+  rules.at_most({"plan_clock.lag_stop_s", plan_clock.lag_stop_s},
+                {"plan_clock.hopeless_lag_s", plan_clock.hopeless_lag_s});
   // One lost heartbeat must not stop the swarm.
   if (timing.planner_silence_s * timing.heartbeat_hz < 2.0) {
     rules.add({"timing.planner_silence_s", "timing.heartbeat_hz"},

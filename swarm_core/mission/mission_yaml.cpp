@@ -119,7 +119,8 @@ std::string to_yaml(const Mission& mission) {
   fmt::format_to(out, "planner:\n  method: {}\n  sampler: {}\n  density_cap: {}\n",
                  mission.planner.method, mission.planner.sampler, mission.planner.density_cap);
   write_fields(out, mission.planner, mission_fields::kPlanner);
-  fmt::format_to(out, "control:\n  method: {}\n", mission.control.method);
+  fmt::format_to(out, "control:\n  method: {}\n  tracking: {}\n", mission.control.method,
+                 mission.control.tracking);
   write_fields(out, mission.control, mission_fields::kControl);
   fmt::format_to(out, "safety:\n");
   write_fields(out, mission.safety, mission_fields::kSafety);
@@ -127,6 +128,8 @@ std::string to_yaml(const Mission& mission) {
   write_fields(out, mission.link, mission_fields::kLink);
   fmt::format_to(out, "timing:\n");
   write_fields(out, mission.timing, mission_fields::kTiming);
+  fmt::format_to(out, "plan_clock:\n");
+  write_fields(out, mission.plan_clock, mission_fields::kPlanClock);
   fmt::format_to(out, "launcher:\n");
   write_fields(out, mission.launcher, mission_fields::kLauncher);
   write_script(out, mission.script);

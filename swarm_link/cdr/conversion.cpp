@@ -23,6 +23,7 @@ bool to_wire(const PlanMessage& in, wire::FlowPlan& out) {
   out.epoch(in.epoch);
   out.scene_version(in.scene_version);
   out.t0_utc_ns(in.t0_utc_ns);
+  out.excess_m(in.excess_m);
   out.nodes().resize(in.nodes.size());
   for (std::size_t i = 0; i < in.nodes.size(); ++i) {
     const auto& node = in.nodes[i];
@@ -55,6 +56,7 @@ void from_wire(const wire::FlowPlan& in, PlanMessage& out) {
   out.epoch = in.epoch();
   out.scene_version = in.scene_version();
   out.t0_utc_ns = in.t0_utc_ns();
+  out.excess_m = in.excess_m();
   out.nodes.clear();
   out.nodes.reserve(in.nodes().size());
   for (const auto& node : in.nodes()) {
@@ -157,6 +159,8 @@ bool to_wire(const HeartbeatMessage& in, wire::Heartbeat& out) {
   out.sequence_number(in.sequence_number);
   out.stamp_utc_ns(in.stamp_utc_ns);
   out.mission_time_s(in.mission_time_s);
+  out.plan_time_s(in.plan_time_s);
+  out.plan_rate(in.plan_rate);
   return true;
 }
 
@@ -168,6 +172,8 @@ void from_wire(const wire::Heartbeat& in, HeartbeatMessage& out) {
   out.sequence_number = in.sequence_number();
   out.stamp_utc_ns = in.stamp_utc_ns();
   out.mission_time_s = in.mission_time_s();
+  out.plan_time_s = in.plan_time_s();
+  out.plan_rate = in.plan_rate();
 }
 
 bool to_wire(const CellStatesMessage& in, wire::CellStates& out) {
@@ -233,6 +239,7 @@ bool to_wire(const StatusMessage& in, wire::Status& out) {
   out.plan_epoch(in.plan_epoch);
   out.plan_scene_version(in.plan_scene_version);
   out.stamp_utc_ns(in.stamp_utc_ns);
+  out.plan_time_s(in.plan_time_s);
   out.robots().resize(in.robots.size());
   for (std::size_t i = 0; i < in.robots.size(); ++i) {
     const RobotStatusMessage& robot = in.robots[i];
@@ -244,6 +251,7 @@ bool to_wire(const StatusMessage& in, wire::Status& out) {
     wired.x_m(robot.x_m);
     wired.y_m(robot.y_m);
     wired.remaining_m(robot.remaining_m);
+    wired.lag_s(robot.lag_s);
     wired.nearest_gap_m(robot.nearest_gap_m);
     wired.neighbours_heard(robot.neighbours_heard);
     wired.ticks(robot.ticks);
@@ -268,6 +276,7 @@ void from_wire(const wire::Status& in, StatusMessage& out) {
   out.plan_epoch = in.plan_epoch();
   out.plan_scene_version = in.plan_scene_version();
   out.stamp_utc_ns = in.stamp_utc_ns();
+  out.plan_time_s = in.plan_time_s();
   out.robots.clear();
   out.robots.reserve(in.robots().size());
   for (const wire::RobotStatus& robot : in.robots()) {
@@ -278,6 +287,7 @@ void from_wire(const wire::Status& in, StatusMessage& out) {
                           .x_m = robot.x_m(),
                           .y_m = robot.y_m(),
                           .remaining_m = robot.remaining_m(),
+                          .lag_s = robot.lag_s(),
                           .nearest_gap_m = robot.nearest_gap_m(),
                           .neighbours_heard = robot.neighbours_heard(),
                           .ticks = robot.ticks(),

@@ -21,7 +21,7 @@ constexpr std::size_t kSceneObstacleBytes = 64;
 constexpr std::size_t kPointBytes = 16;
 constexpr std::size_t kGoalComponentBytes = 48;
 constexpr std::size_t kRobotStateBytes = 49;
-constexpr std::size_t kRobotStatusBytes = 59;
+constexpr std::size_t kRobotStatusBytes = 67;
 constexpr std::size_t kHistogramBinBytes = 6;
 
 class Walker {
@@ -70,7 +70,7 @@ class Walker {
 template <>
 bool lengths_fit<wire::FlowPlan>(Payload payload) {
   Walker walker(payload);
-  walker.skip<std::uint16_t, std::uint32_t, std::uint64_t, std::uint64_t, std::int64_t>();
+  walker.skip<std::uint16_t, std::uint32_t, std::uint64_t, std::uint64_t, std::int64_t, double>();
   const auto nodes = walker.length();
   if (!walker.fits(nodes, kPlanNodeBytes)) return false;
   walker.skip_times<double>(nodes * static_cast<std::uint32_t>(kPlanNodeBytes / sizeof(double)));
@@ -110,11 +110,11 @@ template <>
 bool lengths_fit<wire::Status>(Payload payload) {
   Walker walker(payload);
   walker.skip<std::uint32_t, std::uint16_t, std::uint32_t, std::uint32_t, std::uint64_t,
-              std::uint64_t, std::int64_t>();
+              std::uint64_t, std::int64_t, double>();
   const auto robots = walker.length();
   if (!walker.fits(robots, kRobotStatusBytes)) return false;
   for (std::uint32_t i = 0; i < robots; ++i) {
-    walker.skip<std::uint32_t, std::uint8_t, bool, bool, double, double, double, double,
+    walker.skip<std::uint32_t, std::uint8_t, bool, bool, double, double, double, double, double,
                 std::uint32_t, std::uint32_t, std::uint32_t, std::uint32_t, std::uint32_t>();
   }
   const auto refused = walker.length();

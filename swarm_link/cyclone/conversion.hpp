@@ -51,6 +51,7 @@ void copy_plan(const A& a, B& b) {
   set(a.epoch, b.epoch);
   set(a.scene_version, b.scene_version);
   set(a.t0_utc_ns, b.t0_utc_ns);
+  set(a.excess_m, b.excess_m);
 }
 template <class A, class B>
 void copy_point(const A& a, B& b) {
@@ -93,6 +94,8 @@ void copy_heartbeat(const A& a, B& b) {
   set(a.sequence_number, b.sequence_number);
   set(a.stamp_utc_ns, b.stamp_utc_ns);
   set(a.mission_time_s, b.mission_time_s);
+  set(a.plan_time_s, b.plan_time_s);
+  set(a.plan_rate, b.plan_rate);
 }
 template <class A, class B>
 void copy_state(const A& a, B& b) {
@@ -132,6 +135,7 @@ void copy_robot_status(const A& a, B& b) {
   set(a.x_m, b.x_m);
   set(a.y_m, b.y_m);
   set(a.remaining_m, b.remaining_m);
+  set(a.lag_s, b.lag_s);
   set(a.nearest_gap_m, b.nearest_gap_m);
   set(a.neighbours_heard, b.neighbours_heard);
   set(a.ticks, b.ticks);
@@ -148,6 +152,7 @@ void copy_status(const A& a, B& b) {
   set(a.plan_epoch, b.plan_epoch);
   set(a.plan_scene_version, b.plan_scene_version);
   set(a.stamp_utc_ns, b.stamp_utc_ns);
+  set(a.plan_time_s, b.plan_time_s);
 }
 template <class A, class B>
 void copy_event(const A& a, B& b) {

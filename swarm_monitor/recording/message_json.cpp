@@ -34,6 +34,7 @@ Json json_of(const link::PlanMessage& m) {
           {"epoch", text(m.epoch)},
           {"scene_version", text(m.scene_version)},
           {"t0_utc_ns", text(m.t0_utc_ns)},
+          {"excess_m", m.excess_m},
           {"nodes", list(m.nodes,
                          [](const link::PlanNodeMessage& n) {
                            return Json{{"mean_x_m", n.mean_x_m},
@@ -89,7 +90,9 @@ Json json_of(const link::HeartbeatMessage& m) {
           {"epoch", text(m.epoch)},
           {"sequence_number", text(m.sequence_number)},
           {"stamp_utc_ns", text(m.stamp_utc_ns)},
-          {"mission_time_s", m.mission_time_s}};
+          {"mission_time_s", m.mission_time_s},
+          {"plan_time_s", m.plan_time_s},
+          {"plan_rate", m.plan_rate}};
 }
 
 Json json_of(const link::CellStatesMessage& m) {
@@ -123,6 +126,7 @@ Json json_of(const link::StatusMessage& m) {
           {"plan_epoch", text(m.plan_epoch)},
           {"plan_scene_version", text(m.plan_scene_version)},
           {"stamp_utc_ns", text(m.stamp_utc_ns)},
+          {"plan_time_s", m.plan_time_s},
           {"robots", list(m.robots,
                           [](const link::RobotStatusMessage& r) {
                             return Json{{"robot_id", r.robot_id},
@@ -132,6 +136,7 @@ Json json_of(const link::StatusMessage& m) {
                                         {"x_m", r.x_m},
                                         {"y_m", r.y_m},
                                         {"remaining_m", r.remaining_m},
+                                        {"lag_s", r.lag_s},
                                         {"nearest_gap_m", r.nearest_gap_m},
                                         {"neighbours_heard", r.neighbours_heard},
                                         {"ticks", r.ticks},
@@ -172,7 +177,11 @@ Json json_of(RobotId robot, const blackbox::Step& r) {
           {"vy_mps", r.velocity_mps.y()},
           {"mode", r.mode},
           {"goal", r.goal},
-          {"neighbours", r.neighbours}};
+          {"neighbours", r.neighbours},
+          {"plan_version", r.plan_version},
+          {"plan_time_s", r.plan_time_s},
+          {"reference_x_m", r.reference_x_m},
+          {"reference_y_m", r.reference_y_m}};
 }
 
 Json json_of(RobotId robot, const blackbox::Belief& r) {

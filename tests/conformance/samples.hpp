@@ -29,7 +29,8 @@ inline PlanMessage plan_of_size(Rng& rng, std::size_t nodes, std::size_t legs) {
   PlanMessage plan{.version = integer<std::uint32_t>(rng),
                    .epoch = integer<std::uint64_t>(rng),
                    .scene_version = integer<std::uint64_t>(rng),
-                   .t0_utc_ns = integer<std::int64_t>(rng)};
+                   .t0_utc_ns = integer<std::int64_t>(rng),
+                   .excess_m = number(rng)};
   for (std::size_t i = 0; i < nodes; ++i) {
     plan.nodes.push_back({number(rng), number(rng), number(rng), number(rng), number(rng),
                           number(rng), number(rng)});
@@ -76,7 +77,9 @@ inline HeartbeatMessage sample<HeartbeatMessage>(Rng& rng) {
           .epoch = integer<std::uint64_t>(rng),
           .sequence_number = integer<std::uint64_t>(rng),
           .stamp_utc_ns = integer<std::int64_t>(rng),
-          .mission_time_s = number(rng)};
+          .mission_time_s = number(rng),
+          .plan_time_s = number(rng),
+          .plan_rate = number(rng)};
 }
 
 template <>
@@ -112,6 +115,7 @@ inline RobotStatusMessage sample<RobotStatusMessage>(Rng& rng) {
           .x_m = number(rng),
           .y_m = number(rng),
           .remaining_m = number(rng),
+          .lag_s = number(rng),
           .nearest_gap_m = number(rng),
           .neighbours_heard = integer<std::uint32_t>(rng),
           .ticks = integer<std::uint32_t>(rng),
@@ -127,7 +131,8 @@ inline StatusMessage sample<StatusMessage>(Rng& rng) {
                        .plan_version = integer<std::uint32_t>(rng),
                        .plan_epoch = integer<std::uint64_t>(rng),
                        .plan_scene_version = integer<std::uint64_t>(rng),
-                       .stamp_utc_ns = integer<std::int64_t>(rng)};
+                       .stamp_utc_ns = integer<std::int64_t>(rng),
+                       .plan_time_s = number(rng)};
   for (int i = 0; i < 100; ++i) status.robots.push_back(sample<RobotStatusMessage>(rng));
   for (int i = 0; i < 16; ++i) status.refused.push_back(integer<std::uint32_t>(rng));
   for (std::uint16_t i = 0; i < 464; ++i) {

@@ -1,0 +1,54 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "swarm_core/plan/plan_clock.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include <nlohmann/json.hpp>
+
+namespace swarm {
+
+std::string plan_clock_line(const PlanClock& clock) {
+  const nlohmann::ordered_json json = {{"utc_ns", clock.stamp.time_since_epoch().count()},
+                                       {"plan_version", clock.plan_version},
+                                       {"plan_time_s", clock.plan_time_s},
+                                       {"rate", clock.rate}};
+  return json.dump() + "\n";
+}
+
+std::vector<PlanClock> read_plan_clock(std::string_view lines) {
+  std::vector<PlanClock> readings;
+  while (!lines.empty()) {
+    const std::size_t end = std::min(lines.find('\n'), lines.size());
+    const auto json = nlohmann::json::parse(lines.substr(0, end), nullptr, false);
+    lines.remove_prefix(std::min(end + 1, lines.size()));
+    if (!json.is_object()) continue;
+    const auto stamp = json.find("utc_ns");
+    const auto version = json.find("plan_version");
+    const auto plan_time = json.find("plan_time_s");
+    const auto rate = json.find("rate");
+    if (stamp == json.end() || !stamp->is_number_integer()) continue;
+    if (version == json.end() || !version->is_number_unsigned()) continue;
+    if (plan_time == json.end() || !plan_time->is_number()) continue;
+    if (rate == json.end() || !rate->is_number()) continue;
+    const PlanClock reading{.stamp = UtcTime(Duration(stamp->get<std::int64_t>())),
+                            .plan_version = version->get<std::uint32_t>(),
+                            .plan_time_s = plan_time->get<double>(),
+                            .rate = rate->get<double>()};
+    if (!(reading.rate >= 0.0 && reading.rate <= 1.0)) continue;
+    if (!readings.empty() && reading.stamp < readings.back().stamp) continue;
+    readings.push_back(reading);
+  }
+  return readings;
+}
+
+const PlanClock* clock_at(std::span<const PlanClock> readings, UtcTime t) {
+  const auto after =
+      std::upper_bound(readings.begin(), readings.end(), t,
+                       [](UtcTime time, const PlanClock& reading) { return time < reading.stamp; });
+  return after == readings.begin() ? nullptr : &*std::prev(after);
+}
+
+}  // namespace swarm
