@@ -40,6 +40,7 @@ class SimulationObserver {
   virtual void on_event(UtcTime, const std::string& /*source*/, bool /*warning*/,
                         const std::string& /*code*/, const std::string& /*text*/) {}
   virtual void on_plan(std::uint32_t /*version*/, const planner::PlanResult&) {}
+  virtual void on_clock(const PlanClock&) {}
   virtual void on_scene(const Scene&, const SceneChange&) {}
 };
 
@@ -110,6 +111,7 @@ class Simulation {
   void keep_planned();
   void publish();
   void supervise();
+  std::optional<agent::PlanTime> plan_time(SteadyTime now) const;
   void act(const Action& action);
   void change_scene(const SceneChange& change);
   void report_status();
@@ -137,6 +139,8 @@ class Simulation {
   // Those who report their status out of turn. Apart from robots_: most are only looked at.
   std::vector<std::uint8_t> has_news_;
   SteadyTime now_;
+  PlanClock clock_;                        // at now_
+  agent::PlannedDensity planned_density_;  // then, where it is asked for
   std::uint64_t periods_ = 0;
   double plan_ms_ = 0.0;
   std::vector<float> step_ns_;
