@@ -10,7 +10,7 @@
 namespace swarm::agent {
 
 struct PaceOptions {
-  double look_ahead_s = 8.0;      ///< T: the carrot is this far ahead in plan time
+  double look_ahead_s = 6.0;      ///< T: the carrot is this far ahead in plan time
   double gain_hz = 0.3;           ///< k
   double approach_gain_hz = 0.8;  ///< slows down before the end of the path
   double cruise_mps = 1.45;       ///< largest desired speed

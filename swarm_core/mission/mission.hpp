@@ -85,7 +85,7 @@ struct ControlSpec {
   std::string tracking = "plan";
   double rate_hz = 10.0;
   double cruise_mps = 1.45;       ///< largest desired speed along the path
-  double look_ahead_s = 8.0;      ///< pursuit: how far ahead on its path a robot aims
+  double look_ahead_s = 6.0;      ///< pursuit: how far ahead on its path a robot aims
   double pace_gain_hz = 0.3;      ///< tracking plan: speed per metre behind the reference position
   double keep_clearance_m = 1.0;  ///< pursuit: planned clearance up to this is not cut away
   double density_push_mps = 0.0;  ///< apf: largest speed towards the planned density; 0 = off

@@ -104,7 +104,7 @@ TEST(Forces, NeighbourRepulsionIsTheGradientOfItsPotential) {
 }
 
 TEST(Forces, NeighbourRepulsionLeadsAway) {
-  const Neighbour right{.position_m = {0.5, 0}, .radius_m = 0.2};
+  const Neighbour right{.robot = RobotId(1), .position_m = {0.5, 0}, .radius_m = 0.2};
 
   const Vec2 u = neighbour_repulsion({0, 0}, std::span(&right, 1),
                                      {.radius_m = 0.2, .gap_m = 1.0, .push_mps = 0.6});
@@ -198,9 +198,10 @@ TEST(Forces, PlannedDensityIsTheWholeMixtureThroughTheKernel) {
 TEST(Forces, DensityAttractionLeavesACrowdThatIsDenserThanPlanned) {
   PlannedDensity planned;
   update(planned, two_legs(), 5.0, 30, 0.7);
-  const std::vector<Neighbour> right{{.position_m = {0.6, 0}, .radius_m = 0.2},
-                                     {.position_m = {0.8, 0.3}, .radius_m = 0.2},
-                                     {.position_m = {0.8, -0.3}, .radius_m = 0.2}};
+  const std::vector<Neighbour> right{
+      {.robot = RobotId(1), .position_m = {0.6, 0}, .radius_m = 0.2},
+      {.robot = RobotId(2), .position_m = {0.8, 0.3}, .radius_m = 0.2},
+      {.robot = RobotId(3), .position_m = {0.8, -0.3}, .radius_m = 0.2}};
 
   EXPECT_LT(density_attraction({0, 0}, planned, right, {.push_mps = 0.3}).x(), 0.0);
 }
