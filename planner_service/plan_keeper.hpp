@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "planner_service/clock_governor.hpp"
 #include "planner_service/planner.hpp"
 #include "planner_service/replan.hpp"
 #include "planner_service/robot_watch.hpp"
@@ -18,8 +19,8 @@ namespace swarm::planner {
 
 /// Sees to it that there is a plan for the scene as it is: the first one, anew when the scene
 /// changes, while obstacles move, for every step ROVER takes, and where CRoPS finds the swarm
-/// stuck. Pure: what was heard and the time in, plans out; the program around it owns bus and
-/// files.
+/// stuck. It also owns the plan's clock. Pure: what was received and the time in, plans and clock
+/// readings out; the program around it owns bus and files.
 class PlanKeeper {
  public:
   /// \pre the mission outlives the keeper
@@ -48,6 +49,8 @@ class PlanKeeper {
   };
   struct Step {
     bool publish = false;  ///< newest() is to go out, as version()
+    /// The clock's version or rate is another one.
+    std::optional<PlanClock> clock{};
     std::vector<Notice> notices;
   };
   /// Call it often. May plan, which takes as long as that takes.
@@ -55,6 +58,8 @@ class PlanKeeper {
 
   const Replan& newest() const { return newest_; }
   std::uint32_t version() const { return version_; }
+  /// The plan's clock, as of the last step().
+  PlanClock clock(UtcTime utc) const { return governor_.reading(utc); }
   const Scene& scene() const { return scene_; }
   /// Version of the scene newest() was made for.
   std::uint64_t planned_scene() const { return planned_scene_; }
@@ -66,7 +71,10 @@ class PlanKeeper {
   bool is_step_due(SteadyTime now) const;
   Result<Replan> plan_anew(const World& world, std::span<const HeardRobot> heard);
   Result<Replan> plan_around_bodies(UtcTime utc, std::span<const HeardRobot> heard, Step& step);
-  void publish(Step& step);
+  void publish(SteadyTime now, Step& step);
+  void keep_clock(SteadyTime now, UtcTime utc, Step& step);
+  void catch_up(SteadyTime now);
+  void report_clock(SteadyTime now, Step& step);
 
   const Mission& mission_;
   std::uint64_t seed_;
@@ -83,6 +91,12 @@ class PlanKeeper {
   std::uint64_t bodies_left_out_ = 0;  // scene of which that was reported
   SteadyTime begun_at_;
   SteadyTime tried_at_;  // to plan anew
+  ClockGovernor governor_;
+  PlanClock clock_told_;     // of the last step that had one
+  SteadyTime judged_at_;     // the robots' lags
+  SteadyTime full_rate_at_;  // when the clock last ran at full rate
+  bool slow_told_ = false;
+  std::vector<RobotId> hopeless_told_;
 };
 
 }  // namespace swarm::planner

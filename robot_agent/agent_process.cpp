@@ -38,6 +38,7 @@ constexpr std::uint64_t kFaultSeed = 0xFA17;
 /// Robots that tell their health together, where a process has so many.
 constexpr std::size_t kStatusGroup = 100;
 constexpr Duration kStatsEvery = std::chrono::seconds(1);
+constexpr Duration kClockPatience = std::chrono::seconds(1);
 
 /// A black box is written at every step, so that nothing is lost with a process that is killed. In
 /// one of many robots that would be most of its time: each of their boxes is written once a second.
@@ -85,10 +86,17 @@ struct AgentProcess::Impl {
   bool boxes_dropped = false;  // told already
   SteadyTime stats_at;
   std::size_t ticks = 0;
+  bool is_underway = false;  // some robot was restarted in mid-flight
+  std::optional<NewPlan> waiting_plan;
+  SteadyTime plan_waits_since;
+  FlowPlan flow;  // in force, where planned_density is asked for
+  PlannedDensity planned_density;
 
   Result<void> join(const shell::RunInfo& run);
   Result<void> make_robots(std::uint64_t seed);
-  void tick(const Robot::Tick& tick);
+  std::optional<NewPlan> take_plan(const Robot::Tick& tick);
+  void follow_density(const std::optional<NewPlan>& new_plan, Robot::Tick& tick);
+  void tick(Robot::Tick tick);
   void follow_scene(UtcTime now);
   void report_health(const Robot::Tick& tick);
   bool status_is_due(std::size_t first) const;
@@ -146,7 +154,7 @@ Result<void> AgentProcess::Impl::join(const shell::RunInfo& run) {
                 *states, limits,
                 MissionWatch(from_seconds(mission.timing.planner_silence_s),
                              from_seconds(l.send_interval_max_s + 2.0 / mission.control.rate_hz)),
-                hears_farthest_m(mission));
+                from_seconds(mission.timing.planner_silence_s), hears_farthest_m(mission));
   return {};
 }
 
@@ -174,6 +182,7 @@ Result<void> AgentProcess::Impl::make_robots(std::uint64_t seed) {
                             mix_seed(mix_seed(seed, id.value()), kBodySeed)));
     AgentIdentity self = agent_identity(mission, id);
     self.underway = *place != (*places)[id.value()];
+    is_underway = is_underway || self.underway;
     robots.emplace_back(world, options_of(id), self, agent_rng(id, seed), std::move(body),
                         std::move(*box));
   }
@@ -204,14 +213,37 @@ void AgentProcess::Impl::follow_scene(UtcTime now) {
   world_moves = scene.moves(now);
 }
 
-void AgentProcess::Impl::tick(const Robot::Tick& tick) {
+/// The newest plan, once. A robot that was restarted in mid-flight finds its place in it by the
+/// plan's time, too: its process waits for the first heartbeat, but not for ever.
+std::optional<NewPlan> AgentProcess::Impl::take_plan(const Robot::Tick& tick) {
+  if (auto plan = inbox->take_plan()) {
+    waiting_plan = std::move(plan);
+    plan_waits_since = tick.now;
+  }
+  const bool waits = is_underway && !tick.plan_time && tick.now - plan_waits_since < kClockPatience;
+  return waits ? std::nullopt : std::exchange(waiting_plan, std::nullopt);
+}
+
+/// The planned density at the plan's time, where the control method asks for it.
+void AgentProcess::Impl::follow_density(const std::optional<NewPlan>& new_plan, Robot::Tick& tick) {
+  if (mission.control.density_push_mps <= 0.0) return;
+  if (new_plan) flow = new_plan->flow;
+  if (flow.empty() || !tick.plan_time) return;
+  update(planned_density, flow, tick.plan_time->plan_time_s, mission.robots.count,
+         DensityAttractionOptions{}.kernel_sigma_m());
+  tick.planned_density = &planned_density;
+}
+
+void AgentProcess::Impl::tick(Robot::Tick tick) {
   participant->receive();
   inbox->receive(tick.now, tick.utc_now, [this](RobotId id) -> const EchoGuard* {
     const std::uint32_t offset = id.value() - options.first.value();
     return offset < robots.size() ? &robots[offset].echo() : nullptr;
   });
   follow_scene(tick.utc_now);
-  const std::optional<NewPlan> new_plan = inbox->take_plan();
+  tick.plan_time = inbox->plan_time(tick.now);
+  const std::optional<NewPlan> new_plan = take_plan(tick);
+  follow_density(new_plan, tick);
 
   saying.clear();
   positions.clear();
@@ -241,6 +273,8 @@ void AgentProcess::Impl::tell_status(std::size_t first, UtcTime now) {
   health.plan_version = inbox->plan_version();
   health.plan_scene_version = inbox->plan_scene_version();
   health.stamp_utc_ns = now.time_since_epoch().count();
+  const auto plan_time = inbox->plan_time(std::chrono::steady_clock::now());
+  health.plan_time_s = plan_time ? plan_time->plan_time_s : 0.0;
   health.robots.clear();
   for (const Robot& robot : group(first)) health.robots.push_back(robot.status());
   health.refused.clear();

@@ -84,12 +84,12 @@ struct ControlSpec {
   /// apf: keep the plan's times (plan), or travel the planned path at one's own speed (free).
   std::string tracking = "plan";
   double rate_hz = 10.0;
-  double cruise_mps = 1.45;        ///< largest desired speed along the path
-  double look_ahead_s = 8.0;       ///< pursuit: how far ahead on its path a robot aims
-  double pace_gain_hz = 0.3;       ///< tracking plan: speed per metre behind the reference position
-  double keep_clearance_m = 1.0;   ///< pursuit: planned clearance up to this is not cut away
-  double density_push_mps = 0.05;  ///< apf: at a density of twice the planned one
-  double neighbour_gap_m = 1.0;    ///< d0: neighbours nearer than this push
+  double cruise_mps = 1.45;       ///< largest desired speed along the path
+  double look_ahead_s = 8.0;      ///< pursuit: how far ahead on its path a robot aims
+  double pace_gain_hz = 0.3;      ///< tracking plan: speed per metre behind the reference position
+  double keep_clearance_m = 1.0;  ///< pursuit: planned clearance up to this is not cut away
+  double density_push_mps = 0.0;  ///< apf: largest speed towards the planned density; 0 = off
+  double neighbour_gap_m = 1.0;   ///< d0: neighbours nearer than this push
   double neighbour_push_mps = 0.6;  ///< speed of that push at contact
   double obstacle_gap_m = 0.5;      ///< obstacles nearer than this push
   double obstacle_push_mps = 1.0;

@@ -29,7 +29,8 @@ class DirectoryObserver final : public SimulationObserver {
   explicit DirectoryObserver(std::filesystem::path dir)
       : dir_(std::move(dir)),
         events_(dir_ / shell::kEventsFile),
-        scenes_(dir_ / shell::kSceneFile, std::ios::app) {}
+        scenes_(dir_ / shell::kSceneFile, std::ios::app),
+        clock_(dir_ / shell::kPlanClockFile, std::ios::app) {}
 
   void on_event(UtcTime at, const std::string& source, bool warning, const std::string& code,
                 const std::string& text) override {
@@ -45,6 +46,8 @@ class DirectoryObserver final : public SimulationObserver {
     }
   }
 
+  void on_clock(const PlanClock& reading) override { clock_ << plan_clock_line(reading); }
+
   void on_scene(const Scene& scene, const SceneChange& change) override {
     scenes_ << scene_log_line(scene.version, change) << std::flush;
   }
@@ -55,6 +58,7 @@ class DirectoryObserver final : public SimulationObserver {
   std::filesystem::path dir_;
   EventLog events_;
   std::ofstream scenes_;
+  std::ofstream clock_;
   std::optional<Error> failure_;
 };
 

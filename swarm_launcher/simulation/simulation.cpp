@@ -144,6 +144,18 @@ void Simulation::keep_planned() {
     observer_.on_event(utc(now_), "planner", notice.warning, notice.code, notice.text);
   }
   if (step.publish) publish();
+  clock_ = keeper_.clock(utc(now_));
+  if (step.clock) observer_.on_clock(*step.clock);
+  if (mission_.control.density_push_mps > 0.0 && clock_.plan_version > 0) {
+    agent::update(planned_density_, keeper_.newest().planned.plan, clock_.plan_time_s,
+                  mission_.robots.count, agent::DensityAttractionOptions{}.kernel_sigma_m());
+  }
+}
+
+/// Every robot has the clock from the planner's heartbeats, which take no time here.
+std::optional<agent::PlanTime> Simulation::plan_time(SteadyTime now) const {
+  if (clock_.plan_version == 0) return std::nullopt;
+  return agent::PlanTime{clock_.plan_time_s + clock_.rate * to_seconds(now - now_), clock_.rate};
 }
 
 void Simulation::change_scene(std::span<const SceneChange> changes) {
@@ -206,7 +218,10 @@ void Simulation::report_status() {
                                        .sent_at = now_});
     keeper_.hear({.robot = RobotId(i),
                   .position_m = robot.position_m,
-                  .arrived = robot.mode == RobotMode::kArrived},
+                  .arrived = robot.mode == RobotMode::kArrived,
+                  .lag_s = robot.agent.lag_s(),
+                  .plan_version = keeper_.version(),
+                  .plan_time_s = clock_.plan_time_s},
                  robot.mode == RobotMode::kMoving, now_);
   }
 }
@@ -228,12 +243,15 @@ void Simulation::tick_robot(std::uint32_t id, SteadyTime now, const Upcoming& up
   robot.heard_until = now;
   if (upcoming.second != nullptr) prefetch(*upcoming.second);
   const RobotMode before = robot.mode;
-  const agent::AgentOutput out = robot.agent.tick({.now = now,
-                                                   .position_m = robot.position_m,
-                                                   .phase = phase_,
-                                                   .planner_alive = true,
-                                                   .velocity_mps = body.velocity_mps},
-                                                  rngs_[id]);
+  const agent::AgentOutput out = robot.agent.tick(
+      {.now = now,
+       .position_m = robot.position_m,
+       .phase = phase_,
+       .planner_alive = true,
+       .velocity_mps = body.velocity_mps,
+       .plan_time = plan_time(now),
+       .planned_density = planned_density_.parts.empty() ? nullptr : &planned_density_},
+      rngs_[id]);
   robot.mode = out.mode;
   robot.settled = out.settled;
   robot.body.command(now, out.velocity_mps, 2 * period_);
@@ -250,6 +268,7 @@ void Simulation::tick_robot(std::uint32_t id, SteadyTime now, const Upcoming& up
   if (out.mode != before || out.settled) has_news_[id] = 1;
   if (out.mode != before)
     recording_.note(robot_id, stamp, "mode", std::string(to_string(out.mode)));
+  const agent::TimeTracking tracking = out.tracking.value_or(agent::TimeTracking{});
   recording_.step(robot_id,
                   {.stamp = stamp,
                    .position_m = body.true_position_m.value_or(body.position_m),
@@ -258,7 +277,11 @@ void Simulation::tick_robot(std::uint32_t id, SteadyTime now, const Upcoming& up
                    .goal = robot.agent.has_route() ? static_cast<std::uint8_t>(std::min(
                                                          robot.agent.goal(robot.position_m), 254U))
                                                    : blackbox::Step::kNoGoal,
-                   .neighbours = out.neighbours});
+                   .neighbours = out.neighbours,
+                   .plan_version = out.tracking ? clock_.plan_version : 0,
+                   .plan_time_s = static_cast<float>(tracking.plan_time_s),
+                   .reference_x_m = static_cast<float>(tracking.reference_m.x()),
+                   .reference_y_m = static_cast<float>(tracking.reference_m.y())});
 }
 
 // A swarm is larger than the cache: a robot is fetched two robots ahead, the neighbours it knows

@@ -43,6 +43,7 @@ class SimulationObserver {
   virtual void on_event(UtcTime, const std::string& /*source*/, bool /*warning*/,
                         const std::string& /*code*/, const std::string& /*text*/) {}
   virtual void on_plan(std::uint32_t /*version*/, const planner::PlanResult&) {}
+  virtual void on_clock(const PlanClock&) {}
   virtual void on_scene(const Scene&, const SceneChange&) {}
 };
 
@@ -113,6 +114,7 @@ class Simulation {
   void keep_planned();
   void publish();
   void supervise();
+  std::optional<agent::PlanTime> plan_time(SteadyTime now) const;
   void act(const Action& action);
   void change_scene(std::span<const SceneChange> changes);
   void kill_due();
@@ -152,6 +154,8 @@ class Simulation {
   std::vector<std::uint32_t> respawned_;  // in this period
   std::size_t next_kill_ = 0;
   SteadyTime now_;
+  PlanClock clock_;                        // at now_
+  agent::PlannedDensity planned_density_;  // then, where it is asked for
   std::uint64_t periods_ = 0;
   double plan_ms_ = 0.0;
   std::vector<float> step_ns_;

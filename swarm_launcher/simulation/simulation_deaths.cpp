@@ -84,7 +84,9 @@ void Simulation::admit_respawned() {
     dead_[id] = 0;
     std::erase(fallen_, id);
     if (keeper_.version() > 0) {
-      robot.agent.accept_plan(keeper_.newest().planned.plan, robot.position_m);
+      const auto time = plan_time(now_);
+      robot.agent.accept_plan(keeper_.newest().planned.plan, robot.position_m, std::nullopt,
+                              time ? std::optional(time->plan_time_s) : std::nullopt);
     }
     std::vector<std::uint32_t>& members = slots_[slot_of(id)];
     members.insert(std::lower_bound(members.begin(), members.end(), id), id);
