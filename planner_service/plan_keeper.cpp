@@ -31,6 +31,14 @@ constexpr Duration kSlowFor = std::chrono::seconds(5);
 constexpr double kRobotsAhead_s = 1.0;
 constexpr std::size_t kNamed = 10;  // robots, in an event
 
+/// A notice is one line.
+std::string one_line(std::string text) {
+  for (std::size_t at = 0; (at = text.find('\n', at)) != std::string::npos;) {
+    text.replace(at, 1, "; ");
+  }
+  return text;
+}
+
 }  // namespace
 
 PlanKeeper::PlanKeeper(const Mission& mission, std::uint64_t seed, StageClock clock)
@@ -54,13 +62,15 @@ bool PlanKeeper::take_scene(Scene scene) {
   if (scene_heard_ && scene.version <= scene_.version) return false;
   scene_ = std::move(scene);
   scene_heard_ = true;
+  for (const SceneObstacle& o : scene_.obstacles) {
+    if (o.owner) robots_.forget(*o.owner);
+  }
   return true;
 }
 
 /// From where the robots are, once they have left their start; before, the mission's own mixture is
 /// the truth they were placed by.
-Result<Replan> PlanKeeper::plan_anew(UtcTime utc, std::span<const HeardRobot> heard) {
-  const World world = world_during(mission_.world, scene_, utc, kReplanPeriod);
+Result<Replan> PlanKeeper::plan_anew(const World& world, std::span<const HeardRobot> heard) {
   const Mixture& goal = scene_.goal ? *scene_.goal : mission_.goal;
   planner_.set_risk({.alpha = scene_.risk_alpha.value_or(mission_.planner.risk_alpha),
                      .delta_m = mission_.planner.risk_delta_m});
@@ -73,21 +83,39 @@ Result<Replan> PlanKeeper::plan_anew(UtcTime utc, std::span<const HeardRobot> he
   return Replan{*std::move(planned), {}};
 }
 
+/// Around the bodies of fallen robots, if there is a plan that gets around them. A Gaussian is
+/// wider than a body: one under a source, a goal, or in a passage can be more than any plan gets
+/// around, but not more than a robot does.
+Result<Replan> PlanKeeper::plan_around_bodies(UtcTime utc, std::span<const HeardRobot> heard,
+                                              Step& step) {
+  auto planned = plan_anew(world_during(mission_.world, scene_, utc, kReplanPeriod), heard);
+  const Scene without = without_bodies(scene_);
+  if (planned || without.obstacles.size() == scene_.obstacles.size()) return planned;
+  auto through = plan_anew(world_during(mission_.world, without, utc, kReplanPeriod), heard);
+  if (!through) return planned;
+  if (bodies_left_out_ != scene_.version) {
+    step.notices.push_back({true, "bodies-not-planned",
+                            fmt::format("no plan gets around the bodies of {} robots, each robot "
+                                        "avoids them by itself: {}",
+                                        scene_.obstacles.size() - without.obstacles.size(),
+                                        one_line(planned.error().message))});
+  }
+  bodies_left_out_ = scene_.version;
+  return through;
+}
+
 void PlanKeeper::try_again(SteadyTime now, UtcTime utc, Step& step) {
   const std::vector<HeardRobot> heard = robots_.fresh(now);
   if (phase_ != MissionPhase::kReady) {
     if (heard.empty() || (!robots_.heard_all(now) && now - begun_at_ < kHearPatience)) return;
   }
   tried_at_ = now;
-  auto planned = plan_anew(utc, heard);
+  auto planned = plan_around_bodies(utc, heard, step);
   if (!planned) {
     if (failed_scene_ == scene_.version) return;
     failed_scene_ = scene_.version;
-    std::string why = planned.error().message;
-    for (std::size_t at = 0; (at = why.find('\n', at)) != std::string::npos;) {
-      why.replace(at, 1, "; ");  // a notice is one line
-    }
-    step.notices.push_back({true, "replan-failed", "the last plan stays: " + why});
+    step.notices.push_back(
+        {true, "replan-failed", "the last plan stays: " + one_line(planned.error().message)});
     return;
   }
   newest_ = *std::move(planned);

@@ -13,6 +13,7 @@
 #include "planner_service/robot_watch.hpp"
 #include "swarm_core/mission/mission.hpp"
 #include "swarm_core/mission/phase.hpp"
+#include "swarm_core/mission/scene_bodies.hpp"
 
 namespace swarm::planner {
 
@@ -36,7 +37,8 @@ class PlanKeeper {
   bool take_scene(Scene scene);
   /// \pre the id is below the number of robots
   void hear(const HeardRobot& robot, bool moving, SteadyTime now) {
-    robots_.hear(robot, moving, now);
+    // What a robot sent before it fell may come after its body became an obstacle.
+    if (!has_body(scene_, robot.robot)) robots_.hear(robot, moving, now);
   }
 
   /// What happened, for the event log; the text is one line.
@@ -67,7 +69,8 @@ class PlanKeeper {
   void avoid_jams(SteadyTime now, UtcTime utc, Step& step);
   void try_again(SteadyTime now, UtcTime utc, Step& step);
   bool is_step_due(SteadyTime now) const;
-  Result<Replan> plan_anew(UtcTime utc, std::span<const HeardRobot> heard);
+  Result<Replan> plan_anew(const World& world, std::span<const HeardRobot> heard);
+  Result<Replan> plan_around_bodies(UtcTime utc, std::span<const HeardRobot> heard, Step& step);
   void publish(SteadyTime now, Step& step);
   void keep_clock(SteadyTime now, UtcTime utc, Step& step);
   void catch_up(SteadyTime now);
@@ -84,7 +87,8 @@ class PlanKeeper {
   Replan newest_;
   std::uint32_t version_ = 0;  // 0 = nothing published
   std::uint64_t planned_scene_ = 0;
-  std::uint64_t failed_scene_ = 0;  // that was complained about
+  std::uint64_t failed_scene_ = 0;     // that was complained about
+  std::uint64_t bodies_left_out_ = 0;  // scene of which that was reported
   SteadyTime begun_at_;
   SteadyTime tried_at_;  // to plan anew
   ClockGovernor governor_;

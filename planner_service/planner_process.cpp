@@ -151,7 +151,7 @@ void PlannerProcess::Impl::hear_scene(UtcTime now) {
   const auto newest_possible =
       static_cast<std::uint64_t>((now + limits.clock_skew_refuse).time_since_epoch().count());
   for (const link::SceneMessage& message : scenes) {
-    auto heard = link::check_scene(message);
+    auto heard = link::check_scene(message, limits);
     if (!heard) {
       refused.count(heard.error());
     } else if (heard->version > newest_possible) {

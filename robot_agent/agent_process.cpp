@@ -21,6 +21,7 @@
 #include "swarm_core/base/clock.hpp"
 #include "swarm_core/mission/mission_file.hpp"
 #include "swarm_core/mission/placement.hpp"
+#include "swarm_core/mission/scene_bodies.hpp"
 #include "swarm_core/shell/run_directory.hpp"
 #include "swarm_core/shell/stop_signal.hpp"
 #include "swarm_link/groups/group_channel.hpp"
@@ -55,13 +56,9 @@ bool sleep_until(SteadyTime at) {
 /// A respawned robot's body stands where its black box last saw it; a new one at its place in the
 /// mission.
 Result<Vec2> standing_place(const std::filesystem::path& box_file, const Vec2& placed_m) {
-  if (!std::filesystem::exists(box_file)) return placed_m;
-  const auto file = blackbox::read_file(box_file);
-  if (!file) return tl::unexpected(file.error());
-  for (auto it = file->records.rbegin(); it != file->records.rend(); ++it) {
-    if (const auto* step = std::get_if<blackbox::Step>(&*it)) return step->position_m;
-  }
-  return placed_m;
+  const auto last = blackbox::last_steps(box_file);
+  if (!last) return tl::unexpected(last.error());
+  return last->empty() ? placed_m : last->back().position_m;
 }
 
 }  // namespace
@@ -211,7 +208,8 @@ void AgentProcess::Impl::follow_scene(UtcTime now) {
                         static_cast<std::int64_t>(scene.version));
   }
   if (!world_moves) return;
-  world = world_at(mission.world, scene, now);
+  // A robot that comes back is inside its own body until the launcher receives it again.
+  world = world_at(mission.world, without_bodies_of(scene, options.first, options.count), now);
   world_moves = scene.moves(now);
 }
 

@@ -50,7 +50,7 @@ void Inbox::receive_scenes(std::uint64_t newest) {
   scenes_.clear();
   readers_.scene->take(scenes_);
   for (const link::SceneMessage& message : scenes_) {
-    auto scene = link::check_scene(message);
+    auto scene = link::check_scene(message, limits_);
     if (!scene) {
       refused_.count(scene.error());
     } else if (scene->version > newest) {

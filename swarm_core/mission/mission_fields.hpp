@@ -43,8 +43,9 @@ inline constexpr std::array<std::string_view, 3> kControlMethods{"apf", "crops",
 inline constexpr std::array<std::string_view, 2> kTracking{"plan", "free"};
 inline constexpr std::array<std::string_view, 3> kRobotModels{"single_integrator", "unicycle",
                                                               "double_integrator"};
-inline constexpr std::array<std::string_view, 8> kScriptActions{
-    "pause", "resume", "stop", "add_obstacle", "move_obstacle", "remove_obstacle", "goto", "risk"};
+inline constexpr std::array<std::string_view, 9> kScriptActions{
+    "pause",           "resume", "stop", "add_obstacle", "move_obstacle",
+    "remove_obstacle", "goto",   "risk", "clear"};
 inline constexpr yaml::Range kRiskAlpha = between(1e-6, 1 - 1e-6);
 inline constexpr yaml::Range kScriptTime_s = between(0.0, 1e6);
 

@@ -269,11 +269,17 @@ class MissionReader {
     }
   }
 
-  /// Obstacles that a script moves or removes must be there by then.
+  /// Obstacles that a script moves or removes must be there by then. Which robots fall is not
+  /// known: a script may clear any.
   void follow_scene(Scene& scene, const MissionAction& action, double at_s, Position at,
                     const std::string& path) {
     const auto* change = std::get_if<SceneChange>(&action);
     if (change == nullptr) return;
+    if (const auto* clear = std::get_if<ClearBody>(change)) {
+      if (clear->robot.value() < mission_.robots.count) return;
+      violations_.add(at, fmt::format("{}: there is no robot {}", path, clear->robot.value()));
+      return;
+    }
     auto next = after(scene, *change, mission_.world, UtcTime(from_seconds(at_s)));
     if (next) {
       scene = std::move(*next);

@@ -107,6 +107,14 @@ Result<ExitCode> simulate_mission(const SimulateOptions& options) {
   auto mission = load_mission(options.mission_file);
   if (!mission) return tl::unexpected(mission.error());
   if (options.robots) mission->robots.count = *options.robots;
+  for (const Kill& kill : options.kills) {
+    for (const RobotId robot : kill.robots) {
+      if (robot.value() < mission->robots.count) continue;
+      return fail(ErrorCode::kBadInput,
+                  fmt::format("--kill: there is no robot {}, the mission has 0 to {}",
+                              robot.value(), mission->robots.count - 1));
+    }
+  }
 
   std::filesystem::path dir;
   std::unique_ptr<SimulationObserver> observer = std::make_unique<SimulationObserver>();
@@ -134,7 +142,8 @@ Result<ExitCode> simulate_mission(const SimulateOptions& options) {
       .seed = options.seed,
       .faults = options.faults,
       .clocks_in_step = options.clocks_in_step,
-      .threads = options.threads > 0 ? options.threads : useful_threads(mission->robots.count)};
+      .threads = options.threads > 0 ? options.threads : useful_threads(mission->robots.count),
+      .kills = options.kills};
   auto simulation = Simulation::make(*mission, simulated, recording, *observer);
   if (!simulation) return tl::unexpected(simulation.error());
   fly(**simulation, mission->robots.count);

@@ -30,11 +30,21 @@ double hears_m(const Mission& mission, RobotId robot) {
   return own_m > 0.0 ? own_m : mission.link.hear_radius_m;
 }
 
+/// Each robot has a process that may die, and all of them start at once.
 SupervisorOptions supervisor_options(const Mission& mission) {
+  LauncherSpec launcher = mission.launcher;
+  launcher.starts_per_s = 1e9;
+  launcher.starting_max = mission.robots.count;
   return {.robots = mission.robots.count,
-          .per_process = mission.robots.count,
-          .launcher = mission.launcher,
+          .per_process = 1,
+          .launcher = launcher,
           .script = mission.script};
+}
+
+std::vector<Kill> in_order_of_time(std::vector<Kill> kills) {
+  std::stable_sort(kills.begin(), kills.end(),
+                   [](const Kill& a, const Kill& b) { return a.at_s < b.at_s; });
+  return kills;
 }
 
 }  // namespace
@@ -54,7 +64,9 @@ Simulation::Simulation(const Mission& mission, const SimulationOptions& options,
            mix_seed(options.seed, 0xA1B), kBegin),
       crew_(std::max<std::size_t>(options.threads, 1)),
       collected_(crew_.size()),
-      now_(kBegin) {}
+      now_(kBegin) {
+  options_.kills = in_order_of_time(std::move(options_.kills));
+}
 
 Result<std::unique_ptr<Simulation>> Simulation::make(const Mission& mission,
                                                      const SimulationOptions& options,
@@ -83,6 +95,7 @@ void Simulation::place(const std::vector<Vec2>& positions_m) {
   robots_.reserve(positions_m.size());
   rngs_.reserve(positions_m.size());
   has_news_.resize(positions_m.size());
+  dead_.resize(positions_m.size());
   agent::AgentOptionsOf options_of(mission_);
   slots_.resize(options_.clocks_in_step ? 1 : kSlots);
   for (std::uint32_t i = 0; i < positions_m.size(); ++i) {
@@ -95,12 +108,16 @@ void Simulation::place(const std::vector<Vec2>& positions_m) {
          .hears_m = hears_m(mission_, id),
          .heard_until = kBegin,
          .position_m = positions_m[i]});
-    // As processes do: multiples of the golden ratio spread any number of them evenly.
-    const double turn = i * (std::numbers::phi - 1.0);
-    const auto slot =
-        static_cast<std::size_t>((turn - std::floor(turn)) * static_cast<double>(slots_.size()));
-    slots_[std::min(slot, slots_.size() - 1)].push_back(i);
+    slots_[slot_of(i)].push_back(i);
   }
+}
+
+/// As processes do: multiples of the golden ratio spread any number of them evenly.
+std::size_t Simulation::slot_of(std::uint32_t robot) const {
+  const double turn = robot * (std::numbers::phi - 1.0);
+  const auto slot =
+      static_cast<std::size_t>((turn - std::floor(turn)) * static_cast<double>(slots_.size()));
+  return std::min(slot, slots_.size() - 1);
 }
 
 void Simulation::publish() {
@@ -110,6 +127,7 @@ void Simulation::publish() {
   const std::string text = fmt::format("took plan version {}", keeper_.version());
   crew_.run([&](std::size_t part) {
     for (std::size_t i = part; i < robots_.size(); i += crew_.size()) {
+      if (dead_[i] != 0) continue;
       std::optional<agent::PlanEntry> entry;
       if (i < newest.entries.size() && newest.entries[i].source != planner::PlanEntry::kAnywhere) {
         entry = {newest.entries[i].source, newest.entries[i].share / 65536.0};
@@ -140,16 +158,18 @@ std::optional<agent::PlanTime> Simulation::plan_time(SteadyTime now) const {
   return agent::PlanTime{clock_.plan_time_s + clock_.rate * to_seconds(now - now_), clock_.rate};
 }
 
-void Simulation::change_scene(const SceneChange& change) {
-  auto next = after(scene_, change, mission_.world, utc(now_));
-  if (!next) {
-    observer_.on_event(utc(now_), "launcher", true, "scene-refused", next.error().message);
-    return;
+void Simulation::change_scene(std::span<const SceneChange> changes) {
+  for (const SceneChange& change : changes) {
+    auto next = after(scene_, change, mission_.world, utc(now_));
+    if (!next) {
+      observer_.on_event(utc(now_), "launcher", true, "scene-refused", next.error().message);
+      continue;
+    }
+    scene_ = *std::move(next);
+    observer_.on_scene(scene_, change);
+    if (std::holds_alternative<GoTo>(change)) supervisor_.on_new_goal(scene_.version);
   }
-  scene_ = *std::move(next);
-  observer_.on_scene(scene_, change);
   keeper_.take_scene(scene_);
-  if (std::holds_alternative<GoTo>(change)) supervisor_.on_new_goal(scene_.version);
   world_moves_ = true;
 }
 
@@ -159,7 +179,13 @@ void Simulation::act(const Action& action) {
                                                  : phase_after(phase_, command->kind);
     keeper_.set_phase(phase_);
   } else if (const auto* scene = std::get_if<ChangeScene>(&action)) {
-    change_scene(scene->change);
+    change_scene({&scene->change, 1});
+  } else if (const auto* start = std::get_if<StartProcess>(&action)) {
+    if (start->process != kPlanner) respawn(supervisor_.robots_of(start->process).first);
+  } else if (const auto* fallen = std::get_if<AddBodies>(&action)) {
+    add_bodies(fallen->robots);
+  } else if (const auto* risen = std::get_if<ClearBodies>(&action)) {
+    clear_bodies(risen->robots);
   } else if (const auto* signal = std::get_if<SignalProcess>(&action)) {
     supervisor_.on_exit(signal->process, {}, now_);
   } else if (const auto* event = std::get_if<LogEvent>(&action)) {
@@ -182,12 +208,14 @@ void Simulation::report_status() {
     if (is_in_turn) in_turn += every;
     if (!is_in_turn && has_news_[i] == 0) continue;
     has_news_[i] = 0;
+    if (dead_[i] != 0) continue;
     const Robot& robot = robots_[i];
     supervisor_.on_status(RobotId(i), {.has_plan = robot.agent.has_route(),
                                        .hears_neighbours = true,
                                        .mode = robot.mode,
                                        .settled = robot.settled,
-                                       .scene_version = keeper_.planned_scene()});
+                                       .scene_version = keeper_.planned_scene(),
+                                       .sent_at = now_});
     keeper_.hear({.robot = RobotId(i),
                   .position_m = robot.position_m,
                   .arrived = robot.mode == RobotMode::kArrived,
@@ -288,10 +316,11 @@ void Simulation::tick_slot(std::size_t slot) {
 }
 
 bool Simulation::step() {
+  kill_due();
   supervise();
   if (supervisor_.stage() == Supervisor::Stage::kDone) {
     for (std::uint32_t i = 0; i < robots_.size(); ++i) {
-      recording_.note(RobotId(i), utc(now_), "exit", "graceful end");
+      if (dead_[i] == 0) recording_.note(RobotId(i), utc(now_), "exit", "graceful end");
       recording_.link().states_sent += robots_[i].sequence;
       recording_.link().states_received += robots_[i].received;
     }
@@ -304,11 +333,13 @@ bool Simulation::step() {
     world_moves_ = scene_.moves(utc(now_));
   }
   recording_.begin_period();
+  coast_fallen();
   const auto begin = std::chrono::steady_clock::now();
   for (std::size_t slot = 0; slot < slots_.size(); ++slot) tick_slot(slot);
   const double took_s = to_seconds(std::chrono::steady_clock::now() - begin);
   agents_s_ += took_s;
   step_ns_.push_back(static_cast<float>(1e9 * took_s / static_cast<double>(robots_.size())));
+  admit_respawned();
   report_status();
   ++periods_;
   now_ += period_;

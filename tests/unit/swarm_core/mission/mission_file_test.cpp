@@ -68,6 +68,7 @@ script:
       - {mean_m: [3, 9], covariance_m2: [[0.1, 0], [0, 0.1]], weight: 0.5}
   - {at_s: 7, action: risk, alpha: 0.3}
   - {at_s: 7.25, action: resume}
+  - {at_s: 8, action: clear, robot: 6}
   - {at_s: 60, action: stop}
 )";
 
@@ -120,7 +121,7 @@ void expect_same(const Section& a, const Section& b,
   // Beside the table: texts, and of robots the body and the groups.
   constexpr std::size_t kOthers = std::is_same_v<Section, PlannerSpec>   ? 3
                                   : std::is_same_v<Section, RobotsSpec>  ? 2
-                                  : std::is_same_v<Section, ControlSpec> ? 1
+                                  : std::is_same_v<Section, ControlSpec> ? 2
                                   : std::is_same_v<Section, BodySpec>    ? 1
                                                                          : 0;
   static_assert(members_of<Section>() == N + kOthers);
@@ -211,7 +212,7 @@ TEST(MissionFile, ReadsEverySection) {
   EXPECT_EQ(mission->start.components().size(), 2U);
   EXPECT_EQ(mission->control.rate_hz, 20.0);
   EXPECT_EQ(mission->launcher.respawn_agent_max, 2U);
-  ASSERT_EQ(mission->script.size(), 8U);
+  ASSERT_EQ(mission->script.size(), 9U);
   EXPECT_EQ(mission->script[6].at_s, 7.25);
   const auto change = [&](std::size_t i) {
     return std::get<SceneChange>(mission->script[i].action);
@@ -223,7 +224,8 @@ TEST(MissionFile, ReadsEverySection) {
   EXPECT_EQ(std::get<RemoveObstacle>(change(3)).obstacle, 0U);
   EXPECT_EQ(std::get<GoTo>(change(4)).goal.components().size(), 2U);
   EXPECT_EQ(std::get<SetRisk>(change(5)).alpha, 0.3);
-  EXPECT_EQ(std::get<CommandKind>(mission->script[7].action), CommandKind::kStop);
+  EXPECT_EQ(std::get<ClearBody>(change(7)).robot, RobotId(6));
+  EXPECT_EQ(std::get<CommandKind>(mission->script[8].action), CommandKind::kStop);
 }
 
 TEST(MissionFile, ReadsBackWhatItWrote) {
