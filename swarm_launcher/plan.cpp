@@ -91,7 +91,7 @@ struct Sample {
     }
     // Looking for the highest density takes longer than planning: of every plan only if it is
     // capped.
-    if (total_ms.size() == 1 || mission.planner.density_cap_per_m2 > 0.0) {
+    if (total_ms.size() == 1 || mission.planner.density_cap_per_m2.value_or(0.0) > 0.0) {
       max_density_per_m2 =
           std::max(max_density_per_m2,
                    planner::max_density(result.plan, mission.robots.count, kDensityStep_s).per_m2);
