@@ -10,8 +10,8 @@
 namespace swarm::planner {
 
 Result<PlanResult> plan_of_routes(std::span<const Route> raw, std::span<const Route> routes,
-                                  const PlanRequest& request, double speed_mps, PlanResult result,
-                                  StageTimer& whole) {
+                                  const PlanRequest& request, const LegSpeed& speed,
+                                  PlanResult result, StageTimer& whole) {
   PlanStats& stats = result.stats;
   for (const Route& route : raw) {
     stats.raw_mean_path_m += route.mass * mean_length_m(route.waypoints);
@@ -21,7 +21,7 @@ Result<PlanResult> plan_of_routes(std::span<const Route> raw, std::span<const Ro
     stats.cost_m += route.mass * w2_length_m(route.waypoints);
   }
   Result<FlowPlan> flow = build_merged_plan(routes, request.start.components().size(),
-                                            request.goal.components().size(), speed_mps);
+                                            request.goal.components().size(), speed);
   if (!flow) return tl::unexpected(flow.error());
   result.plan = *std::move(flow);
   stats.nodes = result.roadmap.nodes.size();

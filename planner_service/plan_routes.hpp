@@ -14,8 +14,8 @@ namespace swarm::planner {
 /// they cost, into `result`, which holds the roadmap and the times so far. `raw` are the routes as
 /// the roadmap gave them.
 Result<PlanResult> plan_of_routes(std::span<const Route> raw, std::span<const Route> routes,
-                                  const PlanRequest& request, double speed_mps, PlanResult result,
-                                  StageTimer& whole);
+                                  const PlanRequest& request, const LegSpeed& speed,
+                                  PlanResult result, StageTimer& whole);
 
 /// The same of a method that ends in a flow.
 PlanResult plan_of_flow(FlowPlan flow, PlanResult result, StageTimer& whole);

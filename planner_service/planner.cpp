@@ -46,7 +46,7 @@ Result<PlanResult> plan_adoc(const PlanRequest& request, const PlannerOptions& o
   if (!routes) return tl::unexpected(routes.error());
   PlanResult result;
   result.stats.search_ms = stage.lap_ms();
-  return plan_of_routes(*routes, *routes, request, options.speed_mps, std::move(result), whole);
+  return plan_of_routes(*routes, *routes, request, {options.speed_mps}, std::move(result), whole);
 }
 
 /// Each robot goes to the component it most likely belongs to.
@@ -155,7 +155,7 @@ Result<PlanResult> Planner::Memory::plan_crops(const PlanRequest& request,
   PlanResult result;
   result.roadmap = guide->roadmap();
   result.stats.roadmap_ms = stage.lap_ms();
-  return plan_of_routes(guide->routes(), guide->routes(), request, options.speed_mps,
+  return plan_of_routes(guide->routes(), guide->routes(), request, {options.speed_mps},
                         std::move(result), whole);
 }
 

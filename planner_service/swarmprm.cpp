@@ -114,11 +114,11 @@ Result<PlanResult> plan_capped(PlanResult result, const PlanRequest& request,
     const auto flow = capped_flow(result.roadmap, supplies, demands, options.density, checker);
     if (!flow) return tl::unexpected(flow.error());
     result.stats.transport_ms = stage.lap_ms();
-    return plan_of_routes(flow->routes, flow->routes, request, options.speed_mps, std::move(result),
-                          whole);
+    return plan_of_routes(flow->routes, flow->routes, request, {options.speed_mps},
+                          std::move(result), whole);
   }
   auto flow = timed_flow(result.roadmap, supplies, demands, options.density,
-                         {.speed_mps = options.speed_mps}, checker);
+                         {.speed = {options.speed_mps}}, checker);
   if (!flow) return tl::unexpected(flow.error());
   result.stats.transport_ms = stage.lap_ms();
   return plan_of_flow(std::move(flow->plan), std::move(result), whole);
@@ -172,7 +172,7 @@ Result<PlanResult> plan_on_roadmap(Roadmap roadmap, const PlanRequest& request,
     for (Route& route : *routes) smooth(route.waypoints, request.world, options, checker, rng);
   }
   result.stats.smoothing_ms = stage.lap_ms();
-  return plan_of_routes(raw, *routes, request, options.speed_mps, std::move(result), whole);
+  return plan_of_routes(raw, *routes, request, {options.speed_mps}, std::move(result), whole);
 }
 
 }  // namespace swarm::planner
