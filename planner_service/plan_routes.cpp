@@ -9,6 +9,12 @@
 
 namespace swarm::planner {
 
+LegSpeed leg_speed(const PlannerOptions& options) {
+  LegSpeed speed{.means_mps = options.speed_mps};
+  if (options.limits.robot_speed_mps > 0.0) speed.robots_mps = options.limits.robot_speed_mps;
+  return speed;
+}
+
 Result<PlanResult> plan_of_routes(std::span<const Route> raw, std::span<const Route> routes,
                                   const PlanRequest& request, const LegSpeed& speed,
                                   PlanResult result, StageTimer& whole) {
@@ -26,7 +32,7 @@ Result<PlanResult> plan_of_routes(std::span<const Route> raw, std::span<const Ro
   result.plan = *std::move(flow);
   stats.nodes = result.roadmap.nodes.size();
   stats.edges = result.roadmap.edge_count();
-  stats.total_ms = whole.lap_ms();
+  stats.total_ms += whole.lap_ms();
   return result;
 }
 
@@ -42,7 +48,7 @@ PlanResult plan_of_flow(FlowPlan flow, PlanResult result, StageTimer& whole) {
   result.plan = std::move(flow);
   stats.nodes = result.roadmap.nodes.size();
   stats.edges = result.roadmap.edge_count();
-  stats.total_ms = whole.lap_ms();
+  stats.total_ms += whole.lap_ms();
   return result;
 }
 

@@ -10,6 +10,9 @@
 
 namespace swarm::planner {
 
+/// How fast the legs of a plan may be by these options.
+LegSpeed leg_speed(const PlannerOptions& options);
+
 /// The result of a method that ends in routes: their flow, merged where they coincide, and what
 /// they cost, into `result`, which holds the roadmap and the times so far. `raw` are the routes as
 /// the roadmap gave them.
