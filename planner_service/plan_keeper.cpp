@@ -45,7 +45,7 @@ PlanKeeper::PlanKeeper(const Mission& mission, std::uint64_t seed, StageClock cl
     : mission_(mission),
       seed_(seed),
       clock_(std::move(clock)),
-      planner_(planner_options(mission.planner, mission.robots.count)),
+      planner_(planner_options(mission)),
       robots_(mission.robots.count, from_seconds(3.0 + 3.0 / mission.link.status_hz)),
       scene_(first_scene(mission.world.obstacles().size())),
       governor_(mission.plan_clock) {}

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -63,12 +64,15 @@ struct PlannerSpec {
   double risk_delta_m = -0.2;         ///< δ
   double sigma_min_m = 1.0;           ///< sampler range of σ₁, σ₂
   double sigma_max_m = 3.0;
-  double rho_max = 0.6;             ///< sampler range of |ρ|
-  double bridge_share = 0.3;        ///< share of samples drawn by the Gaussian sampler of ref. [20]
-  double bridge_sigma_m = 10.0;     ///< spread of its pairs
-  std::uint32_t shortcuts = 200;    ///< smoothing tries per route, 0 = publish the roadmap's routes
-  double speed_mps = 1.25;          ///< speed of the Gaussians along a route
-  double density_cap_per_m2 = 0.0;  ///< swarmprm and rover: robots/m² at most; 0 = no cap
+  double rho_max = 0.6;           ///< sampler range of |ρ|
+  double bridge_share = 0.3;      ///< share of samples drawn by the Gaussian sampler of ref. [20]
+  double bridge_sigma_m = 10.0;   ///< spread of its pairs
+  std::uint32_t shortcuts = 200;  ///< smoothing tries per route, 0 = publish the roadmap's routes
+  double speed_mps = 1.25;        ///< speed of the Gaussians along a route
+  /// swarmprm and rover: robots/m² at most; 0 = no cap. Unset, `auto` in the file: swarmprm plans
+  /// at a density and a speed that the bodies can follow (body_limits.hpp), the others without a
+  /// cap.
+  std::optional<double> density_cap_per_m2;
   double collocation_spacing_m = 10.0;              ///< rover and adoc: grid of the set C
   double collocation_sigma_m = 7.0710678118654755;  ///< … Σ_c = σ² I
   double transport_radius_m = 22.5;                 ///< … of Assumption 2, in W₂

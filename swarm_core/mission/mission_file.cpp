@@ -97,6 +97,8 @@ class MissionReader {
       read_choice(keys, "method", mission_fields::kPlannerMethods, section.method);
       read_choice(keys, "sampler", mission_fields::kPlannerSamplers, section.sampler);
       read_choice(keys, "density_cap", mission_fields::kDensityCaps, section.density_cap);
+      read_automatic(keys, "density_cap_per_m2", mission_fields::kDensityCap_per_m2,
+                     section.density_cap_per_m2);
     }
     read_fields(keys, section, fields);
     keys.finish();
@@ -168,6 +170,18 @@ class MissionReader {
       places_[path] = value.at;
     } else {
       bad_.insert(path);
+    }
+  }
+
+  /// A number, or `auto`, which leaves the value unset.
+  void read_automatic(MapReader& keys, std::string_view key, const yaml::Range& range,
+                      std::optional<double>& value) {
+    const Node* node = keys.take(key);
+    if (node == nullptr) return;
+    if (node->kind == Node::Kind::kScalar && node->text == mission_fields::kAutomatic) {
+      value.reset();
+    } else {
+      value = yaml::read_number(*node, keys.path_of(key), range, violations_);
     }
   }
 
