@@ -275,7 +275,7 @@ std::string paths_svg(const AuditedRun& audited) {
   MapSvg map(world_phases(run.mission.world, run.scenes).back().world);
   map.add_start(run.mission.start);
   map.add_goal(run.goal());
-  if (run.plan) map.add_plan(*run.plan);
+  if (const FlowPlan* plan = run.first_plan()) map.add_plan(*plan);
   for (std::size_t i = 0; i < run.tracks.size(); ++i) {
     std::vector<Vec2> points;
     for (const TrackPoint& point : run.tracks[i].points) points.push_back(point.position_m);
