@@ -46,7 +46,10 @@ struct Track {
   std::vector<BeliefPoint> beliefs{};
   std::vector<std::uint32_t> processes{};  ///< one a life
   bool ended_gracefully = false;           ///< the last life noted "exit"
-  std::string unreadable{};                ///< why there is no black box; empty if there is one
+  /// A fallen robot's body stays at the last point until this time; a time before that point is
+  /// that of no body. Set by lay_fallen_bodies().
+  double body_until_s = 0.0;
+  std::string unreadable{};   ///< why there is no black box; empty if there is one
   std::uint64_t damaged = 0;  ///< stretches of the file that are no record, and steps back in time
   std::uint64_t late_steps = 0;   ///< later than kLate_us
   std::uint64_t refused = 0;      ///< messages, over all lives
