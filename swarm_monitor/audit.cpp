@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "swarm_core/metrics/geodesic_bound.hpp"
+#include "swarm_monitor/fallen_bodies.hpp"
 
 namespace swarm::monitor {
 namespace {
@@ -183,6 +184,15 @@ void measure_paths(const RecordedRun& run, Audit& audit) {
   if (bound > 0.0) audit.path_ratio = *audit.mean_path_m / bound;
 }
 
+/// `3-7, 12-9 and 40 more`
+std::string list_pairs(const std::vector<Approach>& contacts) {
+  std::vector<std::string> pairs;
+  for (const Approach& contact : contacts) {
+    pairs.push_back(fmt::format("{}-{}", contact.robot, contact.other));
+  }
+  return list(pairs);
+}
+
 void judge(const AuditedRun& audited, Audit& audit) {
   if (!audit.lost.empty()) {
     std::vector<std::string> ids;
@@ -196,15 +206,25 @@ void judge(const AuditedRun& audited, Audit& audit) {
   if (!absent.empty()) {
     audit.reasons.push_back(fmt::format("{} not arrived: robot {}", absent.size(), list(absent)));
   }
-  std::vector<std::string> pairs;
-  for (const Approach& contact : audited.robots.contacts) {
-    pairs.push_back(fmt::format("{}-{}", contact.robot, contact.other));
+  if (audit.collisions_robot > 0) {
+    audit.reasons.push_back(fmt::format("{} pairs touched: {}", audit.collisions_robot,
+                                        list_pairs(audited.robots.contacts)));
   }
-  if (!pairs.empty()) {
-    audit.reasons.push_back(fmt::format("{} pairs touched: {}", pairs.size(), list(pairs)));
+  if (audit.collisions_fallen > 0) {
+    audit.reasons.push_back(fmt::format("{} pairs touched after one had fallen: {}",
+                                        audit.collisions_fallen,
+                                        list_pairs(audited.robots.fallen_contacts)));
   }
   if (audit.collisions_obstacle > 0) {
     audit.reasons.push_back(fmt::format("{} robots touched obstacles", audit.collisions_obstacle));
+  }
+  if (audit.outside_bounds > 0) {
+    std::vector<std::string> outside;
+    for (const RobotAudit& robot : audit.by_robot) {
+      if (robot.left_bounds) outside.push_back(fmt::format("{}", robot.robot.value()));
+    }
+    audit.reasons.push_back(
+        fmt::format("{} left the world's bounds: robot {}", outside.size(), list(outside)));
   }
   if (fills_shape(audited.run)) return;  // whoever finds room stays: no counts are asked for
   const auto& goals = audited.run.goal().components();
@@ -235,6 +255,7 @@ void carry_over(const std::string& summary, Audit& audit) {
 
 AuditedRun audit_recorded(RecordedRun recorded) {
   AuditedRun audited{.run = std::move(recorded)};
+  lay_fallen_bodies(audited.run);
   const RecordedRun& run = audited.run;
   audited.robots = robot_clearance(run.tracks);
   audited.obstacles =
@@ -245,6 +266,7 @@ AuditedRun audit_recorded(RecordedRun recorded) {
   audit.mission_s = mission_duration_s(run, audit);
   audit.belief = belief_error(run.tracks);
   audit.collisions_robot = static_cast<std::uint32_t>(audited.robots.contacts.size());
+  audit.collisions_fallen = static_cast<std::uint32_t>(audited.robots.fallen_contacts.size());
   std::set<std::uint32_t> touching;
   for (const Approach& contact : audited.obstacles.contacts) touching.insert(contact.robot);
   audit.collisions_obstacle = static_cast<std::uint32_t>(touching.size());

@@ -49,6 +49,7 @@ std::string to_json(const Audit& audit) {
                      {"lost", lost},
                      {"collisions_robot", audit.collisions_robot},
                      {"collisions_obstacle", audit.collisions_obstacle},
+                     {"collisions_fallen", audit.collisions_fallen},
                      {"min_robot_gap_m", number(audit.min_robot_gap_m)},
                      {"min_obstacle_gap_m", number(audit.min_obstacle_gap_m)},
                      {"mean_path_m", number(audit.mean_path_m)},
@@ -76,8 +77,9 @@ std::string to_text(const Audit& audit) {
                                  audit.robots, audit.lost.size(), audit.processes);
   for (const std::string& reason : audit.reasons) text += fmt::format("  - {}\n", reason);
   text += fmt::format("  per goal         {}\n", fmt::join(audit.arrived_per_goal, ", "));
-  text += fmt::format("  contacts         {} between robots, {} robots with obstacles\n",
-                      audit.collisions_robot, audit.collisions_obstacle);
+  text += fmt::format(
+      "  contacts         {} between robots, {} with fallen ones, {} robots with obstacles\n",
+      audit.collisions_robot, audit.collisions_fallen, audit.collisions_obstacle);
   text +=
       fmt::format("  smallest gaps    {} between robots, {} to obstacles\n",
                   metres(audit.min_robot_gap_m, "none"), metres(audit.min_obstacle_gap_m, "none"));

@@ -53,10 +53,15 @@ std::size_t window_of(double time_s) {
   return std::min(kLastWindow, static_cast<std::size_t>(time_s / Clearance::kWindow_s));
 }
 
+/// Until when a body is there. \pre some point
+double end_of(const Track& track) {
+  return std::max(track.points.back().time_s, track.body_until_s);
+}
+
 std::size_t windows_of(std::span<const Track> tracks) {
   double end_s = 0.0;
   for (const Track& track : tracks) {
-    if (!track.points.empty()) end_s = std::max(end_s, track.points.back().time_s);
+    if (!track.points.empty()) end_s = std::max(end_s, end_of(track));
   }
   return window_of(end_s) + 1;
 }
@@ -88,8 +93,7 @@ class Contacts {
 
 /// Box around everything a track does in a window, a little more at its ends.
 std::optional<Box> box_of(const Track& track, double from_s, double to_s) {
-  if (track.points.empty() || track.points.front().time_s > to_s ||
-      track.points.back().time_s < from_s) {
+  if (track.points.empty() || track.points.front().time_s > to_s || end_of(track) < from_s) {
     return std::nullopt;
   }
   std::size_t i = track.points.front().time_s > from_s ? 0 : point_before(track, from_s);
@@ -104,7 +108,7 @@ std::optional<Box> box_of(const Track& track, double from_s, double to_s) {
 
 Clearance robot_clearance_within(std::span<const Track> tracks, double search_m) {
   Clearance clearance = empty_clearance(tracks);
-  Contacts contacts;
+  Contacts contacts, fallen;
   std::vector<PairGrid::Item> items;
   for (std::size_t window = 0; window < clearance.by_window_m.size(); ++window) {
     const double from_s = static_cast<double>(window) * Clearance::kWindow_s;
@@ -127,10 +131,41 @@ Clearance robot_clearance_within(std::span<const Track> tracks, double search_m)
         *least = std::min(*least, approach.gap_m);
       }
       contacts.add(approach);
+      approach = fallen_approach_of(tracks[i], tracks[j], from_s, to_s);
+      approach.robot = i;
+      approach.other = j;
+      fallen.add(approach);
     });
   }
   clearance.contacts = contacts.take();
+  clearance.fallen_contacts = fallen.take();
   return clearance;
+}
+
+/// Nearest approach within a time in which both are there. \pre from_s ≤ to_s, points in both
+Approach nearest_within(const Track& a, const Track& b, double from_s, double to_s) {
+  Approach nearest;
+  Cursor at_a(a, from_s);
+  Cursor at_b(b, from_s);
+  for (double t0 = from_s;;) {
+    at_a.step_to(t0);
+    at_b.step_to(t0);
+    const double t1 = std::min({at_a.next_s(), at_b.next_s(), to_s});
+    // Both move straight in [t0, t1]: the distance is that of a segment to the origin.
+    const Vec2 start_a = at_a.at(t0);
+    const Vec2 apart = start_a - at_b.at(t0);
+    const Vec2 change = at_a.at(t1) - at_b.at(t1) - apart;
+    const double change_squared = change.squaredNorm();
+    const double share =
+        change_squared > 0.0 ? std::clamp(-apart.dot(change) / change_squared, 0.0, 1.0) : 0.0;
+    const double gap = (apart + share * change).norm() - a.radius_m - b.radius_m;
+    if (gap < nearest.gap_m) {
+      const double time_s = t0 + share * (t1 - t0);
+      nearest = {.gap_m = gap, .time_s = time_s, .at_m = at_a.at(time_s)};
+    }
+    if (t1 >= to_s) return nearest;
+    t0 = t1;
+  }
 }
 
 /// A phase of the map in the time of the tracks.
@@ -196,32 +231,18 @@ void add_obstacle_approaches(std::uint32_t robot, const Track& track, const Phas
 }  // namespace
 
 Approach approach_of(const Track& a, const Track& b, double from_s, double to_s) {
-  Approach nearest;
-  if (a.points.empty() || b.points.empty()) return nearest;
+  if (a.points.empty() || b.points.empty()) return {};
   from_s = std::max({from_s, a.points.front().time_s, b.points.front().time_s});
   to_s = std::min({to_s, a.points.back().time_s, b.points.back().time_s});
-  if (from_s > to_s) return nearest;
-  Cursor at_a(a, from_s);
-  Cursor at_b(b, from_s);
-  for (double t0 = from_s;;) {
-    at_a.step_to(t0);
-    at_b.step_to(t0);
-    const double t1 = std::min({at_a.next_s(), at_b.next_s(), to_s});
-    // Both move straight in [t0, t1]: the distance is that of a segment to the origin.
-    const Vec2 start_a = at_a.at(t0);
-    const Vec2 apart = start_a - at_b.at(t0);
-    const Vec2 change = at_a.at(t1) - at_b.at(t1) - apart;
-    const double change_squared = change.squaredNorm();
-    const double share =
-        change_squared > 0.0 ? std::clamp(-apart.dot(change) / change_squared, 0.0, 1.0) : 0.0;
-    const double gap = (apart + share * change).norm() - a.radius_m - b.radius_m;
-    if (gap < nearest.gap_m) {
-      const double time_s = t0 + share * (t1 - t0);
-      nearest = {.gap_m = gap, .time_s = time_s, .at_m = at_a.at(time_s)};
-    }
-    if (t1 >= to_s) return nearest;
-    t0 = t1;
-  }
+  return from_s > to_s ? Approach{} : nearest_within(a, b, from_s, to_s);
+}
+
+Approach fallen_approach_of(const Track& a, const Track& b, double from_s, double to_s) {
+  if (a.points.empty() || b.points.empty()) return {};
+  const double one_fell_s = std::min(a.points.back().time_s, b.points.back().time_s);
+  from_s = std::max({from_s, a.points.front().time_s, b.points.front().time_s, one_fell_s});
+  to_s = std::min({to_s, end_of(a), end_of(b)});
+  return from_s >= to_s ? Approach{} : nearest_within(a, b, from_s, to_s);
 }
 
 std::pair<double, double> approach_of(const Vec2& from_m, const Vec2& to_m, double radius_m,

@@ -30,12 +30,17 @@ struct Clearance {
 
   Approach nearest;                ///< +∞ when nothing ever was near anything
   std::vector<Approach> contacts;  ///< deepest approach of each pair that touched (gap ≤ 0)
+  /// The same of pairs of which one had fallen and lay there; counts nowhere else.
+  std::vector<Approach> fallen_contacts;
   std::vector<double> by_window_m;
   std::vector<double> by_robot_m;  ///< smallest gap of each robot, at most kCap_m
 };
 
 /// Nearest approach of two tracks within [from_s, to_s]; gap +∞ if they do not overlap in time.
 Approach approach_of(const Track& a, const Track& b, double from_s, double to_s);
+
+/// The same while at least one of them lies there, fallen (Track::body_until_s).
+Approach fallen_approach_of(const Track& a, const Track& b, double from_s, double to_s);
 
 /// Smallest gap of one straight piece of motion to a convex obstacle, and the share of the piece at
 /// which it is reached. Signed distance to a convex set is convex along a line: golden section

@@ -57,11 +57,11 @@ PlanDeviation plan_deviation(const RecordedRun& run) {
     if (moving != track.points.end()) begin_s = std::min(begin_s, moving->time_s);
   }
   PlanDeviation deviation;
-  if (!run.plan || !std::isfinite(begin_s)) return deviation;
+  if (run.plans.empty() || !std::isfinite(begin_s)) return deviation;
   deviation.begin_s = begin_s;
   std::vector<std::size_t> cursors(run.tracks.size(), 0);
   for (double t = begin_s; t <= end_s; t += PlanDeviation::kStep_s) {
-    const Moments planned = planned_at(*run.plan, t - begin_s);
+    const Moments planned = planned_at(*run.first_plan(), t - begin_s);
     const Moments real = real_at(run, t, cursors);
     deviation.centre_off_m.push_back((planned.centre - real.centre).norm());
     deviation.planned_spread_m.push_back(planned.spread_m);

@@ -3,6 +3,7 @@
 #include "swarm_monitor/recorded_run.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -30,6 +31,7 @@ constexpr std::size_t kMaxSummaryBytes = 1U << 20U;
 constexpr std::size_t kMaxEventsBytes = 256U << 20U;
 constexpr std::size_t kMaxPlanBytes = 64U << 20U;
 constexpr std::size_t kMaxSceneBytes = 64U << 20U;
+constexpr std::size_t kMaxClockBytes = 64U << 20U;
 
 std::vector<RunEvent> read_events(const std::string& text, UtcTime begin) {
   std::vector<RunEvent> events;
@@ -78,7 +80,11 @@ void TrackMaker::take(const blackbox::Step& step) {
                            .position_m = step.position_m,
                            .mode = static_cast<RobotMode>(step.mode),
                            .goal = step.goal,
-                           .neighbours = step.neighbours});
+                           .neighbours = step.neighbours,
+                           .plan_version = step.plan_version,
+                           .plan_time_s = step.plan_time_s,
+                           .reference_x_m = step.reference_x_m,
+                           .reference_y_m = step.reference_y_m});
 }
 
 void TrackMaker::take(const blackbox::Belief& belief) {
@@ -117,6 +123,34 @@ const std::string& text_of(const Texts& texts, std::string_view name) {
   static const std::string kNone;
   const auto it = texts.find(name);
   return it == texts.end() ? kNone : it->second;
+}
+
+/// The version of the plan in a file: 1 of `plan.json`, 2 of `plan-0002.json`; 0 of any other name.
+std::uint32_t plan_version_of(std::string_view file) {
+  if (file == shell::kPlanFile) return 1;
+  constexpr std::string_view kBegin = "plan-", kEnd = ".json";
+  if (!file.starts_with(kBegin) || !file.ends_with(kEnd)) return 0;
+  file.remove_prefix(kBegin.size());
+  if (file.size() <= kEnd.size()) return 0;
+  file.remove_suffix(kEnd.size());
+  std::uint32_t version = 0;
+  const auto [end, error] = std::from_chars(file.data(), file.data() + file.size(), version);
+  return error == std::errc{} && end == file.data() + file.size() ? version : 0;
+}
+
+/// A plan that cannot be read is left out.
+std::vector<PublishedPlan> read_plans(const Texts& texts) {
+  std::vector<PublishedPlan> plans;
+  for (const auto& [name, text] : texts) {
+    const std::uint32_t version = plan_version_of(name);
+    if (version == 0) continue;
+    if (auto plan = plan_from_json(text)) plans.push_back({version, std::move(*plan)});
+  }
+  const auto older = [](const PublishedPlan& a, const PublishedPlan& b) {
+    return a.version < b.version;
+  };
+  std::sort(plans.begin(), plans.end(), older);
+  return plans;
 }
 
 /// Tracks in the making, by robot, with times since any stamp near the run: seconds since 1970
@@ -177,7 +211,8 @@ Result<RecordedRun> finished(RecordedRun run, TrackTable& tracks, const Texts& t
     return fail(ErrorCode::kEnvironment,
                 fmt::format("{}: no black box holds a step; did any robot start?", from.string()));
   }
-  if (auto plan = plan_from_json(text_of(texts, shell::kPlanFile))) run.plan = std::move(*plan);
+  run.plans = read_plans(texts);
+  run.clock = read_plan_clock(text_of(texts, shell::kPlanClockFile));
   run.scenes = replay_scene_log(text_of(texts, shell::kSceneFile), run.mission.world);
   run.events = read_events(text_of(texts, shell::kEventsFile), run.begin);
   run.launcher_summary = text_of(texts, shell::kSummaryFile);
@@ -187,11 +222,17 @@ Result<RecordedRun> finished(RecordedRun run, TrackTable& tracks, const Texts& t
 Result<RecordedRun> read_directory(const std::filesystem::path& run_dir) {
   Texts texts;
   for (const auto& [name, limit] : {std::pair{shell::kMissionFile, kMaxMissionBytes},
-                                    {shell::kPlanFile, kMaxPlanBytes},
+                                    {shell::kPlanClockFile, kMaxClockBytes},
                                     {shell::kSceneFile, kMaxSceneBytes},
                                     {shell::kEventsFile, kMaxEventsBytes},
                                     {shell::kSummaryFile, kMaxSummaryBytes}}) {
     if (auto text = shell::read_file(run_dir / name, limit)) texts[std::string(name)] = *text;
+  }
+  std::error_code unreadable;
+  for (const auto& entry : std::filesystem::directory_iterator(run_dir, unreadable)) {
+    const std::string name = entry.path().filename().string();
+    if (plan_version_of(name) == 0) continue;
+    if (auto text = shell::read_file(entry.path(), kMaxPlanBytes)) texts[name] = *text;
   }
   auto run = with_mission(text_of(texts, shell::kMissionFile), run_dir);
   if (!run) return run;

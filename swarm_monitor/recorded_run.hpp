@@ -11,6 +11,7 @@
 #include "swarm_core/mission/mission.hpp"
 #include "swarm_core/mission/phase.hpp"
 #include "swarm_core/plan/flow_plan.hpp"
+#include "swarm_core/plan/plan_clock.hpp"
 
 namespace swarm::monitor {
 
@@ -20,7 +21,13 @@ struct TrackPoint {
   Vec2 position_m = Vec2::Zero();
   RobotMode mode = RobotMode::kWaiting;
   std::uint8_t goal = blackbox::Step::kNoGoal;
-  std::uint16_t neighbours = 0;  ///< it believed near
+  std::uint16_t neighbours = 0;    ///< it believed near
+  std::uint32_t plan_version = 0;  ///< of the plan it follows in time; 0: none
+  float plan_time_s = 0.0F;        ///< τ of that plan as the robot has it
+  float reference_x_m = 0.0F;      ///< x_ref(τ) as the robot has it
+  float reference_y_m = 0.0F;
+
+  Vec2 reference_m() const { return {reference_x_m, reference_y_m}; }
 };
 
 /// Where a robot took another to be.
@@ -39,7 +46,10 @@ struct Track {
   std::vector<BeliefPoint> beliefs{};
   std::vector<std::uint32_t> processes{};  ///< one a life
   bool ended_gracefully = false;           ///< the last life noted "exit"
-  std::string unreadable{};                ///< why there is no black box; empty if there is one
+  /// A fallen robot's body stays at the last point until this time; a time before that point is
+  /// that of no body. Set by lay_fallen_bodies().
+  double body_until_s = 0.0;
+  std::string unreadable{};   ///< why there is no black box; empty if there is one
   std::uint64_t damaged = 0;  ///< stretches of the file that are no record, and steps back in time
   std::uint64_t late_steps = 0;   ///< later than kLate_us
   std::uint64_t refused = 0;      ///< messages, over all lives
@@ -56,23 +66,32 @@ struct RunEvent {
   std::string source, severity, code, text;
 };
 
+/// A plan as it was published.
+struct PublishedPlan {
+  std::uint32_t version = 0;  ///< 1 is the first
+  FlowPlan plan;
+};
+
 /// A run, read. Audits and reports are pure functions of it.
 struct RecordedRun {
   Mission mission;
-  std::optional<FlowPlan> plan{};
-  UtcTime begin{};              ///< first step in any black box
-  std::vector<Track> tracks{};  ///< by robot id, mission.robots.count of them
+  std::vector<PublishedPlan> plans{};  ///< by ascending version
+  UtcTime begin{};                     ///< first step in any black box
+  std::vector<Track> tracks{};         ///< by robot id, mission.robots.count of them
   std::vector<RunEvent> events{};
   std::vector<Scene> scenes{};     ///< the first as in the mission file
   std::string launcher_summary{};  ///< summary.json as it was then
+  std::vector<PlanClock> clock{};  ///< the plan's clock as published; stamps ascend
 
   /// Where the swarm was to be in the end.
   const Mixture& goal() const;
+  /// The plan that the mission started with; null if none was published.
+  const FlowPlan* first_plan() const { return plans.empty() ? nullptr : &plans.front().plan; }
 };
 
 /// Of a run directory, or of a recording of one. Fails (kEnvironment) if there is no readable
-/// mission or no black box at all. What single robots lack is told by their tracks; a missing plan
-/// or event log is no error.
+/// mission or no black box at all. What single robots lack is told by their tracks; a missing plan,
+/// clock or event log is no error.
 Result<RecordedRun> read_run(const std::filesystem::path& from);
 
 /// Makes a track of the records of one black box, with times since `origin`.

@@ -97,6 +97,10 @@ void add_figures(Page& page, const Audit& audit) {
   add_figure(page, fmt::format("{}", audit.refused_messages), "messages refused");
   add_figure(page, number(audit.cpu_s, 1, "s"), "CPU time of all processes");
   add_figure(page, number(audit.max_rss_mb, 1, "MB"), "memory of the largest process");
+  if (audit.collisions_fallen > 0) {
+    add_figure(page, fmt::format("{}", audit.collisions_fallen), "pairs that touched, one fallen",
+               Tone::kBad);
+  }
   if (audit.outside_bounds > 0) {
     add_figure(page, fmt::format("{}", audit.outside_bounds), "robots that left the world",
                Tone::kBad);
@@ -275,7 +279,7 @@ std::string paths_svg(const AuditedRun& audited) {
   MapSvg map(world_phases(run.mission.world, run.scenes).back().world);
   map.add_start(run.mission.start);
   map.add_goal(run.goal());
-  if (run.plan) map.add_plan(*run.plan);
+  if (const FlowPlan* plan = run.first_plan()) map.add_plan(*plan);
   for (std::size_t i = 0; i < run.tracks.size(); ++i) {
     std::vector<Vec2> points;
     for (const TrackPoint& point : run.tracks[i].points) points.push_back(point.position_m);
@@ -285,6 +289,11 @@ std::string paths_svg(const AuditedRun& audited) {
     map.add_contact(contact.at_m,
                     fmt::format("robots {} and {} touched at {:.1f} s: gap {:.3f} m", contact.robot,
                                 contact.other, contact.time_s, contact.gap_m));
+  }
+  for (const Approach& contact : audited.robots.fallen_contacts) {
+    map.add_contact(contact.at_m,
+                    fmt::format("robots {} and {} touched at {:.1f} s, one fallen: gap {:.3f} m",
+                                contact.robot, contact.other, contact.time_s, contact.gap_m));
   }
   for (const Approach& contact : audited.obstacles.contacts) {
     map.add_contact(contact.at_m,

@@ -158,6 +158,31 @@ struct LauncherSpec {
   std::uint32_t respawn_agent_max = 0;
 };
 
+/// What the audit demands of a run beyond arrival and no contact. A bar that is not set is not
+/// judged; one whose quantity cannot be computed from the run fails it. The quantities and how they
+/// are measured: swarm_monitor/tracking/tracking.hpp.
+struct CriteriaSpec {
+  using Bar = std::optional<double>;
+  Bar w2_ratio_max{};       ///< mean W2 of swarm and χ(τ) over the mean floor of sampling
+  Bar w2_half_ratio_max{};  ///< the same while at most half of the robots have arrived
+  Bar w2_end_ratio_max{};   ///< W2 of the last positions to the goal mixture over its floor
+  Bar centre_lag_max_s{};   ///< amount of the signed lag of the swarm's centre
+  Bar lag_p90_max_s{};      ///< 90 % of the amounts of the robots' signed lags
+  Bar lag_p99_max_s{};
+  Bar clock_error_max_s{};    ///< amount by which a robot's τ differs from the published one
+  Bar reference_p50_max_m{};  ///< distance of robots under way to their own references
+  Bar reference_p95_max_m{};
+  Bar reference_rms_max_m{};
+  Bar density_over_cap_p95_max{};  ///< flown peak over the cap, minus 1, at 95 % of times
+  Bar density_over_cap_max{};      ///< … always
+  Bar planned_over_cap_max{};      ///< planned peak over the cap, minus 1, always
+  Bar cvar_kept_share_min{};  ///< share of times with the executed CVaR ≤ planner.risk_delta_m
+  Bar own_place_share_min{};  ///< share of robots within 0.7 m of their last reference
+  Bar path_ratio_max{};       ///< mean path over the geodesic bound
+  Bar mission_over_plan_max_s{};  ///< mission time minus the first plan's duration
+  Bar arrival_spread_max_s{};     ///< from 5 % to 95 % of the arrival times
+};
+
 struct Mission;
 /// The largest sensing range of any robot [m].
 double hears_farthest_m(const Mission& mission);
@@ -184,6 +209,7 @@ struct Mission {
   TimingSpec timing;
   PlanClockSpec plan_clock;
   LauncherSpec launcher;
+  CriteriaSpec criteria;
   std::vector<ScriptEvent> script;  ///< ordered by at_s
 };
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string_view>
 #include <variant>
 
@@ -13,10 +14,12 @@
 /// writer and the tests.
 namespace swarm::mission_fields {
 
+/// A number that may be left out is written back only where it is set.
 template <class Section>
 struct Field {
   std::string_view key;
-  std::variant<double Section::*, std::uint32_t Section::*> member;
+  std::variant<double Section::*, std::uint32_t Section::*, std::optional<double> Section::*>
+      member;
   yaml::Range range;
 };
 
@@ -157,6 +160,27 @@ inline constexpr std::array<Field<LauncherSpec>, 7> kLauncher{{
     {"time_limit_s", &LauncherSpec::time_limit_s, positive(1e6)},
     {"respawn_planner_max", &LauncherSpec::respawn_planner_max, between(0, 1000)},
     {"respawn_agent_max", &LauncherSpec::respawn_agent_max, between(0, 1000)},
+}};
+
+inline constexpr std::array<Field<CriteriaSpec>, 18> kCriteria{{
+    {"w2_ratio_max", &CriteriaSpec::w2_ratio_max, positive(1000)},
+    {"w2_half_ratio_max", &CriteriaSpec::w2_half_ratio_max, positive(1000)},
+    {"w2_end_ratio_max", &CriteriaSpec::w2_end_ratio_max, positive(1000)},
+    {"centre_lag_max_s", &CriteriaSpec::centre_lag_max_s, positive(3600)},
+    {"lag_p90_max_s", &CriteriaSpec::lag_p90_max_s, positive(3600)},
+    {"lag_p99_max_s", &CriteriaSpec::lag_p99_max_s, positive(3600)},
+    {"clock_error_max_s", &CriteriaSpec::clock_error_max_s, positive(3600)},
+    {"reference_p50_max_m", &CriteriaSpec::reference_p50_max_m, positive(kMaxExtent_m)},
+    {"reference_p95_max_m", &CriteriaSpec::reference_p95_max_m, positive(kMaxExtent_m)},
+    {"reference_rms_max_m", &CriteriaSpec::reference_rms_max_m, positive(kMaxExtent_m)},
+    {"density_over_cap_p95_max", &CriteriaSpec::density_over_cap_p95_max, between(-1, 1000)},
+    {"density_over_cap_max", &CriteriaSpec::density_over_cap_max, between(-1, 1000)},
+    {"planned_over_cap_max", &CriteriaSpec::planned_over_cap_max, between(-1, 1000)},
+    {"cvar_kept_share_min", &CriteriaSpec::cvar_kept_share_min, between(0, 1)},
+    {"own_place_share_min", &CriteriaSpec::own_place_share_min, between(0, 1)},
+    {"path_ratio_max", &CriteriaSpec::path_ratio_max, positive(1000)},
+    {"mission_over_plan_max_s", &CriteriaSpec::mission_over_plan_max_s, between(-1e6, 1e6)},
+    {"arrival_spread_max_s", &CriteriaSpec::arrival_spread_max_s, positive(1e6)},
 }};
 
 }  // namespace swarm::mission_fields

@@ -58,6 +58,7 @@ class MissionReader {
     read_section(top, "timing", mission_.timing, mission_fields::kTiming);
     read_section(top, "plan_clock", mission_.plan_clock, mission_fields::kPlanClock);
     read_section(top, "launcher", mission_.launcher, mission_fields::kLauncher);
+    read_section(top, "criteria", mission_.criteria, mission_fields::kCriteria);
     if (const Node* node = top.take("script")) read_script(*node);
     top.finish();
     if (top.is_map()) check_rules();
@@ -156,14 +157,15 @@ class MissionReader {
     const bool good = std::visit(
         [&](auto member) {
           using T = std::remove_reference_t<decltype(section.*member)>;
-          std::optional<T> read;
-          if constexpr (std::is_same_v<T, double>) {
-            read = yaml::read_number(value, path, field.range, violations_);
+          if constexpr (std::is_same_v<T, std::uint32_t>) {
+            const auto read = yaml::read_count(value, path, field.range, violations_);
+            if (read) section.*member = *read;
+            return read.has_value();
           } else {
-            read = yaml::read_count(value, path, field.range, violations_);
+            const auto read = yaml::read_number(value, path, field.range, violations_);
+            if (read) section.*member = *read;
+            return read.has_value();
           }
-          if (read) section.*member = *read;
-          return read.has_value();
         },
         field.member);
     if (good) {

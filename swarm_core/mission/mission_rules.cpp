@@ -43,7 +43,7 @@ double least_hear_radius_m(const Mission& mission) {
 
 std::vector<BrokenRule> broken_rules(const Mission& mission) {
   const auto& [name, world, robots, start, goal, goal_shape, planner, control, safety, link, timing,
-               plan_clock, launcher, script] = mission;
+               plan_clock, launcher, criteria, script] = mission;
   Rules rules;
   rules.at_most({"planner.sigma_min_m", planner.sigma_min_m},
                 {"planner.sigma_max_m", planner.sigma_max_m});

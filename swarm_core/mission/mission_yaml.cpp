@@ -69,9 +69,26 @@ template <class Section, std::size_t N>
 void write_fields(Out out, const Section& section,
                   const std::array<mission_fields::Field<Section>, N>& fields) {
   for (const auto& field : fields) {
-    std::visit([&](auto member) { fmt::format_to(out, "  {}: {}\n", field.key, section.*member); },
-               field.member);
+    const auto write = [&](const auto& value) {
+      fmt::format_to(out, "  {}: {}\n", field.key, value);
+    };
+    std::visit(
+        [&](auto member) {
+          if constexpr (requires { (section.*member).has_value(); }) {
+            if (section.*member) write(*(section.*member));
+          } else {
+            write(section.*member);
+          }
+        },
+        field.member);
   }
+}
+
+/// A section must not be empty, and none of its keys need be set.
+void write_criteria(Out out, const CriteriaSpec& criteria) {
+  std::string keys;
+  write_fields(Out(keys), criteria, mission_fields::kCriteria);
+  if (!keys.empty()) fmt::format_to(out, "criteria:\n{}", keys);
 }
 
 void write_robots(Out out, const RobotsSpec& robots) {
@@ -136,6 +153,7 @@ std::string to_yaml(const Mission& mission) {
   write_fields(out, mission.plan_clock, mission_fields::kPlanClock);
   fmt::format_to(out, "launcher:\n");
   write_fields(out, mission.launcher, mission_fields::kLauncher);
+  write_criteria(out, mission.criteria);
   write_script(out, mission.script);
   return text;
 }

@@ -31,10 +31,10 @@ std::uint64_t periods_a_point(const Mission& mission) {
 class PlanKept final : public SimulationObserver {
  public:
   void on_plan(std::uint32_t version, const planner::PlanResult& planned) override {
-    if (version == 1) first = planned.plan;
+    plans.push_back({version, planned.plan});
   }
   void on_scene(const Scene& scene, const SceneChange&) override { scenes.push_back(scene); }
-  std::optional<FlowPlan> first;
+  std::vector<monitor::PublishedPlan> plans;
   std::vector<Scene> scenes;
 };
 
@@ -99,7 +99,7 @@ Result<Flown> fly(const Mission& mission, const SimulationOptions& options, bool
               .wall_s = to_seconds(std::chrono::steady_clock::now() - begin)};
   const Simulation::Cost cost = (*simulation)->cost();
   const monitor::AuditedRun audited = monitor::audit_recorded({.mission = mission,
-                                                               .plan = plan.first,
+                                                               .plans = plan.plans,
                                                                .begin = Simulation::begin_utc(),
                                                                .tracks = recording.tracks(),
                                                                .scenes = plan.scenes});

@@ -95,7 +95,7 @@ void RecordedSource::make_scenes() {
     scenes_.push_back(scene_json({.mission = run_.mission,
                                   .world = phase.world,
                                   .goal = *goal,
-                                  .plan = run_.plan ? &*run_.plan : nullptr,
+                                  .plan = run_.first_plan(),
                                   .from_s = from_s,
                                   .end_s = end_s_}));
   }
@@ -128,8 +128,8 @@ void RecordedSource::picture(std::optional<double> time_s, std::optional<RobotId
                              std::vector<std::byte>& out) {
   const double t = std::clamp(time_s.value_or(end_s_), 0.0, end_s_);
   std::optional<Mixture> mixture;
-  if (run_.plan) {
-    mixture = run_.plan->mixture_at(MissionTime(std::max(0.0, t - moving_from_s_)));
+  if (const FlowPlan* plan = run_.first_plan()) {
+    mixture = plan->mixture_at(MissionTime(std::max(0.0, t - moving_from_s_)));
   }
   PictureMaker maker(out, static_cast<std::uint32_t>(run_.tracks.size()), t,
                      t >= end_s_ ? kEndedPhase : static_cast<std::uint32_t>(MissionPhase::kRunning),

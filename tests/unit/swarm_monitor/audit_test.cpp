@@ -106,6 +106,32 @@ TEST(Audit, FindsContactsBetweenTheTicks) {
   EXPECT_EQ(audit.outside_bounds, 1U);
 }
 
+TEST(Audit, FailsARunInWhichARobotLeftTheWorld) {
+  SyntheticRun files(2);
+  std::vector<Vec2> strays = straight({5, 5}, {5, -0.1}, 10);
+  for (const Vec2& p : straight({5, -0.1}, {30, 5}, 200)) strays.push_back(p);
+  files.write(0, {.positions_m = strays});
+  files.write(1, {.positions_m = straight({5, 15}, {30, 15}, 200), .goal = 1});
+
+  const Audit audit = audit_of(files);
+
+  EXPECT_EQ(audit.outside_bounds, 1U);
+  EXPECT_EQ(audit.reasons, (std::vector<std::string>{"1 left the world's bounds: robot 0"}));
+}
+
+TEST(Audit, LetsTheFallenLieWhereTheyFell) {
+  SyntheticRun files(3);
+  files.write(0, {.positions_m = straight({5, 5}, {12, 5}, 50), .graceful = false});
+  files.write(1, {.positions_m = straight({2, 5}, {30, 5}, 400)});
+  files.write(2, {.positions_m = straight({5, 15}, {30, 15}, 200), .goal = 1});
+
+  const Audit audit = audit_of(files);
+
+  EXPECT_EQ(audit.collisions_fallen, 1U);
+  EXPECT_EQ(audit.collisions_robot, 0U);
+  EXPECT_EQ(audit.reasons.back(), "1 pairs touched after one had fallen: 0-1");
+}
+
 TEST(Audit, FindsRobotsInObstacles) {
   SyntheticRun files(2);
   files.write(0, {.positions_m = straight({5, 10}, {30, 10}, 100)});
@@ -234,7 +260,7 @@ TEST(Audit, IsADocumentWithEveryKey) {
                           "stop_latency_ms", "state_age_ms", "belief_error_cm", "plan_ms"}) {
     EXPECT_TRUE(json.at(key).is_null()) << key;
   }
-  EXPECT_EQ(json.size(), 27U);
+  EXPECT_EQ(json.size(), 28U);
 }
 
 }  // namespace

@@ -130,6 +130,68 @@ TEST(RobotClearance, SurvivesRobotsThatJump) {
   EXPECT_NEAR(clearance.nearest.gap_m, std::sqrt(0.125) - 0.4, 1e-6);
 }
 
+TEST(RobotClearance, LetsTheBodyOfAFallenRobotLie) {
+  // The first one falls at 2 s at (10, 0); the second one drives over that place at 8 s.
+  Track fallen = make({{0.0, {8, 0}}, {2.0, {10, 0}}});
+  const Track other = make({{0.0, {0, 0}}, {8.0, {10, 0}}, {12.0, {15, 0}}});
+  const std::vector<Track> vanished{fallen, other};
+  fallen.body_until_s = 20.0;
+  const std::vector<Track> lying{fallen, other};
+  fallen.body_until_s = 6.0;  // cleared before the other one comes
+  const std::vector<Track> cleared{fallen, other};
+
+  EXPECT_TRUE(robot_clearance(vanished).fallen_contacts.empty());
+  EXPECT_TRUE(robot_clearance(cleared).fallen_contacts.empty());
+  const Clearance clearance = robot_clearance(lying);
+  ASSERT_EQ(clearance.fallen_contacts.size(), 1U);
+  EXPECT_NEAR(clearance.fallen_contacts[0].gap_m, -0.4, 1e-9);
+  EXPECT_NEAR(clearance.fallen_contacts[0].time_s, 8.0, 1e-9);
+  EXPECT_TRUE(clearance.contacts.empty()) << "what both did alive is counted apart";
+  EXPECT_NEAR(clearance.nearest.gap_m, robot_clearance(vanished).nearest.gap_m, 1e-12);
+}
+
+TEST(RobotClearance, CountsFallenBodiesAsTheComparisonOfAllPairs) {
+  Rng rng(6);
+  for (int round = 0; round < 10; ++round) {
+    std::vector<Track> tracks;
+    for (int i = 0; i < 25; ++i) {
+      tracks.push_back(random_walk(rng, 12.0, 20 + 10 * (i % 5)));
+      if (i % 3 == 0) tracks.back().body_until_s = 30.0;
+    }
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> touching;
+    for (std::uint32_t i = 0; i < tracks.size(); ++i) {
+      for (std::uint32_t j = i + 1; j < tracks.size(); ++j) {
+        // From the fall on, the body as a track of its own.
+        const auto touches = [&](const Track& body, const Track& robot) {
+          const TrackPoint& last = body.points.back();
+          if (body.body_until_s <= last.time_s) return false;
+          Track lies{.radius_m = body.radius_m};
+          for (const double t : {last.time_s, body.body_until_s}) {
+            lies.points.push_back({.time_s = t, .position_m = last.position_m});
+          }
+          Track there = robot;
+          if (there.body_until_s > there.points.back().time_s) {
+            there.points.push_back(
+                {.time_s = there.body_until_s, .position_m = there.points.back().position_m});
+          }
+          return approach_of(lies, there, -kInfinity, kInfinity).gap_m <= 0.0;
+        };
+        if (touches(tracks[i], tracks[j]) || touches(tracks[j], tracks[i])) {
+          touching.emplace_back(i, j);
+        }
+      }
+    }
+
+    const Clearance clearance = robot_clearance(tracks);
+
+    ASSERT_EQ(clearance.fallen_contacts.size(), touching.size()) << round;
+    for (std::size_t k = 0; k < touching.size(); ++k) {
+      EXPECT_EQ(clearance.fallen_contacts[k].robot, touching[k].first);
+      EXPECT_EQ(clearance.fallen_contacts[k].other, touching[k].second);
+    }
+  }
+}
+
 TEST(RobotClearance, OfOneRobotIsInfinite) {
   const std::vector<Track> tracks{make({{0.0, {0, 0}}, {5.0, {1, 1}}}), Track{}};
 

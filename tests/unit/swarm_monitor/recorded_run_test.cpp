@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "swarm_core/plan/plan_json.hpp"
 #include "synthetic_run.hpp"
 
 namespace swarm::monitor {
@@ -73,6 +74,58 @@ TEST(RecordedRun, ReadsEventsAndLeavesOutWhatIsNone) {
   ASSERT_EQ(run->events.size(), 1U);
   EXPECT_NEAR(run->events[0].time_s, 1.5, 1e-9);
   EXPECT_EQ(run->events[0].code, "plan");
+}
+
+/// A plan that ends after so many seconds.
+FlowPlan plan_of(double duration_s) {
+  const Gaussian gaussian;
+  const auto plan = FlowPlan::make(
+      {{gaussian, MissionTime(0.0), 1.0}, {gaussian, MissionTime(duration_s), 1.0}}, {{0, 1, 1.0}});
+  EXPECT_TRUE(plan.has_value());
+  return plan.value_or(FlowPlan{});
+}
+
+TEST(RecordedRun, ReadsAllPlansByVersionAndTheirClock) {
+  SyntheticRun files(1);
+  files.write(0, {.positions_m = straight({5, 5}, {6, 5}, 10)});
+  files.write_file("plan.json", to_json(plan_of(10.0)));
+  files.write_file("plan-0002.json", to_json(plan_of(20.0)));
+  files.write_file("plan-12345.json", to_json(plan_of(30.0)));
+  files.write_file("plan-0003.json", "cut");
+  files.write_file("plan_stats.json", to_json(plan_of(40.0)));
+  files.write_file("plan-x.json", to_json(plan_of(50.0)));
+  const PlanClock first{.stamp = at_s(0.5), .plan_version = 1, .plan_time_s = 0.0, .rate = 1.0};
+  const PlanClock second{.stamp = at_s(0.8), .plan_version = 2, .plan_time_s = 0.0, .rate = 0.5};
+  files.write_file("plan_clock.jsonl", plan_clock_line(first) + plan_clock_line(second));
+
+  const auto run = read_run(files.dir());
+
+  ASSERT_TRUE(run.has_value());
+  ASSERT_EQ(run->plans.size(), 3U);
+  const std::vector<std::pair<std::uint32_t, double>> expected{{1, 10.0}, {2, 20.0}, {12345, 30.0}};
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    EXPECT_EQ(run->plans[i].version, expected[i].first);
+    EXPECT_EQ(run->plans[i].plan.duration().count(), expected[i].second);
+  }
+  EXPECT_EQ(run->first_plan(), &run->plans[0].plan);
+  ASSERT_EQ(run->clock.size(), 2U);
+  EXPECT_EQ(run->clock[1].rate, 0.5);
+}
+
+TEST(RecordedRun, ReadsWhatARobotTakesAsItsReference) {
+  TrackMaker maker(RobotId(0), at_s(0.0));
+  maker.add(blackbox::Step{.stamp = at_s(0.1),
+                           .plan_version = 3,
+                           .plan_time_s = 12.5F,
+                           .reference_x_m = 4.0F,
+                           .reference_y_m = -2.5F});
+
+  const Track track = maker.finish();
+
+  ASSERT_EQ(track.points.size(), 1U);
+  EXPECT_EQ(track.points[0].plan_version, 3U);
+  EXPECT_EQ(track.points[0].plan_time_s, 12.5F);
+  EXPECT_EQ(track.points[0].reference_m(), Vec2(4.0, -2.5));
 }
 
 TEST(RecordedRun, NeedsAMissionAndABlackBox) {

@@ -57,6 +57,7 @@ safety: {gap_share: 0.5, follow_share: 0.1}
 link: {cell_size_m: 12, send_error_m: 0.01}
 timing: {heartbeat_hz: 10}
 launcher: {quorum_share: 0.9, respawn_agent_max: 2}
+criteria: {w2_ratio_max: 1.15, density_over_cap_max: -0.1, own_place_share_min: 0}
 script:
   - {at_s: 5, action: pause}
   - {at_s: 5, action: add_obstacle, circle_m: {center: [8, 8], radius: 0.3}}
@@ -125,7 +126,11 @@ void expect_same(const Section& a, const Section& b,
                                   : std::is_same_v<Section, ControlSpec> ? 2
                                   : std::is_same_v<Section, BodySpec>    ? 1
                                                                          : 0;
-  static_assert(members_of<Section>() == N + kOthers);
+  if constexpr (std::is_same_v<Section, CriteriaSpec>) {
+    static_assert(sizeof(Section) == N * sizeof(std::optional<double>));
+  } else {
+    static_assert(members_of<Section>() == N + kOthers);
+  }
   for (const auto& field : fields) {
     std::visit([&](auto member) { EXPECT_EQ(a.*member, b.*member) << field.key; }, field.member);
   }
@@ -152,12 +157,15 @@ void expect_same(const Mission& a, const Mission& b) {
     expect_same_body(a.robots.groups[i], b.robots.groups[i]);
   }
   EXPECT_EQ(a.control.method, b.control.method);
+  EXPECT_EQ(a.control.tracking, b.control.tracking);
   expect_same(a.planner, b.planner, mission_fields::kPlanner);
   expect_same(a.control, b.control, mission_fields::kControl);
   expect_same(a.safety, b.safety, mission_fields::kSafety);
   expect_same(a.link, b.link, mission_fields::kLink);
   expect_same(a.timing, b.timing, mission_fields::kTiming);
+  expect_same(a.plan_clock, b.plan_clock, mission_fields::kPlanClock);
   expect_same(a.launcher, b.launcher, mission_fields::kLauncher);
+  expect_same(a.criteria, b.criteria, mission_fields::kCriteria);
   ASSERT_EQ(a.script.size(), b.script.size());
   for (std::size_t i = 0; i < a.script.size(); ++i) {
     EXPECT_EQ(a.script[i].at_s, b.script[i].at_s);
@@ -215,6 +223,9 @@ TEST(MissionFile, ReadsEverySection) {
   EXPECT_EQ(mission->control.rate_hz, 20.0);
   EXPECT_EQ(mission->launcher.respawn_agent_max, 2U);
   ASSERT_EQ(mission->script.size(), 9U);
+  EXPECT_EQ(mission->criteria.w2_ratio_max, 1.15);
+  EXPECT_EQ(mission->criteria.own_place_share_min, 0.0);
+  EXPECT_FALSE(mission->criteria.centre_lag_max_s.has_value());
   EXPECT_EQ(mission->script[6].at_s, 7.25);
   const auto change = [&](std::size_t i) {
     return std::get<SceneChange>(mission->script[i].action);

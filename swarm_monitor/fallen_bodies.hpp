@@ -1,0 +1,15 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "swarm_monitor/recorded_run.hpp"
+
+namespace swarm::monitor {
+
+/// Lets the bodies of fallen robots lie: a robot whose log ends without "exit" stays at its last
+/// point until the end of the run. One whose log goes on has been respawned: its body is that of
+/// the track, also between the two lives. Whatever clears a body before the end sets an earlier
+/// time here. O(robots).
+void lay_fallen_bodies(RecordedRun& run);
+
+}  // namespace swarm::monitor

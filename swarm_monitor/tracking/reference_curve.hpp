@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "swarm_core/base/linalg.hpp"
+
+namespace swarm::monitor {
+
+/// Where a plan has one robot over plan time, x_ref(τ), put together from what that robot logged:
+/// straight between its entries, and beyond the first and the last one on at the speed it had there
+/// for kBeyond_s, since a plan in force for a few seconds shows only a few seconds of its curve.
+class ReferenceCurve {
+ public:
+  static constexpr double kSpacing_s = 0.2;  ///< entries nearer than this are left out
+  static constexpr double kBeyond_s = 10.0;
+  static constexpr double kWindow_s = 60.0;  ///< lags are looked for up to here
+  static constexpr double kAtRest_m = 0.7;   ///< this near to a waiting reference is in time
+  static constexpr double kRest_mps = 0.1;   ///< a slower reference waits
+
+  /// Entries that do not ascend in τ are left out.
+  void add(double plan_time_s, const Vec2& reference_m);
+  bool empty() const { return entries_.empty(); }
+
+  /// x_ref(τ). O(log entries). \pre not empty
+  Vec2 at(double plan_time_s) const;
+
+  /// Signed lag of a position at τ [s]: τ minus the time τ' within the window at which the
+  /// reference passes nearest; of several such times the one nearest to τ, so that a reference that
+  /// waits is an interval, with 0 inside it. Late is positive. A robot within kAtRest_m of a
+  /// reference that waits at τ is in time: how long it has been waiting says nothing of how long
+  /// that robot needs to get there. O(entries in the window). \pre not empty
+  double lag_s(const Vec2& position_m, double plan_time_s) const;
+
+ private:
+  struct Entry {
+    double plan_time_s = 0.0;
+    Vec2 at_m = Vec2::Zero();
+  };
+  /// The straight pieces: piece k ends at entry k; the first and the last lie beyond the entries.
+  std::size_t pieces() const { return entries_.size() + 1; }
+  std::pair<Entry, Entry> piece(std::size_t k) const;
+  bool waits_at(double plan_time_s) const;
+
+  std::vector<Entry> entries_;
+};
+
+}  // namespace swarm::monitor
