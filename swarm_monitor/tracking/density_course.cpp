@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "swarm_core/mission/body_limits.hpp"
 #include "swarm_monitor/tracking/quantile.hpp"
 #include "swarm_monitor/tracking/swarm_walk.hpp"
 
@@ -20,8 +21,12 @@ std::optional<double> DensityCourse::over_cap(double peak_per_m2) const {
 }
 
 std::optional<double> density_cap_of(const Mission& mission) {
-  const double cap = mission.planner.density_cap_per_m2;
-  return cap > 0.0 ? std::optional(cap) : std::nullopt;
+  const PlannerSpec& planner = mission.planner;
+  if (planner.density_cap_per_m2) {
+    return *planner.density_cap_per_m2 > 0.0 ? planner.density_cap_per_m2 : std::nullopt;
+  }
+  if (planner.method != "swarmprm") return std::nullopt;
+  return swarm_limits(mission.robots, mission.safety, mission.control).cap_per_m2;
 }
 
 std::optional<DensityCourse> density_course(const RecordedRun& run,
