@@ -171,6 +171,9 @@ void PlanKeeper::publish(SteadyTime now, Step& step) {
   step.publish = true;
   ++version_;
   governor_.issue(version_, now);
+  for (const PlanWarning& warning : newest_.planned.warnings) {
+    step.notices.push_back({true, warning.code, warning.text});
+  }
   planned_scene_ = scene_.version;
 }
 

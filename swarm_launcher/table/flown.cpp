@@ -33,10 +33,27 @@ class PlanKept final : public SimulationObserver {
   void on_plan(std::uint32_t version, const planner::PlanResult& planned) override {
     plans.push_back({version, planned.plan});
   }
+  void on_clock(const PlanClock& reading) override { clock.push_back(reading); }
   void on_scene(const Scene& scene, const SceneChange&) override { scenes.push_back(scene); }
   std::vector<monitor::PublishedPlan> plans;
+  std::vector<PlanClock> clock;
   std::vector<Scene> scenes;
 };
+
+void take_tracking(const monitor::Tracking& tracking, Flown& flown) {
+  if (tracking.w2) {
+    flown.w2_m = tracking.w2->w2_m;
+    flown.w2_floor_m = tracking.w2->floor_m;
+  }
+  flown.centre_lag_s = tracking.centre_lag_s.value_or(Flown::kUnknown);
+  if (tracking.own.lag) flown.lag_p90_s = tracking.own.lag->p90_s;
+  if (tracking.density) {
+    flown.density_per_m2 = tracking.density->worst_per_m2;
+    flown.density_p95_per_m2 = tracking.density->p95_per_m2;
+    flown.planned_density_per_m2 = tracking.density->planned_worst_per_m2;
+  }
+  flown.over_plan_s = tracking.mission_over_plan_s.value_or(Flown::kUnknown);
+}
 
 double risk_share(const monitor::RecordedRun& run) {
   const double near_m = -run.mission.planner.risk_delta_m;
@@ -100,6 +117,7 @@ Result<Flown> fly(const Mission& mission, const SimulationOptions& options, bool
   const Simulation::Cost cost = (*simulation)->cost();
   const monitor::AuditedRun audited = monitor::audit_recorded({.mission = mission,
                                                                .plans = plan.plans,
+                                                               .clock = plan.clock,
                                                                .begin = Simulation::begin_utc(),
                                                                .tracks = recording.tracks(),
                                                                .scenes = plan.scenes});
@@ -118,6 +136,7 @@ Result<Flown> fly(const Mission& mission, const SimulationOptions& options, bool
     flown.clearance_m += gap_m / static_cast<double>(audited.obstacles.by_robot_m.size());
   }
   flown.risk_share = risk_share(audited.run);
+  take_tracking(audit.tracking, flown);
   if (mission.control.method == "intermittent_diffusion") flown.energy_m2 = energy_m2(audited.run);
   if (!draw) return flown;
   flown.paths_svg = monitor::paths_svg(audited);

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <span>
 #include <string>
 #include <vector>
@@ -33,6 +34,16 @@ struct Flown {
   double clearance_m = 0.0;
   /// Share of robot-time nearer to an obstacle than planner.risk_delta_m allows: −sdf > δ.
   double risk_share = 0.0;
+  // How the published plan was kept (monitor::Tracking); NaN where it was not measured.
+  static constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+  double w2_m = kUnknown;        ///< of the swarm to χ(τ), mean over time
+  double w2_floor_m = kUnknown;  ///< of two samples of χ(τ)
+  double centre_lag_s = kUnknown;
+  double lag_p90_s = kUnknown;
+  double density_per_m2 = kUnknown;          ///< largest flown, discs of 2 m radius
+  double density_p95_per_m2 = kUnknown;      ///< … at 95 % of times no more
+  double planned_density_per_m2 = kUnknown;  ///< largest of the plan, the same discs
+  double over_plan_s = kUnknown;             ///< mission time minus the plan's duration
   /// E = max (F + G) over the robots, of shapes that are filled.
   std::vector<double> energy_m2{};
   static constexpr double kEnergyEvery_s = 0.1;
@@ -42,6 +53,7 @@ struct Flown {
   std::vector<double> obstacle_gaps_m{};  ///< and to obstacles
 
   double ratio() const { return bound_m > 0.0 ? path_m / bound_m : 0.0; }
+  double w2_ratio() const { return w2_m / w2_floor_m; }
 };
 
 /// Simulates and audits in memory.

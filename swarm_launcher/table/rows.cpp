@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "swarm_launcher/table/rows.hpp"
 
+#include <cmath>
 #include <cstdio>
 
 #include <fmt/format.h>
@@ -15,21 +16,33 @@ namespace swarm::launcher {
 namespace {
 
 constexpr std::string_view kOurs =
-    "wall s | mean path m (std) | / bound | mission s | arrived % | contacts | least gap robot / "
-    "obstacle m";
+    "plan ms | wall s | mean path m (std) | / bound | mission s | arrived % | contacts | least gap "
+    "robot / obstacle m | W2 / floor | centre lag s | density flown (planned) per m2";
+
+/// What was not measured, as without a plan in time, is a dash.
+std::string known(fmt::string_view format, double value) {
+  return std::isfinite(value) ? fmt::vformat(format, fmt::make_format_args(value)) : "–";
+}
 
 std::string cells(const Row& row) {
   const auto mean = [&](auto of) { return row.mean(of); };
   return fmt::format(
-      "{:.3g} | {:.1f} ({:.2f}) | {:.3f} | {:.0f} | {:.4g} | {:.3g} | {:#.2g} / {:#.2g}",
-      mean([](const Flown& f) { return f.wall_s; }), mean([](const Flown& f) { return f.path_m; }),
+      "{:.3g} | {:.3g} | {:.1f} ({:.2f}) | {:.3f} | {:.0f}{} | {:.4g} | {:.3g} | {:#.2g} / {:#.2g} "
+      "| "
+      "{} | {} | {}",
+      mean([](const Flown& f) { return f.plan_ms; }), mean([](const Flown& f) { return f.wall_s; }),
+      mean([](const Flown& f) { return f.path_m; }),
       row.deviation([](const Flown& f) { return f.path_m; }),
       mean([](const Flown& f) { return f.ratio(); }),
-      mean([](const Flown& f) { return f.mission_s; }),
+      mean([](const Flown& f) { return f.mission_s; }), row.all_completed() ? "" : ", time limit",
       100.0 * mean([](const Flown& f) { return 1.0 * f.arrived / f.robots; }),
       mean([](const Flown& f) { return 1.0 * f.contacts; }),
       row.least([](const Flown& f) { return f.robot_gap_m; }),
-      row.least([](const Flown& f) { return f.obstacle_gap_m; }));
+      row.least([](const Flown& f) { return f.obstacle_gap_m; }),
+      known("{:.2f}", mean([](const Flown& f) { return f.w2_ratio(); })),
+      known("{:+.1f}", mean([](const Flown& f) { return f.centre_lag_s; })),
+      known("{:.1f}", mean([](const Flown& f) { return f.density_per_m2; })) +
+          known(" ({:.1f})", mean([](const Flown& f) { return f.planned_density_per_m2; })));
 }
 
 nlohmann::ordered_json to_json(const Row& row) {
@@ -49,7 +62,15 @@ nlohmann::ordered_json to_json(const Row& row) {
                      {"min_robot_gap_m", f.robot_gap_m},
                      {"min_obstacle_gap_m", f.obstacle_gap_m},
                      {"clearance_m", f.clearance_m},
-                     {"risk_share", f.risk_share}});
+                     {"risk_share", f.risk_share},
+                     {"w2_m", f.w2_m},
+                     {"w2_floor_m", f.w2_floor_m},
+                     {"centre_lag_s", f.centre_lag_s},
+                     {"lag_p90_s", f.lag_p90_s},
+                     {"density_per_m2", f.density_per_m2},
+                     {"density_p95_per_m2", f.density_p95_per_m2},
+                     {"planned_density_per_m2", f.planned_density_per_m2},
+                     {"mission_over_plan_s", f.over_plan_s}});
   }
   return {{"name", row.name}, {"seeds", std::move(seeds)}};
 }

@@ -46,9 +46,13 @@ struct Row {
     for (const Flown& f : flown) low = std::min(low, of(f));
     return low;
   }
+  bool all_completed() const {
+    return std::all_of(flown.begin(), flown.end(),
+                       [](const Flown& f) { return f.outcome == Outcome::kCompleted; });
+  }
   bool good() const {
     return !must_hold || std::all_of(flown.begin(), flown.end(), [](const Flown& f) {
-      return f.arrived == f.robots && f.contacts == 0;
+      return f.outcome == Outcome::kCompleted && f.arrived == f.robots && f.contacts == 0;
     });
   }
 };

@@ -122,7 +122,7 @@ void LiveSource::picture(std::optional<double>, std::optional<RobotId> focus,
                          std::vector<std::byte>& out) {
   const auto& robots = state_.robots();
   std::optional<Mixture> mixture;
-  if (state_.plan()) mixture = state_.plan()->mixture_at(MissionTime(state_.mission_time_s(now_)));
+  if (state_.plan()) mixture = state_.plan()->mixture_at(MissionTime(state_.plan_time_s(now_)));
   PictureMaker maker(out, static_cast<std::uint32_t>(robots.size()),
                      state_.begin() ? to_seconds(now_ - *state_.begin()) : 0.0,
                      static_cast<std::uint32_t>(state_.phase()), mixture);
@@ -166,6 +166,8 @@ std::string LiveSource::metrics() const {
   m.add("swarm_phase", "gauge", "0 ready, 1 running, 2 paused, 3 stopped.",
         static_cast<int>(state_.phase()));
   m.add("swarm_mission_seconds", "gauge", "Time of the mission.", state_.mission_time_s(now_));
+  m.add("swarm_plan_seconds", "gauge", "Time of the plan's clock.", state_.plan_time_s(now_));
+  m.add("swarm_plan_rate", "gauge", "Seconds of plan time per second.", state_.plan_rate());
   m.add("swarm_plan_version", "gauge", "Version of the plan.", state_.plan_version());
   m.add("swarm_states_received_total", "counter", "States heard, each once.", states.received);
   m.add("swarm_states_lost_total", "counter", "States whose numbers were skipped.", states.lost);

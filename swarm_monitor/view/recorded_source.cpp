@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "swarm_monitor/clearance.hpp"
+#include "swarm_monitor/tracking/plan_timeline.hpp"
 #include "swarm_monitor/view/picture.hpp"
 #include "swarm_monitor/view/scene_json.hpp"
 
@@ -69,14 +70,8 @@ std::vector<PictureBelief> beliefs_at(const Track& track, double time_s) {
 }  // namespace
 
 RecordedSource::RecordedSource(RecordedRun run) : run_(std::move(run)) {
-  moving_from_s_ = std::numeric_limits<double>::infinity();
   for (const Track& track : run_.tracks) {
     if (!track.points.empty()) end_s_ = std::max(end_s_, track.points.back().time_s);
-    for (const TrackPoint& point : track.points) {
-      if (point.mode != RobotMode::kMoving) continue;
-      moving_from_s_ = std::min(moving_from_s_, point.time_s);
-      break;
-    }
   }
   make_scenes();
   make_events();
@@ -128,9 +123,7 @@ void RecordedSource::picture(std::optional<double> time_s, std::optional<RobotId
                              std::vector<std::byte>& out) {
   const double t = std::clamp(time_s.value_or(end_s_), 0.0, end_s_);
   std::optional<Mixture> mixture;
-  if (const FlowPlan* plan = run_.first_plan()) {
-    mixture = plan->mixture_at(MissionTime(std::max(0.0, t - moving_from_s_)));
-  }
+  if (const auto moment = PlanTimeline(run_).at(t)) mixture = moment->mixture();
   PictureMaker maker(out, static_cast<std::uint32_t>(run_.tracks.size()), t,
                      t >= end_s_ ? kEndedPhase : static_cast<std::uint32_t>(MissionPhase::kRunning),
                      mixture);

@@ -135,6 +135,8 @@ void SwarmState::take_heartbeat(const TappedSample& sample) {
   }
   phase_ = message.phase;
   mission_time_s_ = message.mission_time_s;
+  plan_time_s_ = message.plan_time_s;
+  plan_rate_ = message.plan_rate;
   beat_at_ = sample.heard;
 }
 
@@ -172,6 +174,10 @@ SwarmState::Counts SwarmState::counts(UtcTime now) const {
     counts.nearest_gap_m = std::min(counts.nearest_gap_m, robot.nearest_gap_m);
   }
   return counts;
+}
+
+double SwarmState::plan_time_s(UtcTime now) const {
+  return plan_time_s_ + plan_rate_ * std::clamp(to_seconds(now - beat_at_), 0.0, 1.0);
 }
 
 double SwarmState::mission_time_s(UtcTime now) const {

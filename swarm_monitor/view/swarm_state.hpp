@@ -54,6 +54,9 @@ class SwarmState {
 
   MissionPhase phase() const { return phase_; }
   double mission_time_s(UtcTime now) const;
+  /// Of the plan's clock: the mixture that the swarm is to form is mixture_at() of it.
+  double plan_time_s(UtcTime now) const;
+  double plan_rate() const { return plan_rate_; }
   const std::optional<FlowPlan>& plan() const { return plan_; }
   std::uint32_t plan_version() const { return plan_version_; }
   const Scene& scene() const { return scene_; }
@@ -84,6 +87,8 @@ class SwarmState {
   std::uint64_t version_ = 0;
   MissionPhase phase_ = MissionPhase::kReady;
   double mission_time_s_ = 0.0;
+  double plan_time_s_ = 0.0;
+  double plan_rate_ = 0.0;
   UtcTime beat_at_{};
   std::vector<RunEvent> events_;
   std::optional<UtcTime> begin_;

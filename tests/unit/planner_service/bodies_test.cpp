@@ -70,7 +70,8 @@ TEST(PlannedBodies, AreRoutedAround) {
   const FlowPlan& plan = bench.keeper->newest().planned.plan;
   const double k = cvar_coefficient(bench.mission.planner.risk_alpha);
   for (double t = 0.0; t <= plan.duration().count(); t += 0.5) {
-    for (const auto& [weight, gaussian] : plan.mixture_at(MissionTime(t)).components()) {
+    const Mixture mixture = plan.mixture_at(MissionTime(t));
+    for (const auto& [weight, gaussian] : mixture.components()) {
       EXPECT_LE(max_cvar_m(gaussian, with_body, k), bench.mission.planner.risk_delta_m + 1e-9) << t;
     }
   }
