@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "swarm_monitor/clearance.hpp"
+#include "swarm_monitor/tracking/plan_timeline.hpp"
 #include "swarm_monitor/view/picture.hpp"
 #include "swarm_monitor/view/scene_json.hpp"
 
@@ -128,8 +129,11 @@ void RecordedSource::picture(std::optional<double> time_s, std::optional<RobotId
                              std::vector<std::byte>& out) {
   const double t = std::clamp(time_s.value_or(end_s_), 0.0, end_s_);
   std::optional<Mixture> mixture;
-  if (const FlowPlan* plan = run_.first_plan()) {
-    mixture = plan->mixture_at(MissionTime(std::max(0.0, t - moving_from_s_)));
+  if (const auto moment = PlanTimeline(run_).at(t)) {
+    mixture = moment->mixture();
+  } else if (run_.clock.empty() && run_.first_plan() != nullptr) {
+    // Recorded before there was a clock: as if it had begun with the motion.
+    mixture = run_.first_plan()->mixture_at(MissionTime(std::max(0.0, t - moving_from_s_)));
   }
   PictureMaker maker(out, static_cast<std::uint32_t>(run_.tracks.size()), t,
                      t >= end_s_ ? kEndedPhase : static_cast<std::uint32_t>(MissionPhase::kRunning),
