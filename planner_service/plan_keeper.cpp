@@ -3,6 +3,7 @@
 #include "planner_service/plan_keeper.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include <fmt/format.h>
@@ -22,6 +23,21 @@ constexpr Duration kStuckAfter = std::chrono::seconds(8);
 constexpr double kStuckShare = 0.1;
 // While obstacles move, and while there is no plan for the scene.
 constexpr Duration kReplanPeriod = std::chrono::seconds(2);
+// The robots' statuses come once a second.
+constexpr Duration kJudgePeriod = std::chrono::seconds(1);
+// A clock that is slow for shorter than this is not worth an event.
+constexpr Duration kSlowFor = std::chrono::seconds(5);
+// Robots that are this far ahead of the clock had it from a planner before this one.
+constexpr double kRobotsAhead_s = 1.0;
+constexpr std::size_t kNamed = 10;  // robots, in an event
+
+/// A notice is one line.
+std::string one_line(std::string text) {
+  for (std::size_t at = 0; (at = text.find('\n', at)) != std::string::npos;) {
+    text.replace(at, 1, "; ");
+  }
+  return text;
+}
 
 }  // namespace
 
@@ -29,9 +45,10 @@ PlanKeeper::PlanKeeper(const Mission& mission, std::uint64_t seed, StageClock cl
     : mission_(mission),
       seed_(seed),
       clock_(std::move(clock)),
-      planner_(planner_options(mission.planner, mission.robots.count)),
+      planner_(planner_options(mission)),
       robots_(mission.robots.count, from_seconds(3.0 + 3.0 / mission.link.status_hz)),
-      scene_(first_scene(mission.world.obstacles().size())) {}
+      scene_(first_scene(mission.world.obstacles().size())),
+      governor_(mission.plan_clock) {}
 
 Result<void> PlanKeeper::plan_first() {
   Rng rng(seed_);
@@ -45,13 +62,15 @@ bool PlanKeeper::take_scene(Scene scene) {
   if (scene_heard_ && scene.version <= scene_.version) return false;
   scene_ = std::move(scene);
   scene_heard_ = true;
+  for (const SceneObstacle& o : scene_.obstacles) {
+    if (o.owner) robots_.forget(*o.owner);
+  }
   return true;
 }
 
 /// From where the robots are, once they have left their start; before, the mission's own mixture is
 /// the truth they were placed by.
-Result<Replan> PlanKeeper::plan_anew(UtcTime utc, std::span<const HeardRobot> heard) {
-  const World world = world_during(mission_.world, scene_, utc, kReplanPeriod);
+Result<Replan> PlanKeeper::plan_anew(const World& world, std::span<const HeardRobot> heard) {
   const Mixture& goal = scene_.goal ? *scene_.goal : mission_.goal;
   planner_.set_risk({.alpha = scene_.risk_alpha.value_or(mission_.planner.risk_alpha),
                      .delta_m = mission_.planner.risk_delta_m});
@@ -64,32 +83,50 @@ Result<Replan> PlanKeeper::plan_anew(UtcTime utc, std::span<const HeardRobot> he
   return Replan{*std::move(planned), {}};
 }
 
+/// Around the bodies of fallen robots, if there is a plan that gets around them. A Gaussian is
+/// wider than a body: one under a source, a goal, or in a passage can be more than any plan gets
+/// around, but not more than a robot does.
+Result<Replan> PlanKeeper::plan_around_bodies(UtcTime utc, std::span<const HeardRobot> heard,
+                                              Step& step) {
+  auto planned = plan_anew(world_during(mission_.world, scene_, utc, kReplanPeriod), heard);
+  const Scene without = without_bodies(scene_);
+  if (planned || without.obstacles.size() == scene_.obstacles.size()) return planned;
+  auto through = plan_anew(world_during(mission_.world, without, utc, kReplanPeriod), heard);
+  if (!through) return planned;
+  if (bodies_left_out_ != scene_.version) {
+    step.notices.push_back({true, "bodies-not-planned",
+                            fmt::format("no plan gets around the bodies of {} robots, each robot "
+                                        "avoids them by itself: {}",
+                                        scene_.obstacles.size() - without.obstacles.size(),
+                                        one_line(planned.error().message))});
+  }
+  bodies_left_out_ = scene_.version;
+  return through;
+}
+
 void PlanKeeper::try_again(SteadyTime now, UtcTime utc, Step& step) {
   const std::vector<HeardRobot> heard = robots_.fresh(now);
   if (phase_ != MissionPhase::kReady) {
     if (heard.empty() || (!robots_.heard_all(now) && now - begun_at_ < kHearPatience)) return;
   }
   tried_at_ = now;
-  auto planned = plan_anew(utc, heard);
+  auto planned = plan_around_bodies(utc, heard, step);
   if (!planned) {
     if (failed_scene_ == scene_.version) return;
     failed_scene_ = scene_.version;
-    std::string why = planned.error().message;
-    for (std::size_t at = 0; (at = why.find('\n', at)) != std::string::npos;) {
-      why.replace(at, 1, "; ");  // a notice is one line
-    }
-    step.notices.push_back({true, "replan-failed", "the last plan stays: " + why});
+    step.notices.push_back(
+        {true, "replan-failed", "the last plan stays: " + one_line(planned.error().message)});
     return;
   }
   newest_ = *std::move(planned);
-  publish(step);
+  publish(now, step);
 }
 
 void PlanKeeper::keep_planned(SteadyTime now, UtcTime utc, Step& step) {
   if (!scene_heard_ && now - begun_at_ < kScenePatience) return;
   const bool published = version_ > 0;
   if (scene_.version == 0 && !published) {
-    publish(step);
+    publish(now, step);
     tried_at_ = now;
     return;
   }
@@ -130,17 +167,90 @@ void PlanKeeper::avoid_jams(SteadyTime now, UtcTime utc, Step& step) {
   try_again(now, utc, step);
 }
 
-void PlanKeeper::publish(Step& step) {
+void PlanKeeper::publish(SteadyTime now, Step& step) {
   step.publish = true;
   ++version_;
+  governor_.issue(version_, now);
   planned_scene_ = scene_.version;
 }
 
 PlanKeeper::Step PlanKeeper::step(SteadyTime now, UtcTime utc) {
   Step step;
+  governor_.advance(now, phase_ == MissionPhase::kRunning);
   keep_planned(now, utc, step);
   avoid_jams(now, utc, step);
+  keep_clock(now, utc, step);
   return step;
+}
+
+/// A planner that was restarted publishes the mission's first plan again, which the robots follow
+/// already: its clock goes on where theirs is. The median, so that no single robot moves it.
+void PlanKeeper::catch_up(SteadyTime now) {
+  if (version_ != 1 || !newest_.entries.empty()) return;
+  std::vector<double> times_s;
+  for (const HeardRobot& robot : robots_.fresh(now)) {
+    if (robot.plan_version == version_) times_s.push_back(robot.plan_time_s);
+  }
+  if (times_s.empty()) return;
+  const auto middle = times_s.begin() + static_cast<std::ptrdiff_t>(times_s.size() / 2);
+  std::nth_element(times_s.begin(), middle, times_s.end());
+  if (*middle > governor_.plan_time_s() + kRobotsAhead_s) governor_.catch_up(*middle);
+}
+
+void PlanKeeper::report_clock(SteadyTime now, Step& step) {
+  if (governor_.hopeless() != hopeless_told_) {
+    hopeless_told_ = governor_.hopeless();
+    if (!hopeless_told_.empty()) {
+      std::string names;
+      for (std::size_t i = 0; i < std::min(kNamed, hopeless_told_.size()); ++i) {
+        names += fmt::format("{}{}", i == 0 ? "" : ", ", hopeless_told_[i].value());
+      }
+      step.notices.push_back(
+          {true, "robots-late",
+           fmt::format("{} robot(s) are more than {} s behind the plan, its clock does not wait "
+                       "for them: robot {}{}",
+                       hopeless_told_.size(), mission_.plan_clock.hopeless_lag_s, names,
+                       hopeless_told_.size() > kNamed ? " …" : "")});
+    }
+  }
+  const bool is_slow = governor_.rate() < 1.0 && phase_ == MissionPhase::kRunning;
+  if (!is_slow) full_rate_at_ = now;
+  const bool is_slow_for_long = is_slow && now - full_rate_at_ >= kSlowFor;
+  if (is_slow_for_long && !slow_told_) {
+    slow_told_ = true;
+    step.notices.push_back(
+        {false, "plan-clock-slow",
+         fmt::format("the plan waits for the swarm: rate {:.2f}, a lag of "
+                     "{:.1f} s at quantile {}",
+                     governor_.rate(), governor_.lag_s(), mission_.plan_clock.lag_quantile)});
+  } else if (!is_slow && slow_told_) {
+    slow_told_ = false;
+    step.notices.push_back({false, "plan-clock-full", "the plan's clock runs at full rate again"});
+  }
+}
+
+void PlanKeeper::keep_clock(SteadyTime now, UtcTime utc, Step& step) {
+  if (version_ == 0) return;
+  if (now - judged_at_ >= kJudgePeriod && phase_ == MissionPhase::kRunning) {
+    judged_at_ = now;
+    catch_up(now);
+    std::vector<RobotLag> lags;
+    for (const HeardRobot& robot : robots_.fresh(now)) {
+      // A robot that still follows an older plan says nothing of this one.
+      if (robot.plan_version != version_) continue;
+      lags.push_back({robot.robot, robot.lag_s, robot.arrived});
+    }
+    governor_.judge(lags);
+    report_clock(now, step);
+  }
+  const PlanClock clock = governor_.reading(utc);
+  // A jump, after a restart, is worth a reading as well.
+  const bool jumped = std::abs(clock_told_.plan_time_at_s(utc) - clock.plan_time_s) > 0.05;
+  if (clock.plan_version == clock_told_.plan_version && clock.rate == clock_told_.rate && !jumped) {
+    return;
+  }
+  clock_told_ = clock;
+  step.clock = clock;
 }
 
 }  // namespace swarm::planner

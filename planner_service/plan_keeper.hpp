@@ -7,18 +7,20 @@
 #include <string>
 #include <vector>
 
+#include "planner_service/clock_governor.hpp"
 #include "planner_service/planner.hpp"
 #include "planner_service/replan.hpp"
 #include "planner_service/robot_watch.hpp"
 #include "swarm_core/mission/mission.hpp"
 #include "swarm_core/mission/phase.hpp"
+#include "swarm_core/mission/scene_bodies.hpp"
 
 namespace swarm::planner {
 
 /// Sees to it that there is a plan for the scene as it is: the first one, anew when the scene
 /// changes, while obstacles move, for every step ROVER takes, and where CRoPS finds the swarm
-/// stuck. Pure: what was heard and the time in, plans out; the program around it owns bus and
-/// files.
+/// stuck. It also owns the plan's clock. Pure: what was received and the time in, plans and clock
+/// readings out; the program around it owns bus and files.
 class PlanKeeper {
  public:
   /// \pre the mission outlives the keeper
@@ -35,7 +37,8 @@ class PlanKeeper {
   bool take_scene(Scene scene);
   /// \pre the id is below the number of robots
   void hear(const HeardRobot& robot, bool moving, SteadyTime now) {
-    robots_.hear(robot, moving, now);
+    // What a robot sent before it fell may come after its body became an obstacle.
+    if (!has_body(scene_, robot.robot)) robots_.hear(robot, moving, now);
   }
 
   /// What happened, for the event log; the text is one line.
@@ -46,6 +49,8 @@ class PlanKeeper {
   };
   struct Step {
     bool publish = false;  ///< newest() is to go out, as version()
+    /// The clock's version or rate is another one.
+    std::optional<PlanClock> clock{};
     std::vector<Notice> notices;
   };
   /// Call it often. May plan, which takes as long as that takes.
@@ -53,6 +58,8 @@ class PlanKeeper {
 
   const Replan& newest() const { return newest_; }
   std::uint32_t version() const { return version_; }
+  /// The plan's clock, as of the last step().
+  PlanClock clock(UtcTime utc) const { return governor_.reading(utc); }
   const Scene& scene() const { return scene_; }
   /// Version of the scene newest() was made for.
   std::uint64_t planned_scene() const { return planned_scene_; }
@@ -62,8 +69,12 @@ class PlanKeeper {
   void avoid_jams(SteadyTime now, UtcTime utc, Step& step);
   void try_again(SteadyTime now, UtcTime utc, Step& step);
   bool is_step_due(SteadyTime now) const;
-  Result<Replan> plan_anew(UtcTime utc, std::span<const HeardRobot> heard);
-  void publish(Step& step);
+  Result<Replan> plan_anew(const World& world, std::span<const HeardRobot> heard);
+  Result<Replan> plan_around_bodies(UtcTime utc, std::span<const HeardRobot> heard, Step& step);
+  void publish(SteadyTime now, Step& step);
+  void keep_clock(SteadyTime now, UtcTime utc, Step& step);
+  void catch_up(SteadyTime now);
+  void report_clock(SteadyTime now, Step& step);
 
   const Mission& mission_;
   std::uint64_t seed_;
@@ -76,9 +87,16 @@ class PlanKeeper {
   Replan newest_;
   std::uint32_t version_ = 0;  // 0 = nothing published
   std::uint64_t planned_scene_ = 0;
-  std::uint64_t failed_scene_ = 0;  // that was complained about
+  std::uint64_t failed_scene_ = 0;     // that was complained about
+  std::uint64_t bodies_left_out_ = 0;  // scene of which that was reported
   SteadyTime begun_at_;
   SteadyTime tried_at_;  // to plan anew
+  ClockGovernor governor_;
+  PlanClock clock_told_;     // of the last step that had one
+  SteadyTime judged_at_;     // the robots' lags
+  SteadyTime full_rate_at_;  // when the clock last ran at full rate
+  bool slow_told_ = false;
+  std::vector<RobotId> hopeless_told_;
 };
 
 }  // namespace swarm::planner

@@ -9,9 +9,15 @@
 
 namespace swarm::planner {
 
+LegSpeed leg_speed(const PlannerOptions& options) {
+  LegSpeed speed{.means_mps = options.speed_mps};
+  if (options.limits.robot_speed_mps > 0.0) speed.robots_mps = options.limits.robot_speed_mps;
+  return speed;
+}
+
 Result<PlanResult> plan_of_routes(std::span<const Route> raw, std::span<const Route> routes,
-                                  const PlanRequest& request, double speed_mps, PlanResult result,
-                                  StageTimer& whole) {
+                                  const PlanRequest& request, const LegSpeed& speed,
+                                  PlanResult result, StageTimer& whole) {
   PlanStats& stats = result.stats;
   for (const Route& route : raw) {
     stats.raw_mean_path_m += route.mass * mean_length_m(route.waypoints);
@@ -21,12 +27,12 @@ Result<PlanResult> plan_of_routes(std::span<const Route> raw, std::span<const Ro
     stats.cost_m += route.mass * w2_length_m(route.waypoints);
   }
   Result<FlowPlan> flow = build_merged_plan(routes, request.start.components().size(),
-                                            request.goal.components().size(), speed_mps);
+                                            request.goal.components().size(), speed);
   if (!flow) return tl::unexpected(flow.error());
   result.plan = *std::move(flow);
   stats.nodes = result.roadmap.nodes.size();
   stats.edges = result.roadmap.edge_count();
-  stats.total_ms = whole.lap_ms();
+  stats.total_ms += whole.lap_ms();
   return result;
 }
 
@@ -42,7 +48,7 @@ PlanResult plan_of_flow(FlowPlan flow, PlanResult result, StageTimer& whole) {
   result.plan = std::move(flow);
   stats.nodes = result.roadmap.nodes.size();
   stats.edges = result.roadmap.edge_count();
-  stats.total_ms = whole.lap_ms();
+  stats.total_ms += whole.lap_ms();
   return result;
 }
 

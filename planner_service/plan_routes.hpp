@@ -10,12 +10,15 @@
 
 namespace swarm::planner {
 
+/// How fast the legs of a plan may be by these options.
+LegSpeed leg_speed(const PlannerOptions& options);
+
 /// The result of a method that ends in routes: their flow, merged where they coincide, and what
 /// they cost, into `result`, which holds the roadmap and the times so far. `raw` are the routes as
 /// the roadmap gave them.
 Result<PlanResult> plan_of_routes(std::span<const Route> raw, std::span<const Route> routes,
-                                  const PlanRequest& request, double speed_mps, PlanResult result,
-                                  StageTimer& whole);
+                                  const PlanRequest& request, const LegSpeed& speed,
+                                  PlanResult result, StageTimer& whole);
 
 /// The same of a method that ends in a flow.
 PlanResult plan_of_flow(FlowPlan flow, PlanResult result, StageTimer& whole);

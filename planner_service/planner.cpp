@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "planner_service/mpc/measured_state.hpp"
+#include "planner_service/plan_limits.hpp"
 #include "planner_service/plan_routes.hpp"
 #include "planner_service/roadmap/live_roadmap.hpp"
 #include "planner_service/stage_timer.hpp"
@@ -46,7 +47,7 @@ Result<PlanResult> plan_adoc(const PlanRequest& request, const PlannerOptions& o
   if (!routes) return tl::unexpected(routes.error());
   PlanResult result;
   result.stats.search_ms = stage.lap_ms();
-  return plan_of_routes(*routes, *routes, request, options.speed_mps, std::move(result), whole);
+  return plan_of_routes(*routes, *routes, request, leg_speed(options), std::move(result), whole);
 }
 
 /// Each robot goes to the component it most likely belongs to.
@@ -79,6 +80,8 @@ struct Planner::Memory {
   std::optional<CropsGuide> guide;
   std::optional<Rover> rover;
 
+  Result<PlanResult> plan(const PlanRequest& request, const PlannerOptions& options, Rng& rng,
+                          const StageClock& clock);
   Result<PlanResult> plan_swarmprm(const PlanRequest& request, const PlannerOptions& options,
                                    Rng& rng, const StageClock& clock);
   Result<Rover*> rover_for(const World& now, const Mixture& to, const PlannerOptions& options);
@@ -155,7 +158,7 @@ Result<PlanResult> Planner::Memory::plan_crops(const PlanRequest& request,
   PlanResult result;
   result.roadmap = guide->roadmap();
   result.stats.roadmap_ms = stage.lap_ms();
-  return plan_of_routes(guide->routes(), guide->routes(), request, options.speed_mps,
+  return plan_of_routes(guide->routes(), guide->routes(), request, leg_speed(options),
                         std::move(result), whole);
 }
 
@@ -165,18 +168,25 @@ Planner::~Planner() = default;
 Planner::Planner(Planner&&) noexcept = default;
 Planner& Planner::operator=(Planner&&) noexcept = default;
 
-Result<PlanResult> Planner::plan(const PlanRequest& request, Rng& rng, const StageClock& clock) {
-  switch (options_.method) {
+Result<PlanResult> Planner::Memory::plan(const PlanRequest& request, const PlannerOptions& options,
+                                         Rng& rng, const StageClock& clock) {
+  switch (options.method) {
     case Method::kSwarmPrm:
-      return memory_->plan_swarmprm(request, options_, rng, clock);
+      return plan_swarmprm(request, options, rng, clock);
     case Method::kRover:
-      return memory_->plan_rover(request, options_, clock);
+      return plan_rover(request, options, clock);
     case Method::kAdoc:
-      return plan_adoc(request, options_, clock);
+      return plan_adoc(request, options, clock);
     case Method::kCrops:
-      return memory_->plan_crops(request, options_, rng, clock);
+      return plan_crops(request, options, rng, clock);
   }
   SWARM_ASSERT(false);
+}
+
+Result<PlanResult> Planner::plan(const PlanRequest& request, Rng& rng, const StageClock& clock) {
+  auto result = memory_->plan(request, options_, rng, clock);
+  if (result) check_limits(*result, options_);
+  return result;
 }
 
 void Planner::set_risk(const RiskLimit& risk) {
@@ -237,13 +247,14 @@ PlannerOptions planner_options(const PlannerSpec& spec, std::uint32_t robots) {
                       .bridge_sigma_m = spec.bridge_sigma_m},
           .shortcuts = spec.shortcuts,
           .speed_mps = spec.speed_mps,
-          .density = {.max_per_m2 = spec.density_cap_per_m2, .robots = static_cast<double>(robots)},
+          .density = {.max_per_m2 = spec.density_cap_per_m2.value_or(0.0),
+                      .robots = static_cast<double>(robots)},
           .density_is_timed = spec.density_cap == "timed",
           .rover = {.graph = {.collocation = collocation,
                               .transport_radius_m = spec.transport_radius_m,
                               .risk = {.alpha = spec.risk_alpha, .delta_m = spec.risk_delta_m}},
                     .mpc = {.costs = {.horizon = spec.horizon},
-                            .density_cap_per_m2 = spec.density_cap_per_m2,
+                            .density_cap_per_m2 = spec.density_cap_per_m2.value_or(0.0),
                             .robots = static_cast<double>(robots)},
                     .speed_mps = spec.speed_mps},
           .adoc = {.collocation = collocation,
@@ -256,6 +267,16 @@ PlannerOptions planner_options(const PlannerSpec& spec, std::uint32_t robots) {
                     .goal_radius_m = spec.crops_goal_radius_m}};
 }
 
+PlannerOptions planner_options(const Mission& mission) {
+  PlannerOptions options = planner_options(mission.planner, mission.robots.count);
+  options.limits = swarm_limits(mission.robots, mission.safety, mission.control);
+  if (options.method == Method::kSwarmPrm && !mission.planner.density_cap_per_m2) {
+    options.cap_is_automatic = true;
+    options.speed_mps = std::min(options.speed_mps, options.limits.plan_speed_mps);
+  }
+  return options;
+}
+
 Result<PlanResult> plan(const PlanRequest& request, const PlannerOptions& options, Rng& rng,
                         const StageClock& clock) {
   if (options.method != Method::kSwarmPrm) return Planner(options).plan(request, rng, clock);
@@ -265,7 +286,10 @@ Result<PlanResult> plan(const PlanRequest& request, const PlannerOptions& option
   if (auto checked = check_endpoints(request, options.risk); !checked) {
     return tl::unexpected(checked.error());
   }
-  return plan_on_roadmap(make_roadmap(request, options, rng), request, options, rng, stage, whole);
+  auto result =
+      plan_on_roadmap(make_roadmap(request, options, rng), request, options, rng, stage, whole);
+  if (result) check_limits(*result, options);
+  return result;
 }
 
 }  // namespace swarm::planner

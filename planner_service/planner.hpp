@@ -7,6 +7,7 @@
 #include <functional>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "planner_service/mpc/adoc.hpp"
@@ -16,9 +17,11 @@
 #include "planner_service/roadmap/sampler.hpp"
 #include "planner_service/robot_groups.hpp"
 #include "planner_service/transport/density_cap.hpp"
+#include "planner_service/transport/plan_density.hpp"
 #include "swarm_core/base/random.hpp"
 #include "swarm_core/base/time.hpp"
 #include "swarm_core/gmm/mixture.hpp"
+#include "swarm_core/mission/body_limits.hpp"
 #include "swarm_core/mission/mission.hpp"
 #include "swarm_core/plan/flow_plan.hpp"
 #include "swarm_core/risk/cvar.hpp"
@@ -40,16 +43,21 @@ struct PlannerOptions {
   RiskLimit risk;
   SamplerOptions sampler;
   std::uint32_t shortcuts =
-      200;                       ///< smoothing tries per route; 0 leaves the roadmap's routes alone
-  double speed_mps = 1.25;       ///< of the means along a route
-  DensityCap density;            ///< 0 = none
-  bool density_is_timed = true;  ///< counts mass at each time; else all that ever passes
+      200;                  ///< smoothing tries per route; 0 leaves the roadmap's routes alone
+  double speed_mps = 1.25;  ///< of the means along a route
+  DensityCap density;       ///< asked for; 0 = none
+  SwarmLimits limits{};     ///< what the bodies can follow; zeros: not known, nothing is limited
+  bool cap_is_automatic = false;  ///< swarmprm: no cap unless the plan is denser than `limits`
+  bool density_is_timed = true;   ///< counts mass at each time; else all that ever passes
   RoverOptions rover;
   AdocOptions adoc;
   CropsOptions crops;
 };
 
-/// The options a mission asks for.
+/// The options a mission asks for, with the limits of its bodies. Where the density cap is `auto`
+/// SwarmPRM's speed is that of `limits` at most.
+PlannerOptions planner_options(const Mission& mission);
+/// The same for robots whose bodies are not known.
 PlannerOptions planner_options(const PlannerSpec& spec, std::uint32_t robots);
 
 /// What to plan; refers to the caller's objects for the duration of the call.
@@ -70,12 +78,21 @@ struct PlanStats {
   double raw_mean_path_m = 0.0;      ///< Σ mass · length of the route's mean, before smoothing
   double planned_mean_path_m = 0.0;  ///< the same of the published plan
   double cost_m = 0.0;               ///< Σ mass · W₂ length of the route
+  double cap_per_m2 = 0.0;           ///< that the plan keeps; 0 = none
+  DensityPeak densest{};             ///< disc of 2 m, where a cap does not bound it
+};
+
+/// Something about a plan that its user should know, in one line.
+struct PlanWarning {
+  std::string code;
+  std::string text;
 };
 
 struct PlanResult {
   FlowPlan plan;
   Roadmap roadmap;  ///< nodes: start components, goal components, samples
   PlanStats stats;
+  std::vector<PlanWarning> warnings;
 };
 
 /// Tells the time for PlanStats; the planner itself does not depend on it.

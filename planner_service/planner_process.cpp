@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <ctime>
+#include <fstream>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -66,6 +67,7 @@ struct PlannerProcess::Impl {
   std::uint64_t last_command = 0;
   std::int64_t t0_utc_ns = 0;
   std::uint64_t beats = 0;
+  std::ofstream clock_file;
   link::RefusalCounters refused;
   std::uint64_t refusals_told = 0;
   std::vector<link::CommandMessage> commands;
@@ -117,6 +119,7 @@ Result<void> PlannerProcess::Impl::join(const shell::RunInfo& run) {
   command_reader = std::move(*orders);
   scene_reader = std::move(*scene_changes);
   status_reader = std::move(*health);
+  clock_file.open(options.run_dir / shell::kPlanClockFile, std::ios::app);
   limits = link::wire_limits(mission);
   keeper->begin(std::chrono::steady_clock::now());
   return {};
@@ -148,7 +151,7 @@ void PlannerProcess::Impl::hear_scene(UtcTime now) {
   const auto newest_possible =
       static_cast<std::uint64_t>((now + limits.clock_skew_refuse).time_since_epoch().count());
   for (const link::SceneMessage& message : scenes) {
-    auto heard = link::check_scene(message);
+    auto heard = link::check_scene(message, limits);
     if (!heard) {
       refused.count(heard.error());
     } else if (heard->version > newest_possible) {
@@ -170,19 +173,26 @@ void PlannerProcess::Impl::hear_robots(SteadyTime now) {
     for (const link::RobotStatusMessage& robot : status.robots) {
       keeper->hear({.robot = RobotId(robot.robot_id),
                     .position_m = {robot.x_m, robot.y_m},
-                    .arrived = robot.arrived},
+                    .arrived = robot.arrived,
+                    .lag_s = robot.lag_s,
+                    .plan_version = status.plan_version,
+                    .plan_time_s = status.plan_time_s},
                    robot.mode == RobotMode::kMoving, now);
     }
   }
 }
 
 void PlannerProcess::Impl::keep_planned(SteadyTime now) {
-  const PlanKeeper::Step step = keeper->step(now, utc_now());
+  const UtcTime utc = utc_now();
+  const PlanKeeper::Step step = keeper->step(now, utc);
   for (const PlanKeeper::Notice& notice : step.notices) {
     announce(notice.warning ? link::Severity::kWarning : link::Severity::kInfo, notice.code,
              notice.text);
   }
   if (step.publish) publish();
+  if (!step.clock) return;
+  clock_file << plan_clock_line(*step.clock) << std::flush;
+  beat(utc);  // robots need not wait for the next one
 }
 
 void PlannerProcess::Impl::publish() {
@@ -228,12 +238,15 @@ void PlannerProcess::Impl::beat(UtcTime now) {
   const std::int64_t stamp = now.time_since_epoch().count();
   const double mission_time_s =
       t0_utc_ns == 0 ? 0.0 : 1e-9 * static_cast<double>(stamp - t0_utc_ns);
+  const PlanClock clock = keeper->clock(now);
   heartbeat_writer->write({.phase = phase,
-                           .version = keeper->version(),
+                           .version = clock.plan_version,
                            .epoch = epoch.value(),
                            .sequence_number = ++beats,
                            .stamp_utc_ns = stamp,
-                           .mission_time_s = mission_time_s});
+                           .mission_time_s = mission_time_s,
+                           .plan_time_s = clock.plan_time_s,
+                           .plan_rate = clock.rate});
 }
 
 PlannerProcess::PlannerProcess(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}

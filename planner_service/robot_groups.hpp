@@ -18,7 +18,10 @@ namespace swarm::planner {
 struct HeardRobot {
   RobotId robot;
   Vec2 position_m = Vec2::Zero();
-  bool arrived = false;  ///< inside its goal, and at home there
+  bool arrived = false;            ///< inside its goal, and at rest there
+  double lag_s = 0.0;              ///< behind its reference position, in plan time
+  std::uint32_t plan_version = 0;  ///< of the plan it follows; 0: none
+  double plan_time_s = 0.0;        ///< of that plan's clock, as the robot has it
 };
 
 /// Robots that stand together, and a Gaussian for them that keeps the risk limit.

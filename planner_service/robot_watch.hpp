@@ -32,6 +32,9 @@ class RobotWatch {
                   .stands_since = stands ? heard->stands_since : now};
   }
 
+  /// As if nothing was received of it. \pre the id is below the number of robots
+  void forget(RobotId robot) { heard_.at(robot.value()).reset(); }
+
   /// Robots heard lately, by id.
   std::vector<HeardRobot> fresh(SteadyTime now) const {
     std::vector<HeardRobot> robots;

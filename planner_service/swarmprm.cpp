@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include "planner_service/plan_limits.hpp"
 #include "planner_service/plan_routes.hpp"
 #include "planner_service/roadmap/edge_check.hpp"
 #include "planner_service/roadmap/endpoints.hpp"
@@ -24,6 +25,9 @@
 
 namespace swarm::planner {
 namespace {
+
+// What a cap has to leave above the density of start and goal for mass to move at all.
+constexpr double kAboveEnds = 1.05;
 
 std::vector<double> weights_of(const Mixture& mixture) {
   std::vector<double> weights;
@@ -106,22 +110,88 @@ void smooth(Waypoints& waypoints, const World& world, const PlannerOptions& opti
 
 // The flow under a density cap, node by node or time by time.
 Result<PlanResult> plan_capped(PlanResult result, const PlanRequest& request,
-                               const PlannerOptions& options, EdgeChecker& checker,
-                               StageTimer& stage, StageTimer& whole) {
+                               const PlannerOptions& options, const DensityCap& cap,
+                               EdgeChecker& checker, StageTimer& stage, StageTimer& whole) {
+  result.stats.cap_per_m2 = cap.max_per_m2;
   const std::vector<double> supplies = weights_of(request.start);
   const std::vector<double> demands = weights_of(request.goal);
   if (!options.density_is_timed) {
-    const auto flow = capped_flow(result.roadmap, supplies, demands, options.density, checker);
+    const auto flow = capped_flow(result.roadmap, supplies, demands, cap, checker);
     if (!flow) return tl::unexpected(flow.error());
     result.stats.transport_ms = stage.lap_ms();
-    return plan_of_routes(flow->routes, flow->routes, request, options.speed_mps, std::move(result),
-                          whole);
+    return plan_of_routes(flow->routes, flow->routes, request, leg_speed(options),
+                          std::move(result), whole);
   }
-  auto flow = timed_flow(result.roadmap, supplies, demands, options.density,
-                         {.speed_mps = options.speed_mps}, checker);
+  auto flow =
+      timed_flow(result.roadmap, supplies, demands, cap, {.speed = leg_speed(options)}, checker);
   if (!flow) return tl::unexpected(flow.error());
-  result.stats.transport_ms = stage.lap_ms();
+  result.stats.transport_ms += stage.lap_ms();
   return plan_of_flow(std::move(flow->plan), std::move(result), whole);
+}
+
+Result<PlanResult> plan_uncapped(PlanResult result, const PlanRequest& request,
+                                 const PlannerOptions& options, EdgeChecker& checker, Rng& rng,
+                                 StageTimer& stage, StageTimer& whole) {
+  auto routes = choose_routes(result.roadmap, request, options, checker, stage, result.stats);
+  if (!routes) return tl::unexpected(routes.error());
+  const std::vector<Route> raw = *routes;
+  if (options.shortcuts > 0) {
+    for (Route& route : *routes) smooth(route.waypoints, request.world, options, checker, rng);
+  }
+  result.stats.smoothing_ms = stage.lap_ms();
+  return plan_of_routes(raw, *routes, request, leg_speed(options), std::move(result), whole);
+}
+
+std::string in_one_line(std::string text) {
+  for (std::size_t at = 0; (at = text.find('\n', at)) != std::string::npos;) {
+    text.replace(at, 1, "; ");
+  }
+  return text;
+}
+
+// The highest density of the start components together, or of the goal components.
+double density_of_ends_per_m2(const PlanRequest& request, double robots) {
+  double highest = 0.0;
+  for (const Mixture* mixture : {&request.start, &request.goal}) {
+    std::vector<Gaussian> components;
+    for (const WeightedGaussian& c : mixture->components()) components.push_back(c.gaussian);
+    highest = std::max(highest, max_density(components, weights_of(*mixture), robots).per_m2);
+  }
+  return highest;
+}
+
+// The plan under the cap of the bodies, where the uncapped one is denser than they can be. Start
+// and goal stay as they are: where they are denser than the cap themselves it is raised to them.
+PlanResult capped_where_needed(PlanResult uncapped, const PlanRequest& request,
+                               const PlannerOptions& options, EdgeChecker& checker,
+                               StageTimer& stage, StageTimer& whole) {
+  const double robots = options.density.robots;
+  if (densest_disc_of(uncapped.plan, robots).per_m2 <= options.limits.packing_per_m2) {
+    return uncapped;
+  }
+  const double ends_per_m2 = kAboveEnds * density_of_ends_per_m2(request, robots);
+  const DensityCap cap{std::max(options.limits.cap_per_m2, ends_per_m2), robots};
+  PlanResult result;
+  result.roadmap = uncapped.roadmap;
+  result.stats = {.roadmap_ms = uncapped.stats.roadmap_ms,
+                  .search_ms = uncapped.stats.search_ms,
+                  .transport_ms = uncapped.stats.transport_ms,
+                  .smoothing_ms = uncapped.stats.smoothing_ms,
+                  .total_ms = uncapped.stats.total_ms};
+  auto capped = plan_capped(std::move(result), request, options, cap, checker, stage, whole);
+  if (!capped) {
+    uncapped.warnings.push_back(
+        {"cap-infeasible", fmt::format("planned without a density cap: {}",
+                                       in_one_line(std::move(capped.error().message)))});
+    return uncapped;
+  }
+  if (cap.max_per_m2 > options.limits.cap_per_m2) {
+    capped->warnings.push_back(
+        {"cap-raised", fmt::format("density capped at {:.1f} robots/m2, not at {:.1f}: the start "
+                                   "or the goal is nearly as dense",
+                                   cap.max_per_m2, options.limits.cap_per_m2)});
+  }
+  return *std::move(capped);
 }
 
 }  // namespace
@@ -163,16 +233,11 @@ Result<PlanResult> plan_on_roadmap(Roadmap roadmap, const PlanRequest& request,
   result.stats.roadmap_ms = stage.lap_ms();
   EdgeChecker checker(request.world, options.risk);
   if (options.density.max_per_m2 > 0.0) {
-    return plan_capped(std::move(result), request, options, checker, stage, whole);
+    return plan_capped(std::move(result), request, options, options.density, checker, stage, whole);
   }
-  auto routes = choose_routes(result.roadmap, request, options, checker, stage, result.stats);
-  if (!routes) return tl::unexpected(routes.error());
-  const std::vector<Route> raw = *routes;
-  if (options.shortcuts > 0) {
-    for (Route& route : *routes) smooth(route.waypoints, request.world, options, checker, rng);
-  }
-  result.stats.smoothing_ms = stage.lap_ms();
-  return plan_of_routes(raw, *routes, request, options.speed_mps, std::move(result), whole);
+  auto uncapped = plan_uncapped(std::move(result), request, options, checker, rng, stage, whole);
+  if (!uncapped || !options.cap_is_automatic) return uncapped;
+  return capped_where_needed(*std::move(uncapped), request, options, checker, stage, whole);
 }
 
 }  // namespace swarm::planner

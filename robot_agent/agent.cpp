@@ -36,7 +36,9 @@ double obstacle_margin_m(const Mission& mission, const BodySpec& body) {
 /// From where on another robot matters to none of the method's forces.
 double force_reach_m(const ControlSpec& control, double bodies_m) {
   if (control.method == "apf") {
-    return std::max(bodies_m + control.neighbour_gap_m, DensityAttractionOptions{}.kernel_m);
+    const double kernel_m =
+        control.density_push_mps > 0.0 ? DensityAttractionOptions{}.kernel_m : 0.0;
+    return std::max(bodies_m + control.neighbour_gap_m, kernel_m);
   }
   const HeadingFieldOptions heading;
   constexpr double kSigmas = 2.5;  // farther headings weigh less than 5 %
@@ -139,11 +141,15 @@ Shared<AgentOptions> agent_options(const Mission& mission, RobotId robot) {
   return AgentOptions{
       .method = c.method,
       .route = {.radius_m = body.radius_m},
-      .apf = {.pursuit = {.look_ahead_m = c.look_ahead_s * cruise_mps,
+      .apf = {.keeps_time = c.tracking == "plan",
+              .pursuit = {.look_ahead_m = c.look_ahead_s * cruise_mps,
                           .radius_m = body.radius_m,
                           .keep_clearance_m = c.keep_clearance_m},
-              .attraction = {.cruise_mps = cruise_mps, .approach_gain_hz = c.approach_gain_hz},
-              .density = {.push_mps = c.density_push_mps, .robots = mission.robots.count},
+              .pace = {.look_ahead_s = c.look_ahead_s,
+                       .gain_hz = c.pace_gain_hz,
+                       .approach_gain_hz = c.approach_gain_hz,
+                       .cruise_mps = cruise_mps},
+              .density = {.push_mps = c.density_push_mps},
               .neighbour_repulsion = {.radius_m = body.radius_m,
                                       .gap_m = c.neighbour_gap_m,
                                       .push_mps = c.neighbour_push_mps},
@@ -199,13 +205,14 @@ Agent::Agent(const World& world, Shared<AgentOptions> options, const AgentIdenti
       way_{.share = self.share} {}
 
 void Agent::accept_plan(const FlowPlan& plan, const Vec2& position_m,
-                        std::optional<PlanEntry> entry) {
+                        std::optional<PlanEntry> entry, std::optional<double> plan_time_s) {
   if (has_route_ && plan.digest() == way_.plan_digest) return;
   const RouteOptions& o = options_->route;
   Route route = entry && is_near_source(plan, entry->source, position_m)
                     ? route_from_source(plan, entry->source, entry->share, position_m, *world_, o)
-                : moved_ || entry ? route_from_here(plan, way_.share, position_m, *world_, o)
-                                  : route_from_start(plan, way_.share, position_m, *world_, o);
+                : moved_ || entry
+                    ? route_from_here(plan, way_.share, position_m, *world_, o, plan_time_s)
+                    : route_from_start(plan, way_.share, position_m, *world_, o);
   keep_place(route, position_m);
   method().see_goals(plan);
   method().begin(route, *world_);
@@ -225,8 +232,7 @@ void Agent::keep_place(Route& route, const Vec2& position_m) const {
   if (!same_goal || !route.goal.contains_99(position_m)) return;
   if (!world_->segment_is_free(position_m, way_.end_m, options_->route.radius_m)) return;
   route.path = Polyline({position_m, way_.end_m});
-  route.stations = {route.stations.back()};
-  route.stations.back().at_m = route.path.length_m();
+  route.schedule = Schedule({{0.0, route.path.length_m()}});
 }
 
 RobotMode Agent::decide_mode(const AgentInput& input) const {
@@ -243,7 +249,9 @@ AgentOutput Agent::tick(const AgentInput& input, Rng& rng) {
                          .position_m = input.position_m,
                          .neighbours = hood.all,
                          .world = *world_,
-                         .close = hood.close};
+                         .close = hood.close,
+                         .plan_time = input.plan_time,
+                         .planned_density = input.planned_density};
   if (has_route_ && input.phase != MissionPhase::kReady) arrived_ = method().has_arrived(view);
   AgentOutput out;
   out.mode = decide_mode(input);
@@ -258,6 +266,7 @@ AgentOutput Agent::tick(const AgentInput& input, Rng& rng) {
     const bool gives_way = out.mode == RobotMode::kMoving && out.remaining_m > kSettling_m;
     out.velocity_mps = filter_.filter(input.position_m, wished, view.close, gives_way);
   }
+  if (has_route_) out.tracking = method().tracking();
   // With noise in what it measures a robot never stands; where it goes nowhere, it rests.
   mean_mps_ += mean_share_ * (out.velocity_mps - mean_mps_);
   out.settled = out.mode == RobotMode::kArrived &&

@@ -80,6 +80,8 @@ struct AgentInput {
   bool planner_alive = false;
   /// Measured, of a body that does not have the velocity it is told at once.
   std::optional<Vec2> velocity_mps{};
+  std::optional<PlanTime> plan_time{};  ///< of the plan accepted last; empty: no clock is known
+  const PlannedDensity* planned_density = nullptr;  ///< then; needed by density_push_mps > 0
 };
 
 struct AgentOutput {
@@ -92,6 +94,8 @@ struct AgentOutput {
   double nearest_gap_m =
       0.0;  ///< to the nearest believed neighbour, surface to surface; +∞ if none
   std::uint16_t neighbours = 0;
+  std::optional<TimeTracking>
+      tracking{};                         ///< empty for a robot that does not keep the plan's times
   std::span<const Neighbour> believed{};  ///< those within reach; valid until the next tick
 };
 
@@ -105,9 +109,10 @@ class Agent {
 
   /// Takes a plan. One with the digest of the present one changes nothing, so a restarted planner
   /// that publishes the same flow does not make robots start over. Without an entry a robot finds
-  /// its own way into it.
+  /// its own path into it, in space and, with the plan's time, in time.
   void accept_plan(const FlowPlan& plan, const Vec2& position_m,
-                   std::optional<PlanEntry> entry = std::nullopt);
+                   std::optional<PlanEntry> entry = std::nullopt,
+                   std::optional<double> plan_time_s = std::nullopt);
 
   NeighbourTable::Outcome hear(const NeighbourReport& report, const Vec2& own_position_m,
                                Duration late = {}) {
@@ -126,6 +131,8 @@ class Agent {
   std::uint32_t goal(const Vec2& position_m) const { return method().goal(position_m); }
   /// Where the present way begins. \pre has_route()
   const Vec2& way_begin_m() const { return way_.begin_m; }
+  /// Plan time by which it is behind its reference position; negative if ahead; 0 once arrived.
+  double lag_s() const { return has_route_ && !arrived_ ? method().lag_s() : 0.0; }
   /// How often it freed itself from a deadlock.
   std::uint32_t escapes() const { return method().escapes(); }
 

@@ -21,6 +21,7 @@
 #include "swarm_core/base/clock.hpp"
 #include "swarm_core/mission/mission_file.hpp"
 #include "swarm_core/mission/placement.hpp"
+#include "swarm_core/mission/scene_bodies.hpp"
 #include "swarm_core/shell/run_directory.hpp"
 #include "swarm_core/shell/stop_signal.hpp"
 #include "swarm_link/groups/group_channel.hpp"
@@ -37,6 +38,7 @@ constexpr std::uint64_t kFaultSeed = 0xFA17;
 /// Robots that tell their health together, where a process has so many.
 constexpr std::size_t kStatusGroup = 100;
 constexpr Duration kStatsEvery = std::chrono::seconds(1);
+constexpr Duration kClockPatience = std::chrono::seconds(1);
 
 /// A black box is written at every step, so that nothing is lost with a process that is killed. In
 /// one of many robots that would be most of its time: each of their boxes is written once a second.
@@ -54,13 +56,9 @@ bool sleep_until(SteadyTime at) {
 /// A respawned robot's body stands where its black box last saw it; a new one at its place in the
 /// mission.
 Result<Vec2> standing_place(const std::filesystem::path& box_file, const Vec2& placed_m) {
-  if (!std::filesystem::exists(box_file)) return placed_m;
-  const auto file = blackbox::read_file(box_file);
-  if (!file) return tl::unexpected(file.error());
-  for (auto it = file->records.rbegin(); it != file->records.rend(); ++it) {
-    if (const auto* step = std::get_if<blackbox::Step>(&*it)) return step->position_m;
-  }
-  return placed_m;
+  const auto last = blackbox::last_steps(box_file);
+  if (!last) return tl::unexpected(last.error());
+  return last->empty() ? placed_m : last->back().position_m;
 }
 
 }  // namespace
@@ -88,10 +86,17 @@ struct AgentProcess::Impl {
   bool boxes_dropped = false;  // told already
   SteadyTime stats_at;
   std::size_t ticks = 0;
+  bool is_underway = false;  // some robot was restarted in mid-flight
+  std::optional<NewPlan> waiting_plan;
+  SteadyTime plan_waits_since;
+  FlowPlan flow;  // in force, where planned_density is asked for
+  PlannedDensity planned_density;
 
   Result<void> join(const shell::RunInfo& run);
   Result<void> make_robots(std::uint64_t seed);
-  void tick(const Robot::Tick& tick);
+  std::optional<NewPlan> take_plan(const Robot::Tick& tick);
+  void follow_density(const std::optional<NewPlan>& new_plan, Robot::Tick& tick);
+  void tick(Robot::Tick tick);
   void follow_scene(UtcTime now);
   void report_health(const Robot::Tick& tick);
   bool status_is_due(std::size_t first) const;
@@ -149,7 +154,7 @@ Result<void> AgentProcess::Impl::join(const shell::RunInfo& run) {
                 *states, limits,
                 MissionWatch(from_seconds(mission.timing.planner_silence_s),
                              from_seconds(l.send_interval_max_s + 2.0 / mission.control.rate_hz)),
-                hears_farthest_m(mission));
+                from_seconds(mission.timing.planner_silence_s), hears_farthest_m(mission));
   return {};
 }
 
@@ -177,6 +182,7 @@ Result<void> AgentProcess::Impl::make_robots(std::uint64_t seed) {
                             mix_seed(mix_seed(seed, id.value()), kBodySeed)));
     AgentIdentity self = agent_identity(mission, id);
     self.underway = *place != (*places)[id.value()];
+    is_underway = is_underway || self.underway;
     robots.emplace_back(world, options_of(id), self, agent_rng(id, seed), std::move(body),
                         std::move(*box));
   }
@@ -202,18 +208,42 @@ void AgentProcess::Impl::follow_scene(UtcTime now) {
                         static_cast<std::int64_t>(scene.version));
   }
   if (!world_moves) return;
-  world = world_at(mission.world, scene, now);
+  // A robot that comes back is inside its own body until the launcher receives it again.
+  world = world_at(mission.world, without_bodies_of(scene, options.first, options.count), now);
   world_moves = scene.moves(now);
 }
 
-void AgentProcess::Impl::tick(const Robot::Tick& tick) {
+/// The newest plan, once. A robot that was restarted in mid-flight finds its place in it by the
+/// plan's time, too: its process waits for the first heartbeat, but not for ever.
+std::optional<NewPlan> AgentProcess::Impl::take_plan(const Robot::Tick& tick) {
+  if (auto plan = inbox->take_plan()) {
+    waiting_plan = std::move(plan);
+    plan_waits_since = tick.now;
+  }
+  const bool waits = is_underway && !tick.plan_time && tick.now - plan_waits_since < kClockPatience;
+  return waits ? std::nullopt : std::exchange(waiting_plan, std::nullopt);
+}
+
+/// The planned density at the plan's time, where the control method asks for it.
+void AgentProcess::Impl::follow_density(const std::optional<NewPlan>& new_plan, Robot::Tick& tick) {
+  if (mission.control.density_push_mps <= 0.0) return;
+  if (new_plan) flow = new_plan->flow;
+  if (flow.empty() || !tick.plan_time) return;
+  update(planned_density, flow, tick.plan_time->plan_time_s, mission.robots.count,
+         DensityAttractionOptions{}.kernel_sigma_m());
+  tick.planned_density = &planned_density;
+}
+
+void AgentProcess::Impl::tick(Robot::Tick tick) {
   participant->receive();
   inbox->receive(tick.now, tick.utc_now, [this](RobotId id) -> const EchoGuard* {
     const std::uint32_t offset = id.value() - options.first.value();
     return offset < robots.size() ? &robots[offset].echo() : nullptr;
   });
   follow_scene(tick.utc_now);
-  const std::optional<NewPlan> new_plan = inbox->take_plan();
+  tick.plan_time = inbox->plan_time(tick.now);
+  const std::optional<NewPlan> new_plan = take_plan(tick);
+  follow_density(new_plan, tick);
 
   saying.clear();
   positions.clear();
@@ -243,6 +273,8 @@ void AgentProcess::Impl::tell_status(std::size_t first, UtcTime now) {
   health.plan_version = inbox->plan_version();
   health.plan_scene_version = inbox->plan_scene_version();
   health.stamp_utc_ns = now.time_since_epoch().count();
+  const auto plan_time = inbox->plan_time(std::chrono::steady_clock::now());
+  health.plan_time_s = plan_time ? plan_time->plan_time_s : 0.0;
   health.robots.clear();
   for (const Robot& robot : group(first)) health.robots.push_back(robot.status());
   health.refused.clear();

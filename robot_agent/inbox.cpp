@@ -16,11 +16,12 @@ constexpr Duration kLatePlausible = std::chrono::seconds(1);
 }  // namespace
 
 Inbox::Inbox(Readers readers, link::StateChannel& states, const link::WireLimits& limits,
-             const MissionWatch& mission, double hear_radius_m)
+             const MissionWatch& mission, Duration planner_silence, double hear_radius_m)
     : readers_(std::move(readers)),
       states_(states),
       limits_(limits),
       mission_(mission),
+      plan_time_(planner_silence),
       heard_cells_(hear_radius_m) {}
 
 void Inbox::receive_plans(std::uint64_t newest) {
@@ -35,6 +36,8 @@ void Inbox::receive_plans(std::uint64_t newest) {
     } else if (!plan_sequence_.accept(message.epoch, message.version)) {
       refused_.count(RefusalReason::kStale);
     } else {
+      plan_time_.on_plan(message.version, plan->digest() == plan_digest_);
+      plan_digest_ = plan->digest();
       new_plan_ = {std::move(*plan), std::move(message.entries)};
       plan_epoch_ = message.epoch;
       plan_version_ = message.version;
@@ -47,7 +50,7 @@ void Inbox::receive_scenes(std::uint64_t newest) {
   scenes_.clear();
   readers_.scene->take(scenes_);
   for (const link::SceneMessage& message : scenes_) {
-    auto scene = link::check_scene(message);
+    auto scene = link::check_scene(message, limits_);
     if (!scene) {
       refused_.count(scene.error());
     } else if (scene->version > newest) {
@@ -83,6 +86,11 @@ void Inbox::receive_fixed_topics(SteadyTime now, UtcTime utc_now) {
       heartbeat_epoch_ = beat.epoch;
       last_heartbeat_ = beat.sequence_number;
       mission_.on_heartbeat(now);
+      plan_time_.on_heartbeat({.version = beat.version,
+                               .plan_time_s = beat.plan_time_s,
+                               .rate = beat.plan_rate,
+                               .stamp_utc_ns = beat.stamp_utc_ns},
+                              now);
     }
   }
 

@@ -12,6 +12,7 @@
 #include "robot_agent/heard_cells.hpp"
 #include "robot_agent/mission_watch.hpp"
 #include "robot_agent/neighbour_table.hpp"
+#include "robot_agent/plan_time_watch.hpp"
 #include "swarm_core/metrics/histogram.hpp"
 #include "swarm_link/state_channel.hpp"
 #include "swarm_link/validation.hpp"
@@ -66,7 +67,7 @@ class Inbox {
  public:
   /// No robot listens farther than `hear_radius_m`.
   Inbox(Readers readers, link::StateChannel& states, const link::WireLimits& limits,
-        const MissionWatch& mission, double hear_radius_m);
+        const MissionWatch& mission, Duration planner_silence, double hear_radius_m);
 
   /// Takes what arrived. `own(id)` names the guard of a robot of this process, or nullptr. Robots
   /// of one process hear each other over the bus like everyone else; a robot skips its own echo.
@@ -99,6 +100,8 @@ class Inbox {
   std::uint64_t plan_scene_version() const { return plan_scene_version_; }
 
   const MissionWatch& mission() const { return mission_; }
+  /// Of the newest plan received; empty while no heartbeat told it.
+  std::optional<PlanTime> plan_time(SteadyTime now) { return plan_time_.at(now); }
   std::int64_t stop_stamp_utc_ns() const { return stop_stamp_utc_ns_; }
 
   link::RefusalCounters& refused() { return refused_; }
@@ -118,6 +121,8 @@ class Inbox {
   link::StateChannel& states_;
   link::WireLimits limits_;
   MissionWatch mission_;
+  PlanTimeWatch plan_time_;
+  std::uint64_t plan_digest_ = 0;
   link::PlanSequence plan_sequence_;
   link::RefusalCounters refused_;
   std::uint64_t undecodable_seen_ = 0;

@@ -43,7 +43,9 @@ void Robot::step(const Tick& tick, const Inbox& inbox, const NewPlan* new_plan,
                                .goal = goal});
   }
   if (new_plan != nullptr) {
-    agent_.accept_plan(new_plan->flow, position_m_, new_plan->entry_of(id_));
+    std::optional<double> plan_time_s;
+    if (tick.plan_time) plan_time_s = tick.plan_time->plan_time_s;
+    agent_.accept_plan(new_plan->flow, position_m_, new_plan->entry_of(id_), plan_time_s);
     note(tick.utc_now, "plan", "took plan version " + std::to_string(inbox.plan_version()));
   }
   inbox.heard().visit_near(position_m_, [&](const HeardState& state) {
@@ -58,7 +60,9 @@ void Robot::step(const Tick& tick, const Inbox& inbox, const NewPlan* new_plan,
                          .position_m = position_m_,
                          .phase = inbox.mission().phase(),
                          .planner_alive = inbox.mission().planner_alive(tick.now),
-                         .velocity_mps = body.velocity_mps},
+                         .velocity_mps = body.velocity_mps,
+                         .plan_time = tick.plan_time,
+                         .planned_density = tick.planned_density},
                         rng_);
   mode_changed_ = !stepped_ || output_.mode != before;
   stepped_ = true;
@@ -66,6 +70,7 @@ void Robot::step(const Tick& tick, const Inbox& inbox, const NewPlan* new_plan,
 
   ++ticks_;
   if (tick.lateness > kLate) ++late_ticks_;
+  const TimeTracking tracking = output_.tracking.value_or(TimeTracking{});
   box_.append(blackbox::Step{
       .stamp = tick.utc_now,
       .position_m = true_position_m,
@@ -76,7 +81,11 @@ void Robot::step(const Tick& tick, const Inbox& inbox, const NewPlan* new_plan,
       .goal = agent_.has_route()
                   ? static_cast<std::uint8_t>(std::min(agent_.goal(position_m_), 254U))
                   : blackbox::Step::kNoGoal,
-      .neighbours = output_.neighbours});
+      .neighbours = output_.neighbours,
+      .plan_version = output_.tracking ? inbox.plan_version() : 0,
+      .plan_time_s = static_cast<float>(tracking.plan_time_s),
+      .reference_x_m = static_cast<float>(tracking.reference_m.x()),
+      .reference_y_m = static_cast<float>(tracking.reference_m.y())});
   if (ticks_ % kTicksPerBelief == 0 && !output_.believed.empty()) {
     const auto& one = output_.believed[ticks_ / kTicksPerBelief % output_.believed.size()];
     box_.append(blackbox::Belief{
@@ -110,6 +119,7 @@ link::RobotStatusMessage Robot::status() const {
           .x_m = position_m_.x(),
           .y_m = position_m_.y(),
           .remaining_m = output_.remaining_m,
+          .lag_s = agent_.lag_s(),
           .nearest_gap_m = std::isfinite(output_.nearest_gap_m) ? output_.nearest_gap_m : 1e9,
           .neighbours_heard = output_.neighbours,
           .ticks = ticks_,

@@ -25,6 +25,8 @@ class Robot {
     UtcTime utc_now;
     Duration lateness{};
     Duration period{};
+    std::optional<PlanTime> plan_time{};              ///< of the plan's clock, if it is known
+    const PlannedDensity* planned_density = nullptr;  ///< then, if it is asked for
   };
 
   /// Measures, decides, commands and records one step. Adds how old the states were that it used.

@@ -183,6 +183,7 @@ Result<void> Flight::join() {
     note(link::Severity::kWarning, "host-limits", shortcoming);
     std::fprintf(stderr, "%s\n", shortcoming.c_str());
   }
+  reported_.resize(options_.mission.robots.count);
   view_ = SwarmView(options_.mission.robots.count, options_.mission.link.hear_radius_m);
   monitors_.emplace(options_.how.monitors, dir_);
   if (auto started = monitors_->start(); !started) return started;
@@ -257,6 +258,10 @@ Result<void> Flight::act(const Action& action) {
       if (process == signal->process) ::kill(pid, number_of(signal->signal));
     }
     if (hosts_) hosts_->end(signal->process, signal->signal);
+  } else if (const auto* fallen = std::get_if<AddBodies>(&action)) {
+    add_bodies(fallen->robots);
+  } else if (const auto* risen = std::get_if<ClearBodies>(&action)) {
+    clear_bodies(risen->robots);
   } else if (const auto* event = std::get_if<LogEvent>(&action)) {
     log(*event);
   }
@@ -296,7 +301,10 @@ void Flight::serve(const shell::ControlServer::Request& request, SteadyTime now)
     }
     return;
   }
-  const auto wanted = parse_scene_change(word, request.line.substr(space), options_.mission.world);
+  auto wanted = parse_scene_change(word, request.line.substr(space), options_.mission.world);
+  if (wanted && std::holds_alternative<AddBody>(*wanted)) {
+    wanted = fail(ErrorCode::kBadInput, "add_body: the launcher alone adds bodies");
+  }
   const Result<std::string> changed = wanted ? change(*wanted) : tl::unexpected(wanted.error());
   control_->answer(request.client, changed ? "done: " + *changed
                                            : changed.error().message + "\nfailed: nothing changed");

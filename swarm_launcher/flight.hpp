@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,7 @@
 #include "swarm_core/shell/run_directory.hpp"
 #include "swarm_launcher/channel_choice.hpp"
 #include "swarm_launcher/event_log.hpp"
+#include "swarm_launcher/fallen_body.hpp"
 #include "swarm_launcher/flight_choices.hpp"
 #include "swarm_launcher/gateway.hpp"
 #include "swarm_launcher/hosts/remote_hosts.hpp"
@@ -87,6 +89,9 @@ class Flight {
   void bring_boxes_home();
   void send(CommandKind kind);
   Result<std::string> change(const SceneChange& change);
+  void add_bodies(std::span<const RobotId> robots);
+  void clear_bodies(std::span<const RobotId> robots);
+  std::optional<LastKnown> last_known_of(RobotId robot) const;
   void serve(const shell::ControlServer::Request& request, SteadyTime now);
   void reap(SteadyTime now);
   void read_bus(SteadyTime now);
@@ -117,6 +122,7 @@ class Flight {
   std::optional<SceneKeeper> scene_;
   std::optional<Supervisor> supervisor_;
   SwarmView view_;
+  std::vector<std::optional<LastKnown>> reported_;  // by the newest status of each robot
   link::WireLimits limits_;
   link::RefusalCounters refused_;
   std::map<pid_t, ProcessIndex> children_;

@@ -38,15 +38,20 @@ void Flight::read_bus(SteadyTime now) {
     }
     if (observer_ != nullptr) observer_->on_status(status);
     status_relay_->write(status);
+    const UtcTime stamp(Duration(status.stamp_utc_ns));
+    const SteadyTime sent_at = now - (utc_now() - stamp);
     for (const link::RobotStatusMessage& robot : status.robots) {
       view_.take(robot);
+      reported_[robot.robot_id] = {
+          .at = stamp, .position_m = {robot.x_m, robot.y_m}, .at_rest = robot.settled};
       if (hosts_) hosts_->on_status(RobotId(robot.robot_id), now);
       supervisor_->on_status(RobotId(robot.robot_id),
                              {.has_plan = status.plan_version > 0,
                               .hears_neighbours = view_.hears_neighbours(robot.robot_id),
                               .mode = robot.mode,
                               .settled = robot.settled,
-                              .scene_version = status.plan_scene_version});
+                              .scene_version = status.plan_scene_version,
+                              .sent_at = sent_at});
     }
   }
   heard_events_.clear();

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <limits>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include <fmt/format.h>
@@ -66,7 +67,10 @@ double mean_bound_m(const Mission& mission) {
 /// What a number of plans have in common.
 struct Sample {
   std::vector<double> nodes, edges, roadmap_ms, search_ms, transport_ms, smoothing_ms, total_ms,
-      raw_ratio, ratio, cost_m;
+      raw_ratio, ratio, cost_m, duration_s;
+  std::vector<planner::PlanWarning> warnings;  // of the first plan that has some
+  double cap_per_m2 = 0.0;
+  std::uint32_t capped = 0;
   double obstacle_share = 0.0;  // of the first plan
   double max_density_per_m2 = 0.0;
   double max_cvar_m = -std::numeric_limits<double>::infinity();
@@ -89,9 +93,13 @@ struct Sample {
       obstacle_share =
           planner::planned_obstacle_share(result.plan, mission.world, kShareSamples, rng);
     }
+    duration_s.push_back(result.plan.duration().count());
+    cap_per_m2 = std::max(cap_per_m2, s.cap_per_m2);
+    capped += s.cap_per_m2 > 0.0 ? 1U : 0U;
+    if (warnings.empty()) warnings = result.warnings;
     // Looking for the highest density takes longer than planning: of every plan only if it is
     // capped.
-    if (total_ms.size() == 1 || mission.planner.density_cap_per_m2 > 0.0) {
+    if (total_ms.size() == 1 || s.cap_per_m2 > 0.0) {
       max_density_per_m2 =
           std::max(max_density_per_m2,
                    planner::max_density(result.plan, mission.robots.count, kDensityStep_s).per_m2);
@@ -118,6 +126,9 @@ struct Sample {
                                          {"max_cvar_m", max_cvar_m},
                                          {"obstacle_share", obstacle_share},
                                          {"max_density_per_m2", max_density_per_m2},
+                                         {"capped", capped},
+                                         {"cap_per_m2", cap_per_m2},
+                                         {"duration_s", mean(duration_s)},
                                          {"cost_m", mean(cost_m)},
                                          {"seeds", tried},
                                          {"success", success()}};
@@ -125,16 +136,21 @@ struct Sample {
   }
 
   std::string to_text(double bound_m) const {
-    return fmt::format(
+    std::string text = fmt::format(
         "{} of {} seeds planned; {:.0f} nodes, {:.0f} edges\n"
         "median time: roadmap {:.2f} + search {:.2f} + transport {:.2f} + smoothing {:.2f} = "
         "{:.2f} ms\n"
         "mean path / bound {:.3f} raw, {:.3f} smoothed (bound {:.1f} m), W2 cost {:.1f} m\n"
         "largest CVaR {:.4f} m; at most {:.2f} % of the first plan's mixture inside obstacles\n"
-        "at most {:.3g} robots/m2\n",
+        "takes {:.1f} s; at most {:.3g} robots/m2; {} of {} plans under a density cap of {:.3g}\n",
         total_ms.size(), tried, median(nodes), median(edges), median(roadmap_ms), median(search_ms),
         median(transport_ms), median(smoothing_ms), median(total_ms), mean(raw_ratio), mean(ratio),
-        bound_m, mean(cost_m), max_cvar_m, 100.0 * obstacle_share, max_density_per_m2);
+        bound_m, mean(cost_m), max_cvar_m, 100.0 * obstacle_share, mean(duration_s),
+        max_density_per_m2, capped, total_ms.size(), cap_per_m2);
+    for (const planner::PlanWarning& warning : warnings) {
+      text += fmt::format("warning {}: {}\n", warning.code, warning.text);
+    }
+    return text;
   }
 
   double success() const { return static_cast<double>(total_ms.size()) / tried; }
@@ -169,7 +185,7 @@ Result<void> write_plan(const std::filesystem::path& out, const Mission& mission
 Result<ExitCode> plan_mission(const PlanCommandOptions& options) {
   const auto mission = load_mission(options.mission_file);
   if (!mission) return tl::unexpected(mission.error());
-  const auto planner_options = planner::planner_options(mission->planner, mission->robots.count);
+  const auto planner_options = planner::planner_options(*mission);
   const double bound_m = mean_bound_m(*mission);
   Sample sample;
   std::optional<Error> failure;

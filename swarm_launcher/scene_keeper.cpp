@@ -21,15 +21,29 @@ SceneKeeper::SceneKeeper(const World& mission_world, const std::filesystem::path
   writer_->write(link::to_message(scene_));
 }
 
-Result<std::string> SceneKeeper::change(const SceneChange& change, UtcTime now) {
+Result<void> SceneKeeper::make(const SceneChange& change, UtcTime now) {
   auto next = after(scene_, change, mission_world_, now);
   if (!next) return tl::unexpected(next.error());
-  const bool added = next->next_id > scene_.next_id;
   scene_ = std::move(*next);
-  writer_->write(link::to_message(scene_));
   log_ << scene_log_line(scene_.version, change) << std::flush;
-  return added ? fmt::format("obstacle {} added", scene_.next_id - 1)
-               : std::string(name_of(change));
+  return {};
+}
+
+Result<std::string> SceneKeeper::change(const SceneChange& change, UtcTime now) {
+  const std::uint32_t next_id = scene_.next_id;
+  if (auto made = make(change, now); !made) return tl::unexpected(made.error());
+  writer_->write(link::to_message(scene_));
+  return scene_.next_id > next_id ? fmt::format("obstacle {} added", next_id)
+                                  : std::string(name_of(change));
+}
+
+std::vector<Error> SceneKeeper::change_all(std::span<const SceneChange> changes, UtcTime now) {
+  std::vector<Error> refused;
+  for (const SceneChange& change : changes) {
+    if (auto made = make(change, now); !made) refused.push_back(made.error());
+  }
+  if (refused.size() < changes.size()) writer_->write(link::to_message(scene_));
+  return refused;
 }
 
 }  // namespace swarm::launcher

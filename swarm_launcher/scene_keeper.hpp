@@ -4,7 +4,9 @@
 
 #include <filesystem>
 #include <fstream>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "swarm_core/mission/scene.hpp"
 #include "swarm_link/port.hpp"
@@ -21,9 +23,14 @@ class SceneKeeper {
   /// Makes a change known to all; says what it was: "obstacle 6 added".
   Result<std::string> change(const SceneChange& change, UtcTime now);
 
+  /// Makes several changes known at once. Returns why some of them were refused.
+  std::vector<Error> change_all(std::span<const SceneChange> changes, UtcTime now);
+
   const Scene& scene() const { return scene_; }
 
  private:
+  Result<void> make(const SceneChange& change, UtcTime now);
+
   const World& mission_world_;
   Scene scene_;
   std::ofstream log_;

@@ -88,6 +88,18 @@ void Supervisor::on_status(RobotId robot, const RobotReport& report) {
   Robot& r = robots_.at(robot.value());
   r.report = report;
   r.heard = true;
+  // What a process sent before it died may come after we know that it died.
+  if (!r.silent_since || report.sent_at <= *r.silent_since) return;
+  r.silent_since.reset();
+  std::erase(fallen_, robot);
+  risen_.push_back(robot);
+}
+
+void Supervisor::on_silent(RobotId robot, SteadyTime now) {
+  Robot& r = robots_.at(robot.value());
+  r.silent_since = now;
+  std::erase(risen_, robot);
+  if (std::find(fallen_.begin(), fallen_.end(), robot) == fallen_.end()) fallen_.push_back(robot);
 }
 
 void Supervisor::on_joined(ProcessIndex first, std::uint32_t count, SteadyTime now) {
@@ -111,6 +123,7 @@ void Supervisor::on_exit(ProcessIndex process, const ProcessExit& exit, SteadyTi
     return;
   }
 
+  for (std::uint32_t i = 0; i < count; ++i) on_silent(RobotId(first.value() + i), now);
   const bool is_planner = process == kPlanner;
   const std::string who = is_planner ? "planner" : fmt::format("agent process {}", process.value());
   pending_log_.push_back({.warning = true,
@@ -155,6 +168,12 @@ void Supervisor::command(CommandKind kind, SteadyTime now, std::vector<Action>& 
   actions.emplace_back(LogEvent{.code = "command", .text = std::string(swarm::to_string(kind))});
 }
 
+/// One change of the scene a step, however many robots fall at once: each is a new plan.
+void Supervisor::keep_bodies(std::vector<Action>& actions) {
+  if (!fallen_.empty()) actions.emplace_back(AddBodies{std::exchange(fallen_, {})});
+  if (!risen_.empty()) actions.emplace_back(ClearBodies{std::exchange(risen_, {})});
+}
+
 /// An agent that joins the bus. Dozens at once only take the CPU from each other and from those
 /// that answer them; one that hangs must not keep the others waiting.
 bool Supervisor::is_starting(std::uint32_t process, SteadyTime now) const {
@@ -176,6 +195,7 @@ void Supervisor::start_due(SteadyTime now, std::vector<Action>& actions) {
         .text = i == 0 ? "planner restarted" : fmt::format("agent process {} restarted", i)});
   }
   const double due = 1.0 + to_seconds(now - begun_) * options_.launcher.starts_per_s;
+  if (next_start_ == local_processes()) return;
   std::uint32_t starting = 0;
   for (std::uint32_t i = 0; i < next_start_; ++i) starting += is_starting(i, now) ? 1 : 0;
   while (next_start_ < local_processes() && static_cast<double>(next_start_) < due &&
@@ -319,6 +339,7 @@ std::vector<Action> Supervisor::step(SteadyTime now) {
     return actions;
   }
   if (stage_ == Stage::kDone) return actions;
+  keep_bodies(actions);
   for (const CommandKind kind : std::exchange(pending_commands_, {})) command(kind, now, actions);
   repeat_stop(now, actions);
   if (phase_ != MissionPhase::kStopped) start_due(now, actions);

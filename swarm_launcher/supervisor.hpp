@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -41,6 +42,7 @@ struct RobotReport {
   RobotMode mode = RobotMode::kWaiting;
   bool settled = false;
   std::uint64_t scene_version = 0;  ///< that its plan was made for
+  SteadyTime sent_at{};             ///< by its stamp
 };
 
 enum class EndSignal { kInterrupt, kTerminate, kKill };
@@ -58,12 +60,21 @@ struct SendCommand {
 struct ChangeScene {
   SceneChange change;
 };
+/// These robots are not received any more: their bodies become obstacles.
+struct AddBodies {
+  std::vector<RobotId> robots;
+};
+/// These are received again: their bodies are no obstacles any more.
+struct ClearBodies {
+  std::vector<RobotId> robots;
+};
 struct LogEvent {
   bool warning = false;
   std::string code;
   std::string text;
 };
-using Action = std::variant<StartProcess, SignalProcess, SendCommand, ChangeScene, LogEvent>;
+using Action = std::variant<StartProcess, SignalProcess, SendCommand, ChangeScene, AddBodies,
+                            ClearBodies, LogEvent>;
 
 enum class Outcome {
   kNone,       ///< still going on
@@ -99,6 +110,9 @@ class Supervisor {
   /// Another host has started some of its processes.
   void on_joined(ProcessIndex first, std::uint32_t count, SteadyTime now);
   void on_exit(ProcessIndex process, const ProcessExit& exit, SteadyTime now);
+  /// A robot is not received any more, whatever became of its process: it stays where it is, in
+  /// everyone's way, until it reports again.
+  void on_silent(RobotId robot, SteadyTime now);
   void on_command(CommandKind kind, SteadyTime now);  ///< of the user
   /// The swarm has a new goal: who arrives by a plan for an older scene has not arrived.
   void on_new_goal(std::uint64_t scene_version) { goal_version_ = scene_version; }
@@ -140,6 +154,7 @@ class Supervisor {
     RobotReport report;
     bool heard = false;
     bool lost = false;
+    std::optional<SteadyTime> silent_since{};  // its body is an obstacle
   };
 
   bool is_remote(ProcessIndex process) const { return process.value() >= local_processes(); }
@@ -157,6 +172,7 @@ class Supervisor {
   void begin_ending(Outcome outcome, SteadyTime now);
   void end(SteadyTime now, std::vector<Action>& actions);
   void command(CommandKind kind, SteadyTime now, std::vector<Action>& actions);
+  void keep_bodies(std::vector<Action>& actions);
 
   SupervisorOptions options_;
   Stage stage_ = Stage::kStarting;
@@ -166,6 +182,8 @@ class Supervisor {
   std::vector<Robot> robots_;
   std::vector<LogEvent> pending_log_;
   std::vector<CommandKind> pending_commands_;
+  std::vector<RobotId> fallen_;  // since the last step
+  std::vector<RobotId> risen_;
   std::uint32_t next_start_ = 0;
   SteadyTime begun_;
   SteadyTime last_start_;

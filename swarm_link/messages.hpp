@@ -20,6 +20,8 @@ inline constexpr std::size_t kMaxCellStates = 256;
 /// Event::source of whoever is not a robot.
 inline constexpr std::uint32_t kPlannerSource = 0xFFFF'FFFF;
 inline constexpr std::uint32_t kLauncherSource = 0xFFFF'FFFE;
+/// SceneObstacleMessage::owner_robot_id of what is no robot's body.
+inline constexpr std::uint32_t kNoRobot = 0xFFFF'FFFF;
 
 using swarm::CommandKind;
 using swarm::MissionPhase;
@@ -65,6 +67,7 @@ struct PointMessage {
 
 struct SceneObstacleMessage {
   std::uint32_t obstacle_id = 0;
+  std::uint32_t owner_robot_id = kNoRobot;
   std::uint32_t vertices = 0;
   PointMessage center{};
   double radius_m = 0;

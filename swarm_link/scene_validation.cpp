@@ -44,20 +44,30 @@ Checked<Obstacle> to_shape(const SceneObstacleMessage& message,
   return std::move(*polygon);
 }
 
-Checked<std::vector<SceneObstacle>> to_obstacles(const SceneMessage& message) {
+/// A body is a circle that stays where it is, by the number of its robot.
+bool is_body(const SceneObstacleMessage& o, const WireLimits& limits) {
+  return o.owner_robot_id < limits.robots && o.obstacle_id == body_id(RobotId(o.owner_robot_id)) &&
+         o.vertices == 0 && o.velocity_x_mps == 0.0 && o.velocity_y_mps == 0.0;
+}
+
+Checked<std::vector<SceneObstacle>> to_obstacles(const SceneMessage& message,
+                                                 const WireLimits& limits) {
   std::vector<SceneObstacle> obstacles;
   std::span<const PointMessage> vertices_left(message.vertices);
   for (const SceneObstacleMessage& o : message.obstacles) {
     const bool ordered = obstacles.empty() || obstacles.back().id < o.obstacle_id;
     const bool slow = std::hypot(o.velocity_x_mps, o.velocity_y_mps) <= kMaxSpeed_mps;
-    if (!ordered || !slow || o.obstacle_id >= message.next_id ||
-        o.moving_from_utc_ns > o.moving_until_utc_ns || o.vertices > vertices_left.size()) {
+    const bool owned = o.owner_robot_id != kNoRobot;
+    const bool known = owned ? is_body(o, limits) : o.obstacle_id < message.next_id;
+    if (!ordered || !slow || !known || o.moving_from_utc_ns > o.moving_until_utc_ns ||
+        o.vertices > vertices_left.size()) {
       return refuse(RefusalReason::kOutOfRange);
     }
     auto shape = to_shape(o, vertices_left.first(o.vertices));
     if (!shape) return refuse(shape.error());
     vertices_left = vertices_left.subspan(o.vertices);
     obstacles.push_back({.id = o.obstacle_id,
+                         .owner = owned ? std::optional(RobotId(o.owner_robot_id)) : std::nullopt,
                          .shape = std::move(*shape),
                          .velocity_mps = {o.velocity_x_mps, o.velocity_y_mps},
                          .moving_from = UtcTime(Duration(o.moving_from_utc_ns)),
@@ -85,13 +95,14 @@ Checked<std::optional<Mixture>> to_goal(const SceneMessage& message) {
 
 }  // namespace
 
-Checked<Scene> check_scene(const SceneMessage& message) {
+Checked<Scene> check_scene(const SceneMessage& message, const WireLimits& limits) {
   if (message.schema_version != kSchemaVersion) return refuse(RefusalReason::kSchema);
   if (!fits_wire(message)) return refuse(RefusalReason::kOversized);
+  if (message.next_id > kFirstBodyId) return refuse(RefusalReason::kOutOfRange);
   if (!(message.risk_alpha >= 0.0 && message.risk_alpha < 1.0)) {
     return refuse(RefusalReason::kOutOfRange);
   }
-  auto obstacles = to_obstacles(message);
+  auto obstacles = to_obstacles(message, limits);
   if (!obstacles) return refuse(obstacles.error());
   auto goal = to_goal(message);
   if (!goal) return refuse(goal.error());
@@ -113,6 +124,7 @@ SceneMessage to_message(const Scene& scene) {
   for (const SceneObstacle& o : scene.obstacles) {
     SceneObstacleMessage& out = message.obstacles.emplace_back();
     out.obstacle_id = o.id;
+    if (o.owner) out.owner_robot_id = o.owner->value();
     out.velocity_x_mps = o.velocity_mps.x();
     out.velocity_y_mps = o.velocity_mps.y();
     out.moving_from_utc_ns = o.moving_from.time_since_epoch().count();

@@ -76,8 +76,9 @@ inline constexpr std::uint16_t kAnySource = 0xFFFF;
 /// lie inside the bounds plus slack; robots enter at sources there are).
 Checked<FlowPlan> check_plan(const PlanMessage& message, const WireLimits& limits);
 
-/// Schema, size and content of a scene: shapes are valid, obstacles in order, vertices all used.
-Checked<Scene> check_scene(const SceneMessage& message);
+/// Schema, size and content of a scene: shapes are valid, obstacles in order, vertices all used,
+/// bodies those of robots there are.
+Checked<Scene> check_scene(const SceneMessage& message, const WireLimits& limits);
 
 Checked<void> check_heartbeat(const HeartbeatMessage& message);
 Checked<void> check_command(const CommandMessage& message);

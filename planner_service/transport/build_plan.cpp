@@ -11,10 +11,10 @@
 namespace swarm::planner {
 namespace {
 
-std::vector<double> arrival_times_s(const Waypoints& waypoints, double speed_mps) {
+std::vector<double> arrival_times_s(const Waypoints& waypoints, const LegSpeed& speed) {
   std::vector<double> times_s{0.0};
   for (std::size_t i = 1; i < waypoints.size(); ++i) {
-    times_s.push_back(times_s.back() + leg_duration_s(waypoints[i - 1], waypoints[i], speed_mps));
+    times_s.push_back(times_s.back() + route_leg_duration_s(waypoints, i, speed));
   }
   return times_s;
 }
@@ -22,13 +22,13 @@ std::vector<double> arrival_times_s(const Waypoints& waypoints, double speed_mps
 }  // namespace
 
 Result<FlowPlan> build_plan(std::span<const Route> routes, std::size_t starts, std::size_t goals,
-                            double speed_mps) {
-  SWARM_ASSERT(speed_mps > 0.0);
+                            const LegSpeed& speed) {
+  SWARM_ASSERT(speed.means_mps > 0.0 && speed.robots_mps > 0.0);
   std::vector<PlanNode> nodes(starts + goals);
   std::vector<std::vector<double>> times_s;
   for (const Route& route : routes) {
     SWARM_ASSERT(route.waypoints.size() >= 2 && route.from < starts && route.to < goals);
-    times_s.push_back(arrival_times_s(route.waypoints, speed_mps));
+    times_s.push_back(arrival_times_s(route.waypoints, speed));
     PlanNode& source = nodes[route.from];
     PlanNode& sink = nodes[starts + route.to];
     source.gaussian = route.waypoints.front();

@@ -33,7 +33,7 @@ Key key_of(const Gaussian& g) {
 class MergedGraph {
  public:
   MergedGraph(std::span<const Route> routes, std::size_t starts, std::size_t goals,
-              double speed_mps)
+              const LegSpeed& speed)
       : terminals_(static_cast<std::uint32_t>(starts + goals)) {
     std::uint32_t next = terminals_;
     for (const Route& route : routes) {
@@ -42,8 +42,7 @@ class MergedGraph {
       for (std::size_t i = 1; i < route.waypoints.size(); ++i) {
         const bool is_last = i + 1 == route.waypoints.size();
         const std::uint32_t node = is_last ? static_cast<std::uint32_t>(starts + route.to) : next++;
-        legs_.push_back({previous, node,
-                         leg_duration_s(route.waypoints[i - 1], route.waypoints[i], speed_mps)});
+        legs_.push_back({previous, node, route_leg_duration_s(route.waypoints, i, speed)});
         masses_.push_back(route.mass);
         previous = node;
       }
@@ -104,9 +103,9 @@ class MergedGraph {
 }  // namespace
 
 Result<FlowPlan> build_merged_plan(std::span<const Route> routes, std::size_t starts,
-                                   std::size_t goals, double speed_mps) {
-  SWARM_ASSERT(speed_mps > 0.0);
-  MergedGraph graph(routes, starts, goals, speed_mps);
+                                   std::size_t goals, const LegSpeed& speed) {
+  SWARM_ASSERT(speed.means_mps > 0.0 && speed.robots_mps > 0.0);
+  MergedGraph graph(routes, starts, goals, speed);
   std::vector<PlanNode> all(graph.size());
   std::map<Key, std::vector<std::uint32_t>> same;
   std::uint32_t next = graph.terminals();

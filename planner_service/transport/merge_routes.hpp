@@ -22,9 +22,9 @@ namespace swarm::planner {
 ///
 /// Times: goals are reached when their slowest route allows it. In between, the tightest way
 /// between two nodes of known time is paced evenly, then the tightest of those that are left; no
-/// leg is faster than `speed_mps`. Without anything to merge that is build_plan(), whose contract
-/// for sources and sinks and whose \pre hold. Cost: waypoints² of all routes.
+/// leg is faster than `speed` allows. Without anything to merge that is build_plan(), whose
+/// contract for sources and sinks and whose \pre hold. Cost: waypoints² of all routes.
 Result<FlowPlan> build_merged_plan(std::span<const Route> routes, std::size_t starts,
-                                   std::size_t goals, double speed_mps);
+                                   std::size_t goals, const LegSpeed& speed);
 
 }  // namespace swarm::planner

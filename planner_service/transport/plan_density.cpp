@@ -3,78 +3,27 @@
 #include "planner_service/transport/plan_density.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numbers>
 
-#include "planner_service/transport/density_cap.hpp"
+#include "planner_service/transport/density_parts.hpp"
 #include "swarm_core/base/assert.hpp"
 #include "swarm_core/gmm/wasserstein.hpp"
 
 namespace swarm::planner {
 namespace {
 
-constexpr int kClimbSteps = 40;
-constexpr double kClimbed_m = 1e-3;
-// A Gaussian adds less than 1e-6 of its peak beyond this many standard deviations, ...
-constexpr double kFar = 5.3;
-constexpr double kFarSquared = kFar * kFar;
-// ... and is left out of a climb that starts two more away: one of the parts in between would have
-// to pull it that far.
-constexpr double kOutOfSight = kFar + 2.0;
-// Means where the density is this far below what is of interest are not climbed from. The middle of
-// a square of equal Gaussians has 1.3 times the density of its corners at most.
-constexpr double kWorthClimbing = 0.7;
-
-// A Gaussian at one time, ready to be evaluated.
-struct Part {
-  Vec2 mean_m;
-  Vec2 sight_m;       // half the box beyond which it is out of sight
-  double xx, xy, yy;  // Σ⁻¹
-  double peak_per_m2;
+// A Gaussian at one time, and which leg it is on.
+struct Part : DensityPart {
   std::uint32_t from, to;
-
-  bool is_in_sight(const Vec2& x) const {
-    return std::abs(x.x() - mean_m.x()) <= sight_m.x() &&
-           std::abs(x.y() - mean_m.y()) <= sight_m.y();
-  }
-  double mahalanobis_squared(const Vec2& x) const {
-    const Vec2 d = x - mean_m;
-    return xx * d.x() * d.x() + 2.0 * xy * d.x() * d.y() + yy * d.y() * d.y();
-  }
-  double density_at(const Vec2& x) const {
-    const double squared = mahalanobis_squared(x);
-    return squared > kFarSquared ? 0.0 : peak_per_m2 * std::exp(-0.5 * squared);
-  }
 };
-
-// Follows the mean shift, which never descends, to a local maximum.
-Vec2 climb(const std::vector<Part>& parts, Vec2 x) {
-  for (int step = 0; step < kClimbSteps; ++step) {
-    double xx = 0.0;
-    double xy = 0.0;
-    double yy = 0.0;
-    Vec2 pull = Vec2::Zero();
-    for (const Part& part : parts) {
-      const double w = part.density_at(x);
-      if (w == 0.0) continue;
-      xx += w * part.xx;
-      xy += w * part.xy;
-      yy += w * part.yy;
-      pull.x() += w * (part.xx * part.mean_m.x() + part.xy * part.mean_m.y());
-      pull.y() += w * (part.xy * part.mean_m.x() + part.yy * part.mean_m.y());
-    }
-    const double det = xx * yy - xy * xy;
-    if (!(det > 0.0)) break;
-    const Vec2 next((yy * pull.x() - xy * pull.y()) / det, (xx * pull.y() - xy * pull.x()) / det);
-    const bool arrived = (next - x).squaredNorm() < kClimbed_m * kClimbed_m;
-    x = next;
-    if (arrived) break;
-  }
-  return x;
-}
 
 class Slice {
  public:
-  Slice(const FlowPlan& plan, double robots, MissionTime t) : time_(t) {
+  /// `smoothed_m2` is added to both variances of every Gaussian.
+  Slice(const FlowPlan& plan, double robots, MissionTime t, double smoothed_m2 = 0.0)
+      : time_(t), smoothed_m2_(smoothed_m2) {
     const auto& nodes = plan.nodes();
     for (const std::uint32_t i : plan.sources()) {
       if (t < nodes[i].time) add(nodes[i].gaussian, nodes[i].mass * robots, i, i);
@@ -100,17 +49,17 @@ class Slice {
   // One peak for each mean worth climbing from, given what is of interest.
   std::vector<DensityPeak> peaks(double interest_per_m2) const {
     std::vector<DensityPeak> peaks;
-    std::vector<Part> in_sight;
+    std::vector<DensityPart> in_sight;
     for (const Part& start : parts_) {
       in_sight.clear();
       double density = 0.0;
       for (const Part& part : parts_) {
-        if (!part.is_in_sight(start.mean_m)) continue;
+        if (!part.is_in_sight(start.mean_m())) continue;
         in_sight.push_back(part);
-        density += part.density_at(start.mean_m);
+        density += part.density_at(start.mean_m());
       }
       if (density < kWorthClimbing * interest_per_m2) continue;
-      const Vec2 top_m = climb(in_sight, start.mean_m);
+      const Vec2 top_m = climb(in_sight, start.mean_m());
       peaks.push_back({density_at(top_m), time_, top_m});
     }
     return peaks;
@@ -120,25 +69,44 @@ class Slice {
   double density_at(const Vec2& x) const {
     double density = 0.0;
     for (const Part& part : parts_) {
-      density += part.peak_per_m2 * std::exp(-0.5 * part.mahalanobis_squared(x));
+      density += part.full_density_at(x);
     }
     return density;
   }
 
  private:
   void add(const Gaussian& g, double robots, std::uint32_t from, std::uint32_t to) {
-    const Mat2& s = g.covariance_m2();
-    const double det = g.determinant();
-    const Vec2 sight_m(kOutOfSight * std::sqrt(s(0, 0)), kOutOfSight * std::sqrt(s(1, 1)));
-    parts_.push_back({g.mean_m(), sight_m, s(1, 1) / det, -s(0, 1) / det, s(0, 0) / det,
-                      peak_density_per_m2(g, robots, 1.0), from, to});
+    parts_.push_back({DensityPart(g, robots, smoothed_m2_), from, to});
   }
 
   MissionTime time_{0};
+  double smoothed_m2_ = 0.0;
   std::vector<Part> parts_;
 };
 
-std::vector<MissionTime> sample_times(const FlowPlan& plan, double step_s) {
+// Mean density in a disc: Gauss-Legendre in the square of the radius, even steps in the angle.
+// Exact to 0.1 % where no Gaussian is narrower than a third of the radius.
+double disc_density(const Slice& slice, const Vec2& center_m, double radius_m) {
+  constexpr std::array kAreas{0.0694318442029737, 0.3300094782075719, 0.6699905217924281,
+                              0.9305681557970263};
+  constexpr std::array kWeights{0.1739274225687269, 0.3260725774312731, 0.3260725774312731,
+                                0.1739274225687269};
+  constexpr int kAngles = 12;
+  double density = 0.0;
+  for (std::size_t ring = 0; ring < kAreas.size(); ++ring) {
+    const double r_m = radius_m * std::sqrt(kAreas[ring]);
+    for (int i = 0; i < kAngles; ++i) {
+      const double angle = 2.0 * std::numbers::pi * i / kAngles;
+      density += kWeights[ring] / kAngles *
+                 slice.density_at(center_m + r_m * Vec2(std::cos(angle), std::sin(angle)));
+    }
+  }
+  return density;
+}
+
+}  // namespace
+
+std::vector<MissionTime> density_times(const FlowPlan& plan, double step_s) {
   SWARM_ASSERT(step_s > 0.0);
   std::vector<MissionTime> times;
   double first_s = 0.0;
@@ -155,11 +123,9 @@ std::vector<MissionTime> sample_times(const FlowPlan& plan, double step_s) {
   return times;
 }
 
-}  // namespace
-
 DensityPeak max_density(const FlowPlan& plan, double robots, double step_s) {
   DensityPeak highest;
-  for (const MissionTime t : sample_times(plan, step_s)) {
+  for (const MissionTime t : density_times(plan, step_s)) {
     for (const DensityPeak& peak : Slice(plan, robots, t).peaks(highest.per_m2)) {
       if (peak.per_m2 > highest.per_m2) highest = peak;
     }
@@ -176,10 +142,24 @@ DensityPeak max_density(std::span<const Gaussian> components, std::span<const do
   return highest;
 }
 
+DensityPeak densest_disc(const FlowPlan& plan, double robots, double radius_m, double step_s) {
+  SWARM_ASSERT(radius_m > 0.0);
+  DensityPeak highest;
+  for (const MissionTime t : density_times(plan, step_s)) {
+    const Slice slice(plan, robots, t);
+    for (DensityPeak peak :
+         Slice(plan, robots, t, 0.25 * radius_m * radius_m).peaks(highest.per_m2)) {
+      peak.per_m2 = disc_density(slice, peak.at_m, radius_m);
+      if (peak.per_m2 > highest.per_m2) highest = peak;
+    }
+  }
+  return highest;
+}
+
 std::vector<SharedPeak> peaks_above(const FlowPlan& plan, double robots, double step_s,
                                     double limit_per_m2) {
   std::vector<SharedPeak> above;
-  for (const MissionTime t : sample_times(plan, step_s)) {
+  for (const MissionTime t : density_times(plan, step_s)) {
     const Slice slice(plan, robots, t);
     for (const DensityPeak& peak : slice.peaks(limit_per_m2)) {
       if (peak.per_m2 <= limit_per_m2) continue;

@@ -30,6 +30,9 @@ struct SharedPeak {
   std::vector<DensityShare> shares;
 };
 
+/// The times at which densities of a plan are looked at: `step_s` apart, and those of all nodes.
+std::vector<MissionTime> density_times(const FlowPlan& plan, double step_s);
+
 /// The highest density of a plan over sampled times. It knows the flow alone, no solver.
 ///
 /// Times are `step_s` apart, and those of all nodes. At each, the climb starts at the mean of every
@@ -40,6 +43,13 @@ DensityPeak max_density(const FlowPlan& plan, double robots, double step_s);
 /// The highest density of Gaussians that stand still, found the same way.
 DensityPeak max_density(std::span<const Gaussian> components, std::span<const double> masses,
                         double robots);
+
+/// The most robots in a disc of `radius_m` by its area, over sampled times: what bodies have to
+/// find room in, where max_density() counts a Gaussian that is narrower than a robot as endless.
+///
+/// Climbs as max_density() does, on the density smoothed by the disc's own covariance (R²/4 I), and
+/// counts there, so that it may miss the densest disc by a few per cent, always from below.
+DensityPeak densest_disc(const FlowPlan& plan, double robots, double radius_m, double step_s);
 
 /// All peaks above `limit_per_m2`, in order of time.
 std::vector<SharedPeak> peaks_above(const FlowPlan& plan, double robots, double step_s,

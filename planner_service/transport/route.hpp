@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
+#include <limits>
 #include <vector>
 
 #include "swarm_core/gmm/gaussian.hpp"
@@ -21,6 +23,29 @@ double mean_length_m(const Waypoints& waypoints);
 /// Gaussian changes shape still takes its robots along: the leg then lasts as long as their mean
 /// way asks for. Never 0, legs must run forward in time even where nothing moves.
 double leg_duration_s(const Gaussian& from, const Gaussian& to, double speed_mps);
+
+/// How fast a plan moves.
+struct LegSpeed {
+  double means_mps = 1.25;  ///< of the means
+  /// Most that a leg from a start or to a goal asks of a robot of the 2σ ellipse.
+  double robots_mps = std::numeric_limits<double>::infinity();
+};
+
+/// The longest way a robot of the 2σ ellipse has along a leg [m]:
+///
+///   max |Δμ + (T − I)y|  over  yᵀΣ⁻¹y ≤ 4,   T the transport map from Σ to the other end's shape.
+///
+/// An affine function of a point of the unit disc: by the dual of that problem, which has no gap, a
+/// minimum over one number. Never below the exact value, above it by rounding. About 1 µs.
+double longest_robot_way_m(const Gaussian& from, const Gaussian& to);
+
+/// leg_duration_s() of a leg that leaves a start or enters a goal. Components are wide, and the
+/// shape changes most there: where σ goes from 10 m to 2 m in 17 m, robots at the far side have
+/// twice the way of the mean. So the leg also takes as long as robots of the 2σ ellipse need.
+double end_leg_duration_s(const Gaussian& from, const Gaussian& to, const LegSpeed& speed);
+
+/// Of the leg that ends at waypoint i ≥ 1: the first and the last one are ends.
+double route_leg_duration_s(const Waypoints& waypoints, std::size_t i, const LegSpeed& speed);
 
 struct Route {
   std::size_t from = 0;  ///< start component

@@ -165,7 +165,7 @@ Result<TimedFlow> timed_flow(const Roadmap& roadmap, std::span<const double> sup
   }
   const Terminals terminals{supplies, demands};
   const TimedNetwork network(roadmap, supplies.size(), demands.size(),
-                             {.speed_mps = options.speed_mps,
+                             {.speed = options.speed,
                               .step_s = options.step_s,
                               .detour = options.detour,
                               .delay_price_mps = options.delay_price_mps},
@@ -180,7 +180,7 @@ Result<TimedFlow> timed_flow(const Roadmap& roadmap, std::span<const double> sup
   result.step_s = network.step_s();
   result.free_flow_s = *free_flow * network.step_s();
   std::vector<double> capacities =
-      first_capacities(roadmap, terminals, cap, options.speed_mps * network.step_s());
+      first_capacities(roadmap, terminals, cap, options.speed.means_mps * network.step_s());
   Horizon horizon(network, *free_flow, options.stretch_max);
   double highest = 0.0;
   for (result.rounds = 1; result.rounds <= options.rounds_max; ++result.rounds) {

@@ -9,13 +9,14 @@
 #include "planner_service/roadmap/edge_check.hpp"
 #include "planner_service/roadmap/roadmap.hpp"
 #include "planner_service/transport/density_cap.hpp"
+#include "planner_service/transport/route.hpp"
 #include "swarm_core/base/result.hpp"
 #include "swarm_core/plan/flow_plan.hpp"
 
 namespace swarm::planner {
 
 struct TimedFlowOptions {
-  double speed_mps = 1.25;        ///< of the means
+  LegSpeed speed{};
   double step_s = 0.0;            ///< grid of times; 0 for half of the median leg
   double detour = 1.05;           ///< how far off the shortest ways legs are considered
   double delay_price_mps = 0.1;   ///< metres of detour that a second of delay is worth

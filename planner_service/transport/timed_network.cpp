@@ -71,9 +71,12 @@ std::vector<Leg> near_shortest(const Roadmap& roadmap, std::size_t starts, std::
       const Gaussian& a = roadmap.nodes[u];
       const Gaussian& b = roadmap.nodes[arc.to];
       if (!checker.is_free(a, b, kPlanTolerance_m)) continue;
-      const double duration_s = leg_duration_s(a, b, options.speed_mps);
-      if (there) legs.push_back({u, arc.to, arc.length_m, duration_s});
-      if (back) legs.push_back({arc.to, u, arc.length_m, duration_s});
+      const bool is_end = u < starts + goals || arc.to < starts + goals;
+      const double there_s = is_end ? end_leg_duration_s(a, b, options.speed)
+                                    : leg_duration_s(a, b, options.speed.means_mps);
+      const double back_s = is_end ? end_leg_duration_s(b, a, options.speed) : there_s;
+      if (there) legs.push_back({u, arc.to, arc.length_m, there_s});
+      if (back) legs.push_back({arc.to, u, arc.length_m, back_s});
     }
   }
   return legs;
@@ -99,7 +102,8 @@ struct TimedNetwork::Unrolled {
 TimedNetwork::TimedNetwork(const Roadmap& roadmap, std::size_t starts, std::size_t goals,
                            const TimedNetworkOptions& options, EdgeChecker& checker)
     : starts_(starts), goals_(goals) {
-  SWARM_ASSERT(options.step_s >= 0.0 && options.speed_mps > 0.0 && options.delay_price_mps >= 0.0);
+  SWARM_ASSERT(options.step_s >= 0.0 && options.speed.means_mps > 0.0 &&
+               options.delay_price_mps >= 0.0);
   const std::vector<Leg> legs = near_shortest(roadmap, starts, goals, options, checker);
   step_s_ = options.step_s > 0.0 ? options.step_s : median_duration_s(legs) / kStepsPerLeg;
   step_price_m_ = options.delay_price_mps * step_s_;

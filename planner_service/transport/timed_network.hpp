@@ -10,11 +10,12 @@
 
 #include "planner_service/roadmap/edge_check.hpp"
 #include "planner_service/roadmap/roadmap.hpp"
+#include "planner_service/transport/route.hpp"
 
 namespace swarm::planner {
 
 struct TimedNetworkOptions {
-  double speed_mps = 1.25;     ///< of the means
+  LegSpeed speed{};            ///< ends are legs at a start or goal component
   double step_s = 0.0;         ///< the grid of times; 0 for half of the median leg
   double detour = 1.05;        ///< legs on no way shorter than this many times the shortest are out
   double delay_price_mps = 0;  ///< what a second of being under way costs, beside the way itself

@@ -3,8 +3,10 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 
+#include "robot_agent/control/planned_density.hpp"
 #include "robot_agent/control/route.hpp"
 #include "robot_agent/neighbour_table.hpp"
 #include "swarm_core/base/random.hpp"
@@ -20,7 +22,15 @@ struct ControlView {
   Vec2 position_m = Vec2::Zero();
   std::span<const Neighbour> neighbours;
   const World& world;
-  std::span<const Neighbour> close{};  ///< the first of the neighbours: Neighbourhood::close
+  std::span<const Neighbour> close{};   ///< the first of the neighbours: Neighbourhood::close
+  std::optional<PlanTime> plan_time{};  ///< of the plan's clock; empty: there is none
+  const PlannedDensity* planned_density = nullptr;  ///< at that time; null: not asked for
+};
+
+/// Where a robot is in time, of one that keeps the plan's times.
+struct TimeTracking {
+  double plan_time_s = 0.0;         ///< τ
+  Vec2 reference_m = Vec2::Zero();  ///< x_ref(τ): where the plan has this robot
 };
 
 /// How a robot turns its way through the flow into a velocity: one class per method of the papers.
@@ -47,6 +57,12 @@ class ControlMethod {
 
   /// Index of the goal (sink of the plan) the robot is at or goes to. \pre begin() was called
   virtual std::uint32_t goal(const Vec2& position_m) const = 0;
+
+  /// As of the last desired velocity; empty for a method, or a plan, without times.
+  virtual std::optional<TimeTracking> tracking() const { return std::nullopt; }
+
+  /// Plan time by which it is behind its reference, negative if ahead of it; 0 without times.
+  virtual double lag_s() const { return 0.0; }
 
   virtual double remaining_m() const = 0;     ///< of the own way
   virtual std::uint32_t escapes() const = 0;  ///< how often it freed itself from a deadlock

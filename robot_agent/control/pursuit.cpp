@@ -11,10 +11,11 @@ namespace {
 constexpr double kStep_m = 0.25;    // of progress
 constexpr double kReached_m = 0.5;  // an aim this near counts as reached
 constexpr double kBackTrack_m = 30.0;
-constexpr double kSample_m = 0.5;   // of the planned clearance
-constexpr double kLeast_m = 0.05;   // surface clearance of any line of sight
-constexpr double kTouch_m = 1e-3;   // a line of sight begins where the robot is
-constexpr double kKeepAim_m = 1.5;  // an aim this far ahead is kept between two looks
+constexpr double kSample_m = 0.5;    // of the planned clearance
+constexpr double kLeast_m = 0.05;    // surface clearance of any line of sight
+constexpr double kTouch_m = 1e-3;    // a line of sight begins where the robot is
+constexpr double kKeepAim_m = 1.5;   // an aim this far ahead is kept between two looks,
+constexpr double kAtCarrot_m = 0.1;  // and one this near the carrot
 
 }  // namespace
 
@@ -71,13 +72,24 @@ void Pursuit::advance(const Vec2& position_m) {
 }
 
 Pursuit::Aim Pursuit::aim(const Vec2& position_m) const {
-  return {aim_m_, (aim_m_ - position_m).norm() + path_.length_m() - aim_s_m_, true};
+  Aim aim{.point_m = aim_m_,
+          .left_m = (aim_m_ - position_m).norm() + path_.length_m() - aim_s_m_,
+          .rest_m = std::max(0.0, carrot_m_ - aim_s_m_),
+          .visible = true};
+  if (s_m_ >= aim_s_m_ && carrot_m_ < path_.length_m()) {
+    const Vec2 tangent = path_.segment(aim_s_m_, segment_.index).place(aim_s_m_).tangent;
+    aim.past_m = std::max(0.0, (position_m - aim_m_).dot(tangent) - aim.rest_m);
+  }
+  return aim;
 }
 
-Pursuit::Aim Pursuit::update(const Vec2& position_m, const World& world) {
+Pursuit::Aim Pursuit::update(const Vec2& position_m, const World& world, double carrot_m) {
+  carrot_m_ = std::min(carrot_m, path_.length_m());
   advance(position_m);
   // Between two looks the aim is the one that was seen, while it is well ahead.
-  if (looks_in_ > 0 && aim_s_m_ - s_m_ > kKeepAim_m) {
+  const bool is_kept =
+      aim_s_m_ <= carrot_m_ && (aim_s_m_ - s_m_ > kKeepAim_m || carrot_m_ - aim_s_m_ < kAtCarrot_m);
+  if (looks_in_ > 0 && is_kept) {
     --looks_in_;
     return aim(position_m);
   }
@@ -102,8 +114,9 @@ Pursuit::Aim Pursuit::look(const Vec2& position_m, const World& world) {
     return aim(position_m);
   };
   for (double ahead = options_->look_ahead_m; ahead > 0.1; ahead *= 0.5) {
-    const double s = std::min(length, s_m_ + ahead);
+    const double s = std::min(carrot_m_, s_m_ + ahead);
     if (visible(s)) return aim_at(s);
+    if (s <= s_m_) break;
   }
   for (double back = 0.0; back <= std::min(kBackTrack_m, s_m_); back += 1.0) {
     if (visible(s_m_ - back)) {
@@ -112,7 +125,8 @@ Pursuit::Aim Pursuit::look(const Vec2& position_m, const World& world) {
     }
   }
   looks_in_ = 0;
-  return {here_.point_m, length - s_m_, false};
+  return {
+      .point_m = here_.point_m, .left_m = length - s_m_, .rest_m = std::max(0.0, carrot_m_ - s_m_)};
 }
 
 }  // namespace swarm::agent

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "robot_agent/control/polyline.hpp"
@@ -19,8 +20,9 @@ struct PursuitOptions {
   std::uint32_t look_every = 5;   ///< ticks between two looks for a farther aim
 };
 
-/// Follows a way at the robot's own pace: progress s moves on when the robot has passed the point
-/// at s, and the aim is the farthest of s + L, s + L/2, s + L/4 … that is in line of sight. If even
+/// Follows a path up to a carrot on it: progress s moves on when the robot has passed the point at
+/// s, and the aim is the farthest of s + L, s + L/2, s + L/4 … before the carrot that is in line of
+/// sight. If even
 /// s is hidden (the robot was pushed around a corner), the aim falls back along the way to the last
 /// point it sees.
 ///
@@ -34,16 +36,23 @@ class Pursuit {
 
   struct Aim {
     Vec2 point_m = Vec2::Zero();
-    double left_m = 0.0;  ///< of the way, from the aim's side of the robot to the end
+    double left_m = 0.0;  ///< of the path: straight to the aim, from there along it to its end
+    double rest_m = 0.0;  ///< of it from the aim to the carrot
+    double past_m = 0.0;  ///< > 0: the robot is past the carrot by so much
     bool visible = false;
   };
 
-  /// Moves progress on and picks the aim. No allocation.
-  Aim update(const Vec2& position_m, const World& world);
+  /// Moves progress on and picks the aim, no farther than the carrot at the arc length `carrot_m`;
+  /// by default the end of the path. No allocation.
+  Aim update(const Vec2& position_m, const World& world,
+             double carrot_m = std::numeric_limits<double>::infinity());
 
   double progress_m() const { return s_m_; }
   double remaining_m() const { return path_.length_m() - s_m_; }
+  double length_m() const { return path_.length_m(); }
   Vec2 end_m() const { return path_.vertices_m().back(); }
+  /// The point at an arc length.
+  Vec2 point_m(double s_m) const { return path_.at(s_m, segment_.index); }
 
  private:
   std::size_t piece_of(double s_m) const;
@@ -58,6 +67,7 @@ class Pursuit {
   double s_m_ = 0.0;
   Polyline::Segment segment_;  // that s_m_ is on; the others are far off in memory
   Polyline::Place here_;       // at s_m_
+  double carrot_m_ = 0.0;      // of the last update
   double aim_s_m_ = 0.0;       // of the last visible aim
   Vec2 aim_m_ = Vec2::Zero();
   std::uint32_t looks_in_ = 0;  // ticks until the next look

@@ -15,6 +15,13 @@
 namespace swarm::agent {
 namespace {
 
+/// A Gaussian that a robot passes, and its own point in it.
+struct Station {
+  Gaussian gaussian;
+  double time_s = 0.0;
+  Vec2 offset_m = Vec2::Zero();  // from the mean, as transported
+};
+
 /// Takes the entry whose stretch of the cumulated masses holds `share`, and rescales `share` to it.
 template <class MassOf>
 std::size_t draw(std::size_t count, MassOf mass_of, double& share) {
@@ -37,17 +44,14 @@ std::uint32_t follow(const FlowPlan& plan, std::uint32_t node, double share,
                      std::vector<Station>& stations) {
   for (;;) {
     const auto out = plan.legs_out(node);
-    if (out.empty()) {
-      stations.back().mass_out = plan.nodes()[node].mass;
-      return node;
-    }
+    if (out.empty()) return node;
     const std::size_t pick = draw(
         out.size(), [&](std::size_t i) { return plan.legs()[out[i]].mass; }, share);
     const std::uint32_t next = plan.legs()[out[pick]].to;
-    const Gaussian& to = plan.nodes()[next].gaussian;
-    Station& last = stations.back();
-    last.mass_out = plan.legs()[out[pick]].mass;
-    stations.push_back({to, transport_map(last.gaussian, to) * last.offset_m});
+    const PlanNode& to = plan.nodes()[next];
+    const Station& last = stations.back();
+    stations.push_back(
+        {to.gaussian, to.time.count(), transport_map(last.gaussian, to.gaussian) * last.offset_m});
     node = next;
   }
 }
@@ -100,13 +104,15 @@ Route finish(const FlowPlan& plan, std::uint32_t node, double share, std::vector
   SWARM_ASSERT(sink != plan.sinks().end());
   std::vector<Vec2> vertices = free_vertices(stations, world, options);
   double at_m = begin_m ? (vertices.front() - *begin_m).norm() : 0.0;
+  std::vector<Schedule::Entry> schedule;
+  schedule.reserve(stations.size());
   for (std::size_t i = 0; i < stations.size(); ++i) {
     if (i > 0) at_m += (vertices[i] - vertices[i - 1]).norm();
-    stations[i].at_m = at_m;
+    schedule.push_back({stations[i].time_s, at_m});
   }
   if (begin_m) vertices.insert(vertices.begin(), *begin_m);
   return {.path = Polyline(std::move(vertices)),
-          .stations = std::move(stations),
+          .schedule = Schedule(std::move(schedule)),
           .sink = static_cast<std::uint32_t>(sink - plan.sinks().begin()),
           .goal = plan.nodes()[last].gaussian};
 }
@@ -118,9 +124,10 @@ Route route_from_start(const FlowPlan& plan, double share, const Vec2& position_
   const auto& sources = plan.sources();
   const std::size_t pick = draw(
       sources.size(), [&](std::size_t i) { return plan.nodes()[sources[i]].mass; }, share);
-  const Gaussian& g = plan.nodes()[sources[pick]].gaussian;
+  const PlanNode& from = plan.nodes()[sources[pick]];
+  const Gaussian& g = from.gaussian;
   const Vec2 offset = clamp_offset(g, position_m - g.mean_m(), options.offset_max);
-  return finish(plan, sources[pick], share, {{g, offset}}, world, options);
+  return finish(plan, sources[pick], share, {{g, from.time.count(), offset}}, world, options);
 }
 
 Route route_from_source(const FlowPlan& plan, std::uint32_t source, double share,
@@ -128,38 +135,46 @@ Route route_from_source(const FlowPlan& plan, std::uint32_t source, double share
   const std::uint32_t node = plan.sources()[source];
   const Gaussian& g = plan.nodes()[node].gaussian;
   const Vec2 offset = clamp_offset(g, position_m - g.mean_m(), options.offset_max);
-  return finish(plan, node, share, {{g, offset}}, world, options, position_m);
+  return finish(plan, node, share, {{g, plan.nodes()[node].time.count(), offset}}, world, options,
+                position_m);
 }
 
 Route route_from_here(const FlowPlan& plan, double share, const Vec2& position_m,
-                      const World& world, const RouteOptions& options) {
+                      const World& world, const RouteOptions& options,
+                      std::optional<double> plan_time_s) {
   constexpr int kPointsPerLeg = 16;
   double best = std::numeric_limits<double>::infinity();
   bool best_visible = false;
   std::uint32_t best_leg = 0;
-  Gaussian here;
+  Station here;
   for (std::uint32_t l = 0; l < plan.legs().size(); ++l) {
     const PlanLeg& leg = plan.legs()[l];
-    const Geodesic geodesic(plan.nodes()[leg.from].gaussian, plan.nodes()[leg.to].gaussian);
+    const PlanNode& from = plan.nodes()[leg.from];
+    const PlanNode& to = plan.nodes()[leg.to];
+    const Geodesic geodesic(from.gaussian, to.gaussian);
     for (int i = 0; i <= kPointsPerLeg; ++i) {
-      const Gaussian g = geodesic.at(static_cast<double>(i) / kPointsPerLeg);
-      const double d = g.mahalanobis_squared(position_m);
+      const double along = static_cast<double>(i) / kPointsPerLeg;
+      const Gaussian g = geodesic.at(along);
+      const double time_s = (from.time + along * (to.time - from.time)).count();
+      const double off_s = plan_time_s ? (time_s - *plan_time_s) / kJoin_s : 0.0;
+      const double d = g.mahalanobis_squared(position_m) + off_s * off_s;
       if (best_visible && d >= best) continue;
       const bool visible = world.segment_is_free(position_m, g.mean_m(), options.radius_m);
       if ((visible && !best_visible) || (visible == best_visible && d < best)) {
         best = d;
         best_visible = visible;
         best_leg = l;
-        here = g;
+        here = {g, time_s};
       }
     }
   }
+  here.offset_m =
+      clamp_offset(here.gaussian, position_m - here.gaussian.mean_m(), options.offset_max);
   const std::uint32_t next = plan.legs()[best_leg].to;
-  const Gaussian& to = plan.nodes()[next].gaussian;
-  const Vec2 offset = clamp_offset(here, position_m - here.mean_m(), options.offset_max);
-  const double mass = plan.legs()[best_leg].mass;
-  return finish(plan, next, share, {{here, offset, mass}, {to, transport_map(here, to) * offset}},
-                world, options, position_m);
+  const PlanNode& to = plan.nodes()[next];
+  const Station after{to.gaussian, to.time.count(),
+                      transport_map(here.gaussian, to.gaussian) * here.offset_m};
+  return finish(plan, next, share, {here, after}, world, options, position_m);
 }
 
 }  // namespace swarm::agent

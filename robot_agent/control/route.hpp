@@ -3,26 +3,20 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "robot_agent/control/polyline.hpp"
+#include "robot_agent/control/schedule.hpp"
 #include "swarm_core/plan/flow_plan.hpp"
 #include "swarm_core/world/world.hpp"
 
 namespace swarm::agent {
 
-/// A Gaussian on a robot's way, with the robot's place in it.
-struct Station {
-  Gaussian gaussian;
-  Vec2 offset_m = Vec2::Zero();  ///< from the mean, as transported
-  double mass_out = 0.0;         ///< of the leg it leaves by; of the node at the end of the way
-  double at_m = 0.0;             ///< arc length on the path
-};
-
-/// One robot's own way through the flow.
+/// One robot's own path through the flow, and when it is to be where on it.
 struct Route {
   Polyline path;
-  std::vector<Station> stations;
+  Schedule schedule;
   std::uint32_t sink = 0;  ///< index into FlowPlan::sinks()
   Gaussian goal;           ///< the sink's Gaussian
 };
@@ -52,10 +46,13 @@ Route route_from_start(const FlowPlan& plan, double share, const Vec2& position_
 Route route_from_source(const FlowPlan& plan, std::uint32_t source, double share,
                         const Vec2& position_m, const World& world, const RouteOptions& options);
 
-/// The way of a robot that the planner did not hear when it made a new plan: it joins the leg whose
-/// geodesic passes nearest (in Mahalanobis distance, and in line of sight if any is), from where it
-/// is, then goes on as above.
+/// The path of a robot that has no place in the plan yet (it joined late, was restarted, or the
+/// planner did not receive it): it joins the flow where a leg's geodesic passes nearest to it in
+/// space and, given the plan's time, in time: d² + (Δt / kJoin_s)², d the Mahalanobis distance; in
+/// line of sight if any is. From there it goes on as above.
 Route route_from_here(const FlowPlan& plan, double share, const Vec2& position_m,
-                      const World& world, const RouteOptions& options);
+                      const World& world, const RouteOptions& options,
+                      std::optional<double> plan_time_s = std::nullopt);
+inline constexpr double kJoin_s = 10.0;  ///< this far off in time counts as one σ in space
 
 }  // namespace swarm::agent

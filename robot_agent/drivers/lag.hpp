@@ -2,21 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <numbers>
-
-#include "swarm_core/mission/mission.hpp"
+#include "swarm_core/mission/body_limits.hpp"
 
 namespace swarm::agent {
 
-/// How long a body may take to be at a velocity it is told [s]: what the safety filter allows for.
-/// From full speed to rest, v_max/a_max; a unicycle turns by a quarter first. Zero for a single
-/// integrator.
-inline double lag_s(const BodySpec& body) {
-  const double stopping_s = body.speed_max_mps / body.acceleration_max_mps2;
-  if (body.model == "double_integrator") return stopping_s;
-  if (body.model == "unicycle")
-    return stopping_s + 0.5 * std::numbers::pi / body.turn_rate_max_radps;
-  return 0.0;
-}
+/// What the safety filter allows a body: body_lag_s().
+inline double lag_s(const BodySpec& body) { return body_lag_s(body); }
 
 }  // namespace swarm::agent

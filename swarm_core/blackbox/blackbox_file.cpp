@@ -199,6 +199,19 @@ Result<Damage> read_records(const std::filesystem::path& file,
   return damage;
 }
 
+Result<std::vector<Step>> last_steps(const std::filesystem::path& file) {
+  std::vector<Step> last;
+  if (!std::filesystem::exists(file)) return last;
+  const auto read = read_records(file, [&](const Record& record) {
+    const auto* step = std::get_if<Step>(&record);
+    if (step == nullptr) return;
+    if (last.size() == 2) last.erase(last.begin());
+    last.push_back(*step);
+  });
+  if (!read) return tl::unexpected(read.error());
+  return last;
+}
+
 Result<File> read_file(const std::filesystem::path& file) {
   File result;
   const auto damage =

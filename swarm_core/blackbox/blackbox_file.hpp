@@ -90,6 +90,10 @@ std::optional<RobotRecord> decode(const mcap::Message& message, const mcap::Chan
 Result<Damage> read_records(const std::filesystem::path& file,
                             const std::function<void(const Record&)>& take);
 
+/// The last two steps a robot recorded, the newest last; fewer if it recorded no more, or has no
+/// file.
+Result<std::vector<Step>> last_steps(const std::filesystem::path& file);
+
 struct File : Damage {
   std::vector<Record> records;
 };

@@ -64,12 +64,15 @@ struct PlannerSpec {
   double risk_delta_m = -0.2;         ///< δ
   double sigma_min_m = 1.0;           ///< sampler range of σ₁, σ₂
   double sigma_max_m = 3.0;
-  double rho_max = 0.6;             ///< sampler range of |ρ|
-  double bridge_share = 0.3;        ///< share of samples drawn by the Gaussian sampler of ref. [20]
-  double bridge_sigma_m = 10.0;     ///< spread of its pairs
-  std::uint32_t shortcuts = 200;    ///< smoothing tries per route, 0 = publish the roadmap's routes
-  double speed_mps = 1.25;          ///< speed of the Gaussians along a route
-  double density_cap_per_m2 = 0.0;  ///< swarmprm and rover: robots/m² at most; 0 = no cap
+  double rho_max = 0.6;           ///< sampler range of |ρ|
+  double bridge_share = 0.3;      ///< share of samples drawn by the Gaussian sampler of ref. [20]
+  double bridge_sigma_m = 10.0;   ///< spread of its pairs
+  std::uint32_t shortcuts = 200;  ///< smoothing tries per route, 0 = publish the roadmap's routes
+  double speed_mps = 1.25;        ///< speed of the Gaussians along a route
+  /// swarmprm and rover: robots/m² at most; 0 = no cap. Unset, `auto` in the file: swarmprm plans
+  /// at a density and a speed that the bodies can follow (body_limits.hpp), the others without a
+  /// cap.
+  std::optional<double> density_cap_per_m2;
   double collocation_spacing_m = 10.0;              ///< rover and adoc: grid of the set C
   double collocation_sigma_m = 7.0710678118654755;  ///< … Σ_c = σ² I
   double transport_radius_m = 22.5;                 ///< … of Assumption 2, in W₂
@@ -85,12 +88,12 @@ struct ControlSpec {
   /// apf: keep the plan's times (plan), or travel the planned path at one's own speed (free).
   std::string tracking = "plan";
   double rate_hz = 10.0;
-  double cruise_mps = 1.45;        ///< largest desired speed along the path
-  double look_ahead_s = 8.0;       ///< pursuit: how far ahead on its path a robot aims
-  double pace_gain_hz = 0.3;       ///< tracking plan: speed per metre behind the reference position
-  double keep_clearance_m = 1.0;   ///< pursuit: planned clearance up to this is not cut away
-  double density_push_mps = 0.05;  ///< apf: at a density of twice the planned one
-  double neighbour_gap_m = 1.0;    ///< d0: neighbours nearer than this push
+  double cruise_mps = 1.45;       ///< largest desired speed along the path
+  double look_ahead_s = 6.0;      ///< pursuit: how far ahead on its path a robot aims
+  double pace_gain_hz = 0.3;      ///< tracking plan: speed per metre behind the reference position
+  double keep_clearance_m = 1.0;  ///< pursuit: planned clearance up to this is not cut away
+  double density_push_mps = 0.0;  ///< apf: largest speed towards the planned density; 0 = off
+  double neighbour_gap_m = 1.0;   ///< d0: neighbours nearer than this push
   double neighbour_push_mps = 0.6;  ///< speed of that push at contact
   double obstacle_gap_m = 0.5;      ///< obstacles nearer than this push
   double obstacle_push_mps = 1.0;

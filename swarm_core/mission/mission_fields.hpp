@@ -46,8 +46,11 @@ inline constexpr std::array<std::string_view, 3> kControlMethods{"apf", "crops",
 inline constexpr std::array<std::string_view, 2> kTracking{"plan", "free"};
 inline constexpr std::array<std::string_view, 3> kRobotModels{"single_integrator", "unicycle",
                                                               "double_integrator"};
-inline constexpr std::array<std::string_view, 8> kScriptActions{
-    "pause", "resume", "stop", "add_obstacle", "move_obstacle", "remove_obstacle", "goto", "risk"};
+inline constexpr std::array<std::string_view, 9> kScriptActions{
+    "pause",           "resume", "stop", "add_obstacle", "move_obstacle",
+    "remove_obstacle", "goto",   "risk", "clear"};
+inline constexpr yaml::Range kDensityCap_per_m2 = between(0, 1e6);  ///< or kAutomatic
+inline constexpr std::string_view kAutomatic = "auto";
 inline constexpr yaml::Range kRiskAlpha = between(1e-6, 1 - 1e-6);
 inline constexpr yaml::Range kScriptTime_s = between(0.0, 1e6);
 
@@ -67,7 +70,7 @@ inline constexpr std::array<Field<BodySpec>, 7> kBody{{
     {"position_noise_m", &BodySpec::position_noise_m, between(0, 100)},
 }};
 
-inline constexpr std::array<Field<PlannerSpec>, 20> kPlanner{{
+inline constexpr std::array<Field<PlannerSpec>, 19> kPlanner{{
     {"samples", &PlannerSpec::samples, between(1, 100'000)},
     {"connection_radius_m", &PlannerSpec::connection_radius_m, positive(kMaxExtent_m)},
     {"risk_alpha", &PlannerSpec::risk_alpha, kRiskAlpha},
@@ -79,7 +82,6 @@ inline constexpr std::array<Field<PlannerSpec>, 20> kPlanner{{
     {"bridge_sigma_m", &PlannerSpec::bridge_sigma_m, positive(kMaxExtent_m)},
     {"shortcuts", &PlannerSpec::shortcuts, between(0, 1'000'000)},
     {"speed_mps", &PlannerSpec::speed_mps, positive(100)},
-    {"density_cap_per_m2", &PlannerSpec::density_cap_per_m2, between(0, 1e6)},
     {"collocation_spacing_m", &PlannerSpec::collocation_spacing_m, positive(kMaxExtent_m)},
     {"collocation_sigma_m", &PlannerSpec::collocation_sigma_m, between(0.01, 1000)},
     {"transport_radius_m", &PlannerSpec::transport_radius_m, positive(kMaxExtent_m)},

@@ -98,6 +98,8 @@ class MissionReader {
       read_choice(keys, "method", mission_fields::kPlannerMethods, section.method);
       read_choice(keys, "sampler", mission_fields::kPlannerSamplers, section.sampler);
       read_choice(keys, "density_cap", mission_fields::kDensityCaps, section.density_cap);
+      read_automatic(keys, "density_cap_per_m2", mission_fields::kDensityCap_per_m2,
+                     section.density_cap_per_m2);
     }
     read_fields(keys, section, fields);
     keys.finish();
@@ -170,6 +172,18 @@ class MissionReader {
       places_[path] = value.at;
     } else {
       bad_.insert(path);
+    }
+  }
+
+  /// A number, or `auto`, which leaves the value unset.
+  void read_automatic(MapReader& keys, std::string_view key, const yaml::Range& range,
+                      std::optional<double>& value) {
+    const Node* node = keys.take(key);
+    if (node == nullptr) return;
+    if (node->kind == Node::Kind::kScalar && node->text == mission_fields::kAutomatic) {
+      value.reset();
+    } else {
+      value = yaml::read_number(*node, keys.path_of(key), range, violations_);
     }
   }
 
@@ -271,11 +285,17 @@ class MissionReader {
     }
   }
 
-  /// Obstacles that a script moves or removes must be there by then.
+  /// Obstacles that a script moves or removes must be there by then. Which robots fall is not
+  /// known: a script may clear any.
   void follow_scene(Scene& scene, const MissionAction& action, double at_s, Position at,
                     const std::string& path) {
     const auto* change = std::get_if<SceneChange>(&action);
     if (change == nullptr) return;
+    if (const auto* clear = std::get_if<ClearBody>(change)) {
+      if (clear->robot.value() < mission_.robots.count) return;
+      violations_.add(at, fmt::format("{}: there is no robot {}", path, clear->robot.value()));
+      return;
+    }
     auto next = after(scene, *change, mission_.world, UtcTime(from_seconds(at_s)));
     if (next) {
       scene = std::move(*next);

@@ -135,6 +135,10 @@ std::string to_yaml(const Mission& mission) {
   if (mission.goal_shape) write_shape(out, *mission.goal_shape);
   fmt::format_to(out, "planner:\n  method: {}\n  sampler: {}\n  density_cap: {}\n",
                  mission.planner.method, mission.planner.sampler, mission.planner.density_cap);
+  fmt::format_to(out, "  density_cap_per_m2: {}\n",
+                 mission.planner.density_cap_per_m2
+                     ? fmt::format("{}", *mission.planner.density_cap_per_m2)
+                     : std::string(mission_fields::kAutomatic));
   write_fields(out, mission.planner, mission_fields::kPlanner);
   fmt::format_to(out, "control:\n  method: {}\n  tracking: {}\n", mission.control.method,
                  mission.control.tracking);

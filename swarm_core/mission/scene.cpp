@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "swarm_core/base/assert.hpp"
+#include "swarm_core/mission/scene_bodies.hpp"
 
 namespace swarm {
 namespace {
@@ -46,7 +47,8 @@ Result<SceneObstacle*> find(Scene& scene, std::uint32_t id, const World& mission
 }
 
 Result<void> make(Scene& scene, const AddObstacle& add, const World&, UtcTime) {
-  scene.obstacles.push_back({.id = scene.next_id++, .shape = add.shape});
+  const auto at = place_of(scene.obstacles, scene.next_id);  // bodies stay behind it
+  scene.obstacles.insert(at, {.id = scene.next_id++, .shape = add.shape});
   return {};
 }
 
@@ -84,11 +86,33 @@ Result<void> make(Scene& scene, const SetRisk& risk, const World&, UtcTime) {
   return {};
 }
 
+Result<void> make(Scene& scene, const AddBody& add, const World&, UtcTime) {
+  const std::uint32_t id = body_id(add.robot);
+  const auto at = place_of(scene.obstacles, id);
+  if (at != scene.obstacles.end() && at->id == id) {
+    at->shape = add.shape;
+  } else {
+    scene.obstacles.insert(at, {.id = id, .owner = add.robot, .shape = add.shape});
+  }
+  return {};
+}
+
+Result<void> make(Scene& scene, const ClearBody& clear, const World&, UtcTime) {
+  const std::uint32_t id = body_id(clear.robot);
+  const auto at = place_of(scene.obstacles, id);
+  if (at == scene.obstacles.end() || at->id != id) {
+    return fail(ErrorCode::kBadInput,
+                fmt::format("robot {} has no body among the obstacles", clear.robot.value()));
+  }
+  scene.obstacles.erase(at);
+  return {};
+}
+
 }  // namespace
 
 std::string_view name_of(const SceneChange& change) {
-  constexpr std::string_view kNames[] = {"add_obstacle", "move_obstacle", "remove_obstacle", "goto",
-                                         "risk"};
+  constexpr std::string_view kNames[] = {
+      "add_obstacle", "move_obstacle", "remove_obstacle", "goto", "risk", "add_body", "clear"};
   return kNames[change.index()];
 }
 
@@ -120,10 +144,11 @@ Result<Scene> after(const Scene& scene, const SceneChange& change, const World& 
   for (const SceneObstacle& obstacle : next.obstacles) vertices += vertices_of(obstacle.shape);
   if (next.obstacles.size() > Scene::kMaxObstacles || next.removed.size() > Scene::kMaxRemoved ||
       vertices > Scene::kMaxVertices) {
-    return fail(ErrorCode::kBadInput,
-                fmt::format("at most {} obstacles with {} vertices may be added or moved, and {} "
-                            "removed",
-                            Scene::kMaxObstacles, Scene::kMaxVertices, Scene::kMaxRemoved));
+    return fail(
+        ErrorCode::kBadInput,
+        fmt::format("at most {} obstacles with {} vertices may be added or moved, bodies of "
+                    "robots included, and {} removed",
+                    Scene::kMaxObstacles, Scene::kMaxVertices, Scene::kMaxRemoved));
   }
   next.version =
       std::max(scene.version + 1, static_cast<std::uint64_t>(now.time_since_epoch().count()));
@@ -168,18 +193,19 @@ World world_during(const World& mission_world, const Scene& scene, UtcTime begin
 std::vector<WorldPhase> world_phases(const World& mission_world, const std::vector<Scene>& scenes) {
   std::vector<WorldPhase> phases;
   for (std::size_t i = 0; i < scenes.size(); ++i) {
+    const Scene scene = without_bodies(scenes[i]);
     const auto stamp = [&](std::size_t k) {
       return UtcTime(Duration(static_cast<std::int64_t>(scenes[k].version)));
     };
     std::vector<UtcTime> begins{stamp(i)};
-    for (const SceneObstacle& o : scenes[i].obstacles) {
+    for (const SceneObstacle& o : scene.obstacles) {
       const bool ends_here = i + 1 == scenes.size() || o.moving_until < stamp(i + 1);
       if (o.moving_until > stamp(i) && ends_here) begins.push_back(o.moving_until);
     }
     std::sort(begins.begin(), begins.end());
     begins.erase(std::unique(begins.begin(), begins.end()), begins.end());
     for (const UtcTime begin : begins) {
-      phases.push_back({begin, world_at(mission_world, scenes[i], begin)});
+      phases.push_back({begin, world_at(mission_world, scene, begin)});
     }
   }
   return phases;

@@ -9,6 +9,7 @@
 #include <variant>
 #include <vector>
 
+#include "swarm_core/base/ids.hpp"
 #include "swarm_core/base/result.hpp"
 #include "swarm_core/base/time.hpp"
 #include "swarm_core/gmm/mixture.hpp"
@@ -38,15 +39,28 @@ struct GoTo {
 struct SetRisk {
   double alpha = 0.05;
 };
-using SceneChange = std::variant<AddObstacle, MoveObstacle, RemoveObstacle, GoTo, SetRisk>;
+/// A robot is not received any more: its body stays where it is and becomes an obstacle. A robot
+/// has one body: a second one replaces the first.
+struct AddBody {
+  RobotId robot;
+  Circle shape;
+};
+/// The body of a robot is no obstacle any more: the robot is received again, or was carried away.
+struct ClearBody {
+  RobotId robot;
+};
+using SceneChange =
+    std::variant<AddObstacle, MoveObstacle, RemoveObstacle, GoTo, SetRisk, AddBody, ClearBody>;
 
-/// The words of script and command line: add_obstacle, move_obstacle, remove_obstacle, goto, risk.
+/// The words of script and command line: add_obstacle, move_obstacle, remove_obstacle, goto, risk,
+/// add_body (of the launcher alone), clear.
 std::string_view name_of(const SceneChange& change);
 
 /// An obstacle that differs from the mission file: moved, or added.
 struct SceneObstacle {
   std::uint32_t id = 0;
-  Obstacle shape;  ///< where it stands until `moving_from`
+  std::optional<RobotId> owner{};  ///< the robot whose body it is
+  Obstacle shape;                  ///< where it stands until `moving_from`
   Vec2 velocity_mps = Vec2::Zero();
   UtcTime moving_from{};
   UtcTime moving_until{};
@@ -75,6 +89,11 @@ struct Scene {
   bool moves(UtcTime now) const;
 };
 
+/// Bodies have numbers of their own, behind those of all other obstacles: how many robots fall does
+/// not change the number of an obstacle that a script adds later.
+inline constexpr std::uint32_t kFirstBodyId = 0x8000'0000;
+constexpr std::uint32_t body_id(RobotId robot) { return kFirstBodyId + robot.value(); }
+
 /// The scene of a mission that starts with so many obstacles.
 Scene first_scene(std::size_t mission_obstacles);
 
@@ -97,10 +116,11 @@ struct WorldPhase {
 };
 
 /// All maps of a run that went through these scenes, the first from the beginning of time on.
+/// Without bodies: those are robots, see bodies_of() in scene_bodies.hpp.
 std::vector<WorldPhase> world_phases(const World& mission_world, const std::vector<Scene>& scenes);
 
 /// The obstacles of the mission file that stood where they stand all the time: whoever gets around
-/// the others gets around these.
+/// the others gets around these. Without bodies.
 World lasting_world(const World& mission_world, const std::vector<Scene>& scenes);
 
 }  // namespace swarm

@@ -52,6 +52,25 @@ class ChangeReader {
     return GoTo{std::move(*goal)};
   }
 
+  std::optional<SceneChange> add_body(const std::string& path, yaml::Position at,
+                                      ShapeReader& shapes) {
+    const auto robot = read_robot();
+    const auto shape = shapes.read_obstacle(keys_, path, at);
+    if (!robot || !shape) return std::nullopt;
+    const auto* circle = std::get_if<Circle>(&*shape);
+    if (circle == nullptr) {
+      violations_.add(at, fmt::format("{}: a body is a circle_m", path));
+      return std::nullopt;
+    }
+    return AddBody{*robot, *circle};
+  }
+
+  std::optional<SceneChange> clear() {
+    const auto robot = read_robot();
+    if (!robot) return std::nullopt;
+    return ClearBody{*robot};
+  }
+
   std::optional<SceneChange> risk() {
     const Node* node = keys_.take("alpha", true);
     if (node == nullptr) return std::nullopt;
@@ -62,6 +81,16 @@ class ChangeReader {
   }
 
  private:
+  std::optional<RobotId> read_robot() {
+    const Node* node = keys_.take("robot", true);
+    if (node == nullptr) return std::nullopt;
+    const auto number =
+        yaml::read_count(*node, keys_.path_of("robot"),
+                         mission_fields::between(0, mission_fields::kMaxRobots - 1), violations_);
+    if (!number) return std::nullopt;
+    return RobotId(*number);
+  }
+
   std::optional<std::uint32_t> read_obstacle_number() {
     const Node* node = keys_.take("obstacle", true);
     if (node == nullptr) return std::nullopt;
@@ -120,12 +149,19 @@ std::optional<SceneChange> read_scene_change(std::string_view action, MapReader&
   if (action == "remove_obstacle") return reader.remove();
   if (action == "goto") return reader.go_to(shapes);
   if (action == "risk") return reader.risk();
+  if (action == "add_body") return reader.add_body(path, at, shapes);
+  if (action == "clear") return reader.clear();
   return std::nullopt;
 }
 
 Result<SceneChange> parse_scene_change(const std::string& action, const std::string& keys,
                                        const World& mission_world) {
   yaml::Violations violations;
+  const std::size_t digits = keys.find_first_of("0123456789");
+  if (action == "clear" && digits != std::string::npos &&
+      keys.find_first_not_of(" 0123456789") == std::string::npos) {
+    return parse_scene_change(action, "{robot: " + keys.substr(digits) + "}", mission_world);
+  }
   const bool braced =
       keys.find_first_not_of(' ') != std::string::npos && keys[keys.find_first_not_of(' ')] == '{';
   const auto root = yaml::parse(braced ? keys : "{" + keys + "}");
@@ -152,7 +188,11 @@ std::string keys_of(const SceneChange& change) {
                  },
                  [](const RemoveObstacle& c) { return fmt::format("obstacle: {}", c.obstacle); },
                  [](const GoTo& c) { return keys_of_goal(c.goal); },
-                 [](const SetRisk& c) { return fmt::format("alpha: {}", c.alpha); }},
+                 [](const SetRisk& c) { return fmt::format("alpha: {}", c.alpha); },
+                 [](const AddBody& c) {
+                   return fmt::format("robot: {}, {}", c.robot.value(), keys_of_shape(c.shape));
+                 },
+                 [](const ClearBody& c) { return fmt::format("robot: {}", c.robot.value()); }},
       change);
 }
 

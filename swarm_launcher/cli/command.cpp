@@ -27,7 +27,8 @@ Command add_command(CLI::App& program) {
       "  move_obstacle 'obstacle: 6, by_m: [10, 0], over_s: 20'\n"
       "  remove_obstacle 'obstacle: 6'\n"
       "  goto 'goal: [{mean_m: [20, 20], covariance_m2: [[9, 0], [0, 9]], weight: 1}]'\n"
-      "  risk 'alpha: 0.15'");
+      "  risk 'alpha: 0.15'\n"
+      "  clear 7    (the body of robot 7, which is not received any more, was carried away)");
   command->add_option("run_dir", o->run_dir, "Its run directory")->required()->type_name("RUN_DIR");
   command->add_option("words", o->words, "The command and its keys, as in a script")
       ->required()

@@ -15,6 +15,7 @@ Command add_simulate(CLI::App& program) {
   constexpr int kMostSimulated = 200'000;
   const auto o = std::make_shared<SimulateOptions>();
   const auto fault = std::make_shared<std::string>();
+  const auto kills = std::make_shared<std::vector<std::string>>();
   CLI::App* const simulate = program.add_subcommand(
       "simulate", "Fly a mission in lock-step, in one process, as fast as it goes");
   simulate->add_option("mission", o->mission_file, "Mission file")
@@ -24,6 +25,12 @@ Command add_simulate(CLI::App& program) {
       ->check(CLI::Range(1, kMostSimulated));
   simulate->add_option("--seed", o->seed, "Seed of placement, plan, robots, faults");
   simulate->add_option("--fault", *fault, "A bad network, as for run")->type_name("FAULT");
+  simulate
+      ->add_option("--kill", *kills,
+                   "Robots die and their bodies stay: N@SECONDS drawn by the seed,\n"
+                   "N@SECONDS,in=X0:Y0:X1:Y1 of those in a box, or ids:A,B@SECONDS; repeatable")
+      ->allow_extra_args(false)
+      ->type_name("KILL");
   simulate->add_flag_callback(
       "--clocks-apart", [o] { o->clocks_in_step = false; },
       "Robots tick at different moments of the control period");
@@ -34,10 +41,15 @@ Command add_simulate(CLI::App& program) {
       "No black boxes, audit and report: arrivals and times alone");
   simulate->add_option("--out", o->out, "Run directory (default: runs/<mission>-<time>)");
   simulate->add_flag("--json", o->json, "Print the summary as JSON");
-  return {simulate, [o, fault]() -> Result<ExitCode> {
+  return {simulate, [o, fault, kills]() -> Result<ExitCode> {
             const auto faults = parse_link_faults(*fault);
             if (!faults) return tl::unexpected(faults.error());
             o->faults = *faults;
+            for (const std::string& text : *kills) {
+              auto kill = parse_kill(text);
+              if (!kill) return tl::unexpected(kill.error());
+              o->kills.push_back(*std::move(kill));
+            }
             return simulate_mission(*o);
           }};
 }

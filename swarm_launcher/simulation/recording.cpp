@@ -18,6 +18,15 @@ void Recording::note(RobotId robot, UtcTime at, std::string code, std::string te
   notes_[robot.value()].push_back({.stamp = at, .code = std::move(code), .text = std::move(text)});
 }
 
+std::vector<blackbox::Step> Recording::last_steps(RobotId robot) const {
+  std::vector<blackbox::Step> steps;
+  for (auto period = periods_.rbegin(); period != periods_.rend() && steps.size() < 2; ++period) {
+    const blackbox::Step& step = (*period)[robot.value()];
+    if (step.stamp != kNever) steps.insert(steps.begin(), step);
+  }
+  return steps;
+}
+
 /// The records of one robot in the order a process would have written them.
 template <class Take>
 void Recording::replay(std::uint32_t robot, Take take) const {
@@ -30,6 +39,7 @@ void Recording::replay(std::uint32_t robot, Take take) const {
   const auto last_note = notes_[robot].end();
   for (const std::vector<blackbox::Step>& period : periods_) {
     const blackbox::Step& step = period[robot];
+    if (step.stamp == kNever) continue;
     for (; note != last_note && note->stamp < step.stamp; ++note) take(*note);
     take(step);
   }

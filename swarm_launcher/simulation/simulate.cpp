@@ -29,7 +29,8 @@ class DirectoryObserver final : public SimulationObserver {
   explicit DirectoryObserver(std::filesystem::path dir)
       : dir_(std::move(dir)),
         events_(dir_ / shell::kEventsFile),
-        scenes_(dir_ / shell::kSceneFile, std::ios::app) {}
+        scenes_(dir_ / shell::kSceneFile, std::ios::app),
+        clock_(dir_ / shell::kPlanClockFile, std::ios::app) {}
 
   void on_event(UtcTime at, const std::string& source, bool warning, const std::string& code,
                 const std::string& text) override {
@@ -45,6 +46,8 @@ class DirectoryObserver final : public SimulationObserver {
     }
   }
 
+  void on_clock(const PlanClock& reading) override { clock_ << plan_clock_line(reading); }
+
   void on_scene(const Scene& scene, const SceneChange& change) override {
     scenes_ << scene_log_line(scene.version, change) << std::flush;
   }
@@ -55,6 +58,7 @@ class DirectoryObserver final : public SimulationObserver {
   std::filesystem::path dir_;
   EventLog events_;
   std::ofstream scenes_;
+  std::ofstream clock_;
   std::optional<Error> failure_;
 };
 
@@ -103,6 +107,14 @@ Result<ExitCode> simulate_mission(const SimulateOptions& options) {
   auto mission = load_mission(options.mission_file);
   if (!mission) return tl::unexpected(mission.error());
   if (options.robots) mission->robots.count = *options.robots;
+  for (const Kill& kill : options.kills) {
+    for (const RobotId robot : kill.robots) {
+      if (robot.value() < mission->robots.count) continue;
+      return fail(ErrorCode::kBadInput,
+                  fmt::format("--kill: there is no robot {}, the mission has 0 to {}",
+                              robot.value(), mission->robots.count - 1));
+    }
+  }
 
   std::filesystem::path dir;
   std::unique_ptr<SimulationObserver> observer = std::make_unique<SimulationObserver>();
@@ -130,7 +142,8 @@ Result<ExitCode> simulate_mission(const SimulateOptions& options) {
       .seed = options.seed,
       .faults = options.faults,
       .clocks_in_step = options.clocks_in_step,
-      .threads = options.threads > 0 ? options.threads : useful_threads(mission->robots.count)};
+      .threads = options.threads > 0 ? options.threads : useful_threads(mission->robots.count),
+      .kills = options.kills};
   auto simulation = Simulation::make(*mission, simulated, recording, *observer);
   if (!simulation) return tl::unexpected(simulation.error());
   fly(**simulation, mission->robots.count);

@@ -5,10 +5,12 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <vector>
 
 #include "swarm_core/base/result.hpp"
 #include "swarm_core/mission/link_faults.hpp"
 #include "swarm_launcher/simulation/air.hpp"
+#include "swarm_launcher/simulation/kills.hpp"
 
 namespace swarm::launcher {
 
@@ -18,6 +20,7 @@ struct SimulateOptions {
   std::uint64_t seed = 1;
   LinkFaults faults;
   bool clocks_in_step = true;
+  std::vector<Kill> kills{};  ///< robots whose processes die
   std::size_t threads = 0;    ///< 0: as many as make it faster
   bool record = true;         ///< black boxes, audit and report; else arrivals and times alone
   std::filesystem::path out;  ///< run directory; empty: runs/<mission>-<time>

@@ -30,11 +30,21 @@ double hears_m(const Mission& mission, RobotId robot) {
   return own_m > 0.0 ? own_m : mission.link.hear_radius_m;
 }
 
+/// Each robot has a process that may die, and all of them start at once.
 SupervisorOptions supervisor_options(const Mission& mission) {
+  LauncherSpec launcher = mission.launcher;
+  launcher.starts_per_s = 1e9;
+  launcher.starting_max = mission.robots.count;
   return {.robots = mission.robots.count,
-          .per_process = mission.robots.count,
-          .launcher = mission.launcher,
+          .per_process = 1,
+          .launcher = launcher,
           .script = mission.script};
+}
+
+std::vector<Kill> in_order_of_time(std::vector<Kill> kills) {
+  std::stable_sort(kills.begin(), kills.end(),
+                   [](const Kill& a, const Kill& b) { return a.at_s < b.at_s; });
+  return kills;
 }
 
 }  // namespace
@@ -54,7 +64,9 @@ Simulation::Simulation(const Mission& mission, const SimulationOptions& options,
            mix_seed(options.seed, 0xA1B), kBegin),
       crew_(std::max<std::size_t>(options.threads, 1)),
       collected_(crew_.size()),
-      now_(kBegin) {}
+      now_(kBegin) {
+  options_.kills = in_order_of_time(std::move(options_.kills));
+}
 
 Result<std::unique_ptr<Simulation>> Simulation::make(const Mission& mission,
                                                      const SimulationOptions& options,
@@ -83,6 +95,7 @@ void Simulation::place(const std::vector<Vec2>& positions_m) {
   robots_.reserve(positions_m.size());
   rngs_.reserve(positions_m.size());
   has_news_.resize(positions_m.size());
+  dead_.resize(positions_m.size());
   agent::AgentOptionsOf options_of(mission_);
   slots_.resize(options_.clocks_in_step ? 1 : kSlots);
   for (std::uint32_t i = 0; i < positions_m.size(); ++i) {
@@ -95,12 +108,16 @@ void Simulation::place(const std::vector<Vec2>& positions_m) {
          .hears_m = hears_m(mission_, id),
          .heard_until = kBegin,
          .position_m = positions_m[i]});
-    // As processes do: multiples of the golden ratio spread any number of them evenly.
-    const double turn = i * (std::numbers::phi - 1.0);
-    const auto slot =
-        static_cast<std::size_t>((turn - std::floor(turn)) * static_cast<double>(slots_.size()));
-    slots_[std::min(slot, slots_.size() - 1)].push_back(i);
+    slots_[slot_of(i)].push_back(i);
   }
+}
+
+/// As processes do: multiples of the golden ratio spread any number of them evenly.
+std::size_t Simulation::slot_of(std::uint32_t robot) const {
+  const double turn = robot * (std::numbers::phi - 1.0);
+  const auto slot =
+      static_cast<std::size_t>((turn - std::floor(turn)) * static_cast<double>(slots_.size()));
+  return std::min(slot, slots_.size() - 1);
 }
 
 void Simulation::publish() {
@@ -110,6 +127,7 @@ void Simulation::publish() {
   const std::string text = fmt::format("took plan version {}", keeper_.version());
   crew_.run([&](std::size_t part) {
     for (std::size_t i = part; i < robots_.size(); i += crew_.size()) {
+      if (dead_[i] != 0) continue;
       std::optional<agent::PlanEntry> entry;
       if (i < newest.entries.size() && newest.entries[i].source != planner::PlanEntry::kAnywhere) {
         entry = {newest.entries[i].source, newest.entries[i].share / 65536.0};
@@ -126,18 +144,32 @@ void Simulation::keep_planned() {
     observer_.on_event(utc(now_), "planner", notice.warning, notice.code, notice.text);
   }
   if (step.publish) publish();
+  clock_ = keeper_.clock(utc(now_));
+  if (step.clock) observer_.on_clock(*step.clock);
+  if (mission_.control.density_push_mps > 0.0 && clock_.plan_version > 0) {
+    agent::update(planned_density_, keeper_.newest().planned.plan, clock_.plan_time_s,
+                  mission_.robots.count, agent::DensityAttractionOptions{}.kernel_sigma_m());
+  }
 }
 
-void Simulation::change_scene(const SceneChange& change) {
-  auto next = after(scene_, change, mission_.world, utc(now_));
-  if (!next) {
-    observer_.on_event(utc(now_), "launcher", true, "scene-refused", next.error().message);
-    return;
+/// Every robot has the clock from the planner's heartbeats, which take no time here.
+std::optional<agent::PlanTime> Simulation::plan_time(SteadyTime now) const {
+  if (clock_.plan_version == 0) return std::nullopt;
+  return agent::PlanTime{clock_.plan_time_s + clock_.rate * to_seconds(now - now_), clock_.rate};
+}
+
+void Simulation::change_scene(std::span<const SceneChange> changes) {
+  for (const SceneChange& change : changes) {
+    auto next = after(scene_, change, mission_.world, utc(now_));
+    if (!next) {
+      observer_.on_event(utc(now_), "launcher", true, "scene-refused", next.error().message);
+      continue;
+    }
+    scene_ = *std::move(next);
+    observer_.on_scene(scene_, change);
+    if (std::holds_alternative<GoTo>(change)) supervisor_.on_new_goal(scene_.version);
   }
-  scene_ = *std::move(next);
-  observer_.on_scene(scene_, change);
   keeper_.take_scene(scene_);
-  if (std::holds_alternative<GoTo>(change)) supervisor_.on_new_goal(scene_.version);
   world_moves_ = true;
 }
 
@@ -147,7 +179,13 @@ void Simulation::act(const Action& action) {
                                                  : phase_after(phase_, command->kind);
     keeper_.set_phase(phase_);
   } else if (const auto* scene = std::get_if<ChangeScene>(&action)) {
-    change_scene(scene->change);
+    change_scene({&scene->change, 1});
+  } else if (const auto* start = std::get_if<StartProcess>(&action)) {
+    if (start->process != kPlanner) respawn(supervisor_.robots_of(start->process).first);
+  } else if (const auto* fallen = std::get_if<AddBodies>(&action)) {
+    add_bodies(fallen->robots);
+  } else if (const auto* risen = std::get_if<ClearBodies>(&action)) {
+    clear_bodies(risen->robots);
   } else if (const auto* signal = std::get_if<SignalProcess>(&action)) {
     supervisor_.on_exit(signal->process, {}, now_);
   } else if (const auto* event = std::get_if<LogEvent>(&action)) {
@@ -170,15 +208,20 @@ void Simulation::report_status() {
     if (is_in_turn) in_turn += every;
     if (!is_in_turn && has_news_[i] == 0) continue;
     has_news_[i] = 0;
+    if (dead_[i] != 0) continue;
     const Robot& robot = robots_[i];
     supervisor_.on_status(RobotId(i), {.has_plan = robot.agent.has_route(),
                                        .hears_neighbours = true,
                                        .mode = robot.mode,
                                        .settled = robot.settled,
-                                       .scene_version = keeper_.planned_scene()});
+                                       .scene_version = keeper_.planned_scene(),
+                                       .sent_at = now_});
     keeper_.hear({.robot = RobotId(i),
                   .position_m = robot.position_m,
-                  .arrived = robot.mode == RobotMode::kArrived},
+                  .arrived = robot.mode == RobotMode::kArrived,
+                  .lag_s = robot.agent.lag_s(),
+                  .plan_version = keeper_.version(),
+                  .plan_time_s = clock_.plan_time_s},
                  robot.mode == RobotMode::kMoving, now_);
   }
 }
@@ -200,12 +243,15 @@ void Simulation::tick_robot(std::uint32_t id, SteadyTime now, const Upcoming& up
   robot.heard_until = now;
   if (upcoming.second != nullptr) prefetch(*upcoming.second);
   const RobotMode before = robot.mode;
-  const agent::AgentOutput out = robot.agent.tick({.now = now,
-                                                   .position_m = robot.position_m,
-                                                   .phase = phase_,
-                                                   .planner_alive = true,
-                                                   .velocity_mps = body.velocity_mps},
-                                                  rngs_[id]);
+  const agent::AgentOutput out = robot.agent.tick(
+      {.now = now,
+       .position_m = robot.position_m,
+       .phase = phase_,
+       .planner_alive = true,
+       .velocity_mps = body.velocity_mps,
+       .plan_time = plan_time(now),
+       .planned_density = planned_density_.parts.empty() ? nullptr : &planned_density_},
+      rngs_[id]);
   robot.mode = out.mode;
   robot.settled = out.settled;
   robot.body.command(now, out.velocity_mps, 2 * period_);
@@ -222,6 +268,7 @@ void Simulation::tick_robot(std::uint32_t id, SteadyTime now, const Upcoming& up
   if (out.mode != before || out.settled) has_news_[id] = 1;
   if (out.mode != before)
     recording_.note(robot_id, stamp, "mode", std::string(to_string(out.mode)));
+  const agent::TimeTracking tracking = out.tracking.value_or(agent::TimeTracking{});
   recording_.step(robot_id,
                   {.stamp = stamp,
                    .position_m = body.true_position_m.value_or(body.position_m),
@@ -230,7 +277,11 @@ void Simulation::tick_robot(std::uint32_t id, SteadyTime now, const Upcoming& up
                    .goal = robot.agent.has_route() ? static_cast<std::uint8_t>(std::min(
                                                          robot.agent.goal(robot.position_m), 254U))
                                                    : blackbox::Step::kNoGoal,
-                   .neighbours = out.neighbours});
+                   .neighbours = out.neighbours,
+                   .plan_version = out.tracking ? clock_.plan_version : 0,
+                   .plan_time_s = static_cast<float>(tracking.plan_time_s),
+                   .reference_x_m = static_cast<float>(tracking.reference_m.x()),
+                   .reference_y_m = static_cast<float>(tracking.reference_m.y())});
 }
 
 // A swarm is larger than the cache: a robot is fetched two robots ahead, the neighbours it knows
@@ -265,10 +316,11 @@ void Simulation::tick_slot(std::size_t slot) {
 }
 
 bool Simulation::step() {
+  kill_due();
   supervise();
   if (supervisor_.stage() == Supervisor::Stage::kDone) {
     for (std::uint32_t i = 0; i < robots_.size(); ++i) {
-      recording_.note(RobotId(i), utc(now_), "exit", "graceful end");
+      if (dead_[i] == 0) recording_.note(RobotId(i), utc(now_), "exit", "graceful end");
       recording_.link().states_sent += robots_[i].sequence;
       recording_.link().states_received += robots_[i].received;
     }
@@ -281,11 +333,13 @@ bool Simulation::step() {
     world_moves_ = scene_.moves(utc(now_));
   }
   recording_.begin_period();
+  coast_fallen();
   const auto begin = std::chrono::steady_clock::now();
   for (std::size_t slot = 0; slot < slots_.size(); ++slot) tick_slot(slot);
   const double took_s = to_seconds(std::chrono::steady_clock::now() - begin);
   agents_s_ += took_s;
   step_ns_.push_back(static_cast<float>(1e9 * took_s / static_cast<double>(robots_.size())));
+  admit_respawned();
   report_status();
   ++periods_;
   now_ += period_;

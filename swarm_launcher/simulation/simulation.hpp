@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,7 @@
 #include "swarm_core/mission/mission.hpp"
 #include "swarm_launcher/simulation/air.hpp"
 #include "swarm_launcher/simulation/crew.hpp"
+#include "swarm_launcher/simulation/kills.hpp"
 #include "swarm_launcher/simulation/recording.hpp"
 #include "swarm_launcher/supervisor.hpp"
 
@@ -23,10 +25,11 @@ namespace swarm::launcher {
 
 struct SimulationOptions {
   std::uint64_t seed = 1;
-  LinkFaults faults;
+  LinkFaults faults{};
   /// All robots tick at the same moment, or spread over the control period as processes are.
   bool clocks_in_step = true;
   std::size_t threads = 1;
+  std::vector<Kill> kills{};
 };
 
 /// Threads that make a simulation of so many robots faster: more than one only where a control
@@ -40,6 +43,7 @@ class SimulationObserver {
   virtual void on_event(UtcTime, const std::string& /*source*/, bool /*warning*/,
                         const std::string& /*code*/, const std::string& /*text*/) {}
   virtual void on_plan(std::uint32_t /*version*/, const planner::PlanResult&) {}
+  virtual void on_clock(const PlanClock&) {}
   virtual void on_scene(const Scene&, const SceneChange&) {}
 };
 
@@ -110,8 +114,17 @@ class Simulation {
   void keep_planned();
   void publish();
   void supervise();
+  std::optional<agent::PlanTime> plan_time(SteadyTime now) const;
   void act(const Action& action);
-  void change_scene(const SceneChange& change);
+  void change_scene(std::span<const SceneChange> changes);
+  void kill_due();
+  void kill(RobotId robot);
+  void respawn(RobotId robot);
+  void admit_respawned();
+  void coast_fallen();
+  void add_bodies(std::span<const RobotId> robots);
+  void clear_bodies(std::span<const RobotId> robots);
+  std::size_t slot_of(std::uint32_t robot) const;
   void report_status();
   void tick_slot(std::size_t slot);
   void prefetch(const Robot& robot) const;
@@ -136,7 +149,13 @@ class Simulation {
   std::vector<Collected> collected_;               // one a thread
   // Those who report their status out of turn. Apart from robots_: most are only looked at.
   std::vector<std::uint8_t> has_news_;
+  std::vector<std::uint8_t> dead_;        // their processes
+  std::vector<std::uint32_t> fallen_;     // dead robots that their drivers have not stopped yet
+  std::vector<std::uint32_t> respawned_;  // in this period
+  std::size_t next_kill_ = 0;
   SteadyTime now_;
+  PlanClock clock_;                        // at now_
+  agent::PlannedDensity planned_density_;  // then, where it is asked for
   std::uint64_t periods_ = 0;
   double plan_ms_ = 0.0;
   std::vector<float> step_ns_;

@@ -14,7 +14,7 @@ static_assert(kMaxPlanNodes == wire::MAX_PLAN_NODES && kMaxPlanLegs == wire::MAX
               kMaxSceneGoals == wire::MAX_SCENE_GOALS &&
               kMaxRefusalReasons == wire::MAX_REFUSAL_REASONS &&
               kMaxHistogramBins == wire::MAX_HISTOGRAM_BINS &&
-              kSchemaVersion == wire::SCHEMA_VERSION);
+              kSchemaVersion == wire::SCHEMA_VERSION && kNoRobot == wire::NO_ROBOT);
 
 bool to_wire(const PlanMessage& in, wire::FlowPlan& out) {
   if (!fits_wire(in)) return false;
@@ -93,6 +93,7 @@ bool to_wire(const SceneMessage& in, wire::Scene& out) {
     const auto& obstacle = in.obstacles[i];
     auto& wire_obstacle = out.obstacles()[i];
     wire_obstacle.obstacle_id(obstacle.obstacle_id);
+    wire_obstacle.owner_robot_id(obstacle.owner_robot_id);
     wire_obstacle.vertices(obstacle.vertices);
     wire_obstacle.center().x_m(obstacle.center.x_m);
     wire_obstacle.center().y_m(obstacle.center.y_m);
@@ -130,6 +131,7 @@ void from_wire(const wire::Scene& in, SceneMessage& out) {
   out.obstacles.clear();
   for (const auto& obstacle : in.obstacles()) {
     out.obstacles.push_back({.obstacle_id = obstacle.obstacle_id(),
+                             .owner_robot_id = obstacle.owner_robot_id(),
                              .vertices = obstacle.vertices(),
                              .center = {obstacle.center().x_m(), obstacle.center().y_m()},
                              .radius_m = obstacle.radius_m(),

@@ -17,7 +17,7 @@ namespace {
 constexpr std::size_t kPlanNodeBytes = 56;
 constexpr std::size_t kPlanLegBytes = 16;
 constexpr std::size_t kPlanEntryBytes = 4;
-constexpr std::size_t kSceneObstacleBytes = 64;
+constexpr std::size_t kSceneObstacleBytes = 68;
 constexpr std::size_t kPointBytes = 16;
 constexpr std::size_t kGoalComponentBytes = 48;
 constexpr std::size_t kRobotStateBytes = 49;
@@ -90,8 +90,8 @@ bool lengths_fit<wire::Scene>(Payload payload) {
   const auto obstacles = walker.length();
   if (!walker.fits(obstacles, kSceneObstacleBytes)) return false;
   for (std::uint32_t i = 0; i < obstacles; ++i) {
-    walker.skip<std::uint32_t, std::uint32_t, double, double, double, double, double, std::int64_t,
-                std::int64_t>();
+    walker.skip<std::uint32_t, std::uint32_t, std::uint32_t, double, double, double, double, double,
+                std::int64_t, std::int64_t>();
   }
   const auto vertices = walker.length();
   if (!walker.fits(vertices, kPointBytes)) return false;

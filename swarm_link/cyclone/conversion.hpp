@@ -61,6 +61,7 @@ void copy_point(const A& a, B& b) {
 template <class A, class B>
 void copy_obstacle(const A& a, B& b) {
   set(a.obstacle_id, b.obstacle_id);
+  set(a.owner_robot_id, b.owner_robot_id);
   set(a.vertices, b.vertices);
   copy_point(a.center, b.center);
   set(a.radius_m, b.radius_m);

@@ -64,6 +64,7 @@ Json json_of(const link::SceneMessage& m) {
           {"obstacles", list(m.obstacles,
                              [](const link::SceneObstacleMessage& o) {
                                return Json{{"obstacle_id", o.obstacle_id},
+                                           {"owner_robot_id", o.owner_robot_id},
                                            {"vertices", o.vertices},
                                            {"center", json_of(o.center)},
                                            {"radius_m", o.radius_m},

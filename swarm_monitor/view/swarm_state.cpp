@@ -116,7 +116,7 @@ void SwarmState::take_plan(const TappedSample& sample) {
 void SwarmState::take_scene(const TappedSample& sample) {
   link::SceneMessage message;
   if (!decode(scene_codec_, sample, message)) return;
-  auto scene = link::check_scene(message);
+  auto scene = link::check_scene(message, limits_);
   if (!scene) {
     ++refused_;
     return;

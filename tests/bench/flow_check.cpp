@@ -117,10 +117,12 @@ bool print_flow(const Mission& mission, bool timed, Rng& rng) {
   double best = INFINITY;
   std::uint32_t horizon = 0;
   if (timed) {
-    const TimedNetwork network(
-        roadmap, 4, 3,
-        {.speed_mps = kSpeed_mps, .step_s = kStep_s, .detour = 1e6, .delay_price_mps = kPrice_mps},
-        checker);
+    const TimedNetwork network(roadmap, 4, 3,
+                               {.speed = {.means_mps = kSpeed_mps},
+                                .step_s = kStep_s,
+                                .detour = 1e6,
+                                .delay_price_mps = kPrice_mps},
+                               checker);
     const auto free_flow = network.free_flow_steps();
     if (!free_flow) return false;
     horizon = *free_flow + static_cast<std::uint32_t>(rng() % 6);

@@ -56,6 +56,7 @@ inline SceneMessage sample<SceneMessage>(Rng& rng) {
   for (int i = 0; i < 3; ++i) {
     scene.removed.push_back(integer<std::uint32_t>(rng));
     scene.obstacles.push_back({.obstacle_id = integer<std::uint32_t>(rng),
+                               .owner_robot_id = integer<std::uint32_t>(rng),
                                .vertices = integer<std::uint32_t>(rng),
                                .center = {number(rng), number(rng)},
                                .radius_m = number(rng),

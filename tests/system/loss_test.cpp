@@ -1,7 +1,11 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
 // Processes die (kill -9) in the middle of a mission.
+#include <algorithm>
+#include <chrono>
 #include <csignal>
+#include <fstream>
+#include <thread>
 
 #include "flown_run.hpp"
 
@@ -23,6 +27,83 @@ TEST(Loss, KilledRobotsAreNamedAndNobodyElseIsDisturbed) {
   EXPECT_EQ(summary["arrived"], 10);
   EXPECT_EQ(summary["collisions_robot"], 0);
   EXPECT_EQ(summary["collisions_obstacle"], 0);
+}
+
+/// The lines of scene.jsonl.
+std::vector<nlohmann::json> scene_changes(const std::filesystem::path& run_dir) {
+  std::vector<nlohmann::json> changes;
+  std::ifstream lines(run_dir / "scene.jsonl");
+  for (std::string line; std::getline(lines, line);) {
+    changes.push_back(nlohmann::json::parse(line, nullptr, false));
+  }
+  return changes;
+}
+
+std::size_t count(const std::vector<nlohmann::json>& changes, const std::string& action) {
+  return static_cast<std::size_t>(std::count_if(
+      changes.begin(), changes.end(), [&](const auto& c) { return c["action"] == action; }));
+}
+
+TEST(Loss, KilledRobotsLeaveBodiesThatCanBeCleared) {
+  FlownRun run;
+  ASSERT_TRUE(run.mission_started());
+  const auto agents = run.agents();
+  ASSERT_EQ(agents.size(), 12U);
+  std::this_thread::sleep_for(std::chrono::seconds(5));  // they are under way
+
+  for (const std::size_t i : {1U, 4U, 9U}) ::kill(agents[i], SIGKILL);
+  ASSERT_TRUE(eventually([&] { return count(scene_changes(run.dir()), "add_body") == 3; }));
+  Program clear("swarm_launcher", {"command", run.dir().string(), "clear", "4"});
+  EXPECT_EQ(clear.wait(), 0) << clear.out();
+  Program again("swarm_launcher", {"command", run.dir().string(), "clear", "4"});
+  EXPECT_EQ(again.wait(), 1);
+  EXPECT_NE(again.out().find("robot 4 has no body"), std::string::npos) << again.out();
+  Program forged("swarm_launcher", {"command", run.dir().string(), "add_body",
+                                    "robot: 2, circle_m: {center: [9, 9], radius: 1}"});
+  EXPECT_EQ(forged.wait(), 1);
+
+  EXPECT_EQ(run.launcher().wait(), 1) << run.launcher().err();
+  const auto changes = scene_changes(run.dir());
+  ASSERT_EQ(changes.size(), 4U);
+  for (const std::size_t i : {0U, 1U, 2U}) {
+    // The circle of a robot under way, from its last tick to where its driver stops it.
+    const std::string keys = changes[i]["keys"];
+    const double radius_m = std::stod(keys.substr(keys.find("radius: ") + 8));
+    EXPECT_GE(radius_m, 0.2) << keys;
+    EXPECT_LE(radius_m, 0.2 + 0.5 * 1.5 * 0.2 + 1e-9) << keys;
+  }
+  EXPECT_EQ(changes[3]["action"], "clear");
+  EXPECT_EQ(changes[3]["keys"], "robot: 4");
+  const auto summary = run.summary();
+  EXPECT_EQ(summary["lost"], nlohmann::json({1, 4, 9}));
+  EXPECT_EQ(summary["arrived"], 9);
+  EXPECT_EQ(summary["collisions_robot"], 0);
+  EXPECT_EQ(summary["collisions_obstacle"], 0);
+}
+
+TEST(Loss, TheBodyOfARespawnedRobotIsNoObstacleAnyMore) {
+  TemporaryFolder folder;
+  const std::filesystem::path mission = folder.path() / "respawning.yaml";
+  std::string text = read_text(kSmallMission);
+  text.replace(text.find("launcher:\n"), 10, "launcher:\n  respawn_agent_max: 1\n");
+  std::ofstream(mission) << text;
+  FlownRun run({}, mission.string());
+  ASSERT_TRUE(run.mission_started());
+  const auto agents = run.agents();
+  ASSERT_EQ(agents.size(), 12U);
+  std::this_thread::sleep_for(std::chrono::seconds(5));
+
+  ::kill(agents[3], SIGKILL);
+  ::kill(agents[8], SIGKILL);
+
+  EXPECT_EQ(run.launcher().wait(), 0) << run.launcher().err();
+  const auto changes = scene_changes(run.dir());
+  EXPECT_EQ(count(changes, "add_body"), 2U);
+  EXPECT_EQ(count(changes, "clear"), 2U);
+  EXPECT_TRUE(has_event(run.dir(), "body-cleared"));
+  const auto summary = run.summary();
+  EXPECT_EQ(summary["arrived"], 12);
+  EXPECT_EQ(summary["collisions_robot"], 0);
 }
 
 TEST(Loss, TheSwarmOutlivesItsPlanner) {

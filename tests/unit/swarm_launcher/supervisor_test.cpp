@@ -22,6 +22,7 @@ struct Bench {
   std::vector<CommandKind> commands;
   std::vector<SceneChange> changes;
   std::vector<std::pair<std::uint32_t, EndSignal>> signals;
+  std::vector<std::vector<RobotId>> fallen, risen;  // one entry a step
   std::vector<std::string> log;
   bool obedient = true;  // children end when they are asked to
 
@@ -46,6 +47,8 @@ struct Bench {
       changes.push_back(scene->change);
       if (std::holds_alternative<GoTo>(scene->change)) sut->on_new_goal(77);
     }
+    if (const auto* bodies = std::get_if<AddBodies>(&action)) fallen.push_back(bodies->robots);
+    if (const auto* bodies = std::get_if<ClearBodies>(&action)) risen.push_back(bodies->robots);
     if (const auto* event = std::get_if<LogEvent>(&action))
       log.push_back(event->code + ": " + event->text);
     if (const auto* signal = std::get_if<SignalProcess>(&action)) {
@@ -223,6 +226,98 @@ TEST(Supervisor, CountsAKilledAgentAsLostAndFliesOn) {
   bench.report_all(RobotMode::kArrived, true);
   bench.run_for(seconds(3));
   EXPECT_EQ(bench.sut->outcome(), Outcome::kCompleted);
+}
+
+RobotReport report_of(SteadyTime sent_at) {
+  return {
+      .has_plan = true, .hears_neighbours = true, .mode = RobotMode::kMoving, .sent_at = sent_at};
+}
+
+using Robots = std::vector<std::vector<RobotId>>;
+
+TEST(SupervisorBodies, OfRobotsThatDieTogetherAreAddedAtOnce) {
+  Running bench(5);
+  bench.start();
+
+  for (const std::uint32_t process : {4U, 2U}) {
+    bench.sut->on_exit(ProcessIndex(process), {.code = 0, .signal = 9}, bench.now);
+  }
+  bench.run_for(seconds(5));
+
+  EXPECT_EQ(bench.fallen, (Robots{{RobotId(3), RobotId(1)}}));
+  EXPECT_TRUE(bench.risen.empty());
+}
+
+TEST(SupervisorBodies, OfAProcessAreThoseOfAllItsRobots) {
+  Bench bench(6, 3);
+  bench.run_for(seconds(1));
+  bench.report_all(RobotMode::kWaiting);
+  bench.run_for(milliseconds(100));
+
+  bench.sut->on_exit(ProcessIndex(2), {.code = 0, .signal = 9}, bench.now);
+  bench.run_for(milliseconds(100));
+
+  EXPECT_EQ(bench.fallen, (Robots{{RobotId(3), RobotId(4), RobotId(5)}}));
+}
+
+TEST(SupervisorBodies, StayUntilTheRespawnedRobotReports) {
+  Running bench(3);
+  bench.options.launcher.respawn_agent_max = 1;
+  bench.start();
+  const SteadyTime died = bench.now;
+  bench.sut->on_exit(ProcessIndex(2), {.code = 0, .signal = 9}, died);
+  bench.run_for(milliseconds(100));
+  EXPECT_EQ(bench.fallen, (Robots{{RobotId(1)}})) << "at once, not only when it is lost for good";
+
+  bench.sut->on_status(RobotId(1), report_of(died - milliseconds(5)));
+  bench.run_for(seconds(1));
+  EXPECT_TRUE(bench.risen.empty()) << "sent before it died, received after";
+  EXPECT_EQ(std::count(bench.started.begin(), bench.started.end(), 2U), 2);
+  bench.sut->on_status(RobotId(1), report_of(bench.now));
+  bench.run_for(milliseconds(100));
+
+  EXPECT_EQ(bench.risen, (Robots{{RobotId(1)}}));
+  EXPECT_TRUE(bench.sut->lost().empty());
+}
+
+TEST(SupervisorBodies, OfOneThatDiesAsSoonAsItReportsIsNotCleared) {
+  Running bench(3);
+  bench.options.launcher.respawn_agent_max = 1;
+  bench.start();
+  bench.sut->on_exit(ProcessIndex(2), {.code = 0, .signal = 9}, bench.now);
+  bench.run_for(seconds(1));
+
+  bench.sut->on_status(RobotId(1), report_of(bench.now));
+  bench.sut->on_exit(ProcessIndex(2), {.code = 0, .signal = 9}, bench.now);
+  bench.run_for(seconds(1));
+
+  EXPECT_EQ(bench.fallen, (Robots{{RobotId(1)}, {RobotId(1)}})) << "anew, where it is now";
+  EXPECT_TRUE(bench.risen.empty());
+}
+
+TEST(SupervisorBodies, OfASilentRobotIsClearedWhenItReports) {
+  Running bench(3);
+  bench.start();
+  bench.sut->on_silent(RobotId(2), bench.now);
+  bench.run_for(seconds(1));
+  EXPECT_EQ(bench.fallen, (Robots{{RobotId(2)}}));
+  EXPECT_TRUE(bench.sut->lost().empty()) << "its process is alive";
+
+  bench.sut->on_status(RobotId(2), report_of(bench.now));
+  bench.run_for(seconds(1));
+
+  EXPECT_EQ(bench.risen, (Robots{{RobotId(2)}}));
+}
+
+TEST(SupervisorBodies, AreNoneOfProcessesThatEndWithTheMission) {
+  Running bench(3);
+  bench.start();
+
+  bench.sut->on_interrupt();
+  bench.run_for(seconds(1));
+
+  EXPECT_EQ(bench.sut->stage(), Supervisor::Stage::kDone);
+  EXPECT_TRUE(bench.fallen.empty());
 }
 
 TEST(Supervisor, RestartsAPlannerThatCrashedButNotOneThatCannotPlan) {

@@ -317,31 +317,36 @@ TEST(CheckPlan, RefusesEntriesAtSourcesThatAreNone) {
   EXPECT_TRUE(refused(entered(0, kMaxPlanRobots + 1), RefusalReason::kOversized));
 }
 
-/// A scene with a moving circle, a triangle and a new goal.
+/// A scene with a moving circle, a triangle, the body of robot 42 and a new goal.
 SceneMessage good_scene() {
   SceneMessage scene{.version = 5, .risk_alpha = 0.2, .next_id = 9, .removed = {1}};
-  scene.obstacles = {{.obstacle_id = 3,
-                      .center = {4, 5},
-                      .radius_m = 1,
-                      .velocity_x_mps = 0.5,
-                      .moving_from_utc_ns = 100,
-                      .moving_until_utc_ns = 200},
-                     {.obstacle_id = 8, .vertices = 3}};
+  scene.obstacles = {
+      {.obstacle_id = 3,
+       .center = {4, 5},
+       .radius_m = 1,
+       .velocity_x_mps = 0.5,
+       .moving_from_utc_ns = 100,
+       .moving_until_utc_ns = 200},
+      {.obstacle_id = 8, .vertices = 3},
+      {.obstacle_id = 0x8000'0000 + 42, .owner_robot_id = 42, .center = {7, 7}, .radius_m = 0.2}};
   scene.vertices = {{1, 1}, {3, 1}, {2, 4}};
   scene.goal = {{10, 10, 1.0, 0.2, 2.0, 0.4}, {20, 10, 1.0, 0.0, 1.0, 0.6}};
   return scene;
 }
 
 TEST(CheckScene, TakesWhatIsGoodAndSaysItAgainUnchanged) {
-  const auto scene = check_scene(good_scene());
+  const auto scene = check_scene(good_scene(), limits());
 
   ASSERT_TRUE(scene.has_value());
+  EXPECT_EQ(scene->obstacles[2].owner, RobotId(42));
   EXPECT_EQ(to_message(*scene), good_scene());
-  EXPECT_TRUE(check_scene(to_message(first_scene(4))).has_value());
+  EXPECT_TRUE(check_scene(to_message(first_scene(4)), limits()).has_value());
 }
 
 TEST(CheckScene, RefusesEveryField) {
-  const auto verdict = [](auto change) { return check_scene(changed(good_scene(), change)); };
+  const auto verdict = [](auto change) {
+    return check_scene(changed(good_scene(), change), limits());
+  };
   EXPECT_TRUE(refused(verdict([](auto& s) { s.schema_version = 1; }), RefusalReason::kSchema));
   EXPECT_TRUE(refused(verdict([](auto& s) { s.removed.resize(kMaxSceneRemoved + 1); }),
                       RefusalReason::kOversized));
@@ -367,6 +372,11 @@ TEST(CheckScene, RefusesEveryField) {
   EXPECT_TRUE(out_of_range([](auto& s) { s.obstacles[1].vertices = 4; }));     // has only three
   EXPECT_TRUE(out_of_range([](auto& s) { s.vertices.push_back({9, 9}); }));    // nobody's
   EXPECT_TRUE(out_of_range([](auto& s) { s.vertices[2] = {2, 1}; }));          // no area
+  EXPECT_TRUE(out_of_range([](auto& s) { s.next_id = 0x8000'0001; }));         // bodies' numbers
+  EXPECT_TRUE(out_of_range([](auto& s) { s.obstacles[2].owner_robot_id = 100; }));  // no such robot
+  EXPECT_TRUE(out_of_range([](auto& s) { s.obstacles[2].owner_robot_id = 43; }));   // another's
+  EXPECT_TRUE(out_of_range([](auto& s) { s.obstacles[2].owner_robot_id = kNoRobot; }));
+  EXPECT_TRUE(out_of_range([](auto& s) { s.obstacles[2].velocity_x_mps = 1; }));
   EXPECT_TRUE(refused(verdict([](auto& s) { s.goal[0].covariance_xx_m2 = -1; }),
                       RefusalReason::kBadGaussian));
   EXPECT_TRUE(refused(verdict([](auto& s) { s.goal[0].weight = 0.7; }), RefusalReason::kBadMass));

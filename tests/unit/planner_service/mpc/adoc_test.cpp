@@ -82,7 +82,7 @@ TEST(Adoc, ItsRoutesAreAPlan) {
   const Mission mission = testing::rover_scene(3);
   const auto routes = adoc_routes(mission.world, mission.start, mission.goal, {}).value();
 
-  const auto plan = build_plan(routes, 4, 3, 1.25);
+  const auto plan = build_plan(routes, 4, 3, {1.25});
 
   ASSERT_TRUE(plan.has_value());
   EXPECT_EQ(plan->sources().size(), 4U);

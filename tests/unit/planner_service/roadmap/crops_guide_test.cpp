@@ -49,7 +49,7 @@ TEST(CropsGuide, GuidesThroughTheScenesOfItsCodeOnEverySeed) {
             << name << " seed " << seed;
       }
       EXPECT_NEAR(mass, 1.0, 1e-9);
-      EXPECT_TRUE(build_plan(guide->routes(), starts, goals, 1.25).has_value());
+      EXPECT_TRUE(build_plan(guide->routes(), starts, goals, {1.25}).has_value());
     }
   }
 }
@@ -218,7 +218,7 @@ TEST(CropsGuide, AddsSamplesUntilAllIsJoined) {
 TEST(CropsGuide, RepeatsItselfForTheSameSeedOnly) {
   const Mission mission = crops_scene("scene1");
   const auto digest = [&](std::uint64_t seed) {
-    return build_plan(guide_of(mission, seed)->routes(), 1, 1, 1.25)->digest();
+    return build_plan(guide_of(mission, seed)->routes(), 1, 1, {1.25})->digest();
   };
 
   EXPECT_EQ(digest(7), digest(7));

@@ -18,7 +18,7 @@ TEST(BuildPlan, SharesSourcesAndSinksAndKeepsTheirOrder) {
   const std::vector<Route> routes{
       {1, 1, 0.5, {s1, g1}}, {1, 0, 0.2, {s1, at(40, 30), g0}}, {0, 0, 0.3, {s0, at(50, 0), g0}}};
 
-  const auto plan = build_plan(routes, 2, 2, 2.0);
+  const auto plan = build_plan(routes, 2, 2, {2.0});
 
   ASSERT_TRUE(plan.has_value()) << plan.error().message;
   ASSERT_EQ(plan->sources().size(), 2U);
@@ -38,7 +38,7 @@ TEST(BuildPlan, ArrivesWithTheSlowestAndStretchesTheOthers) {
   const Gaussian goal = at(40, 0);
   const std::vector<Route> routes{{0, 0, 0.5, {s0, at(10, 0), goal}}, {1, 0, 0.5, {s1, goal}}};
 
-  const auto plan = build_plan(routes, 2, 1, 2.0);
+  const auto plan = build_plan(routes, 2, 1, {2.0});
 
   ASSERT_TRUE(plan.has_value()) << plan.error().message;
   // The second route is 50 m long and takes 25 s; the first, 40 m, is stretched from 20 s.
@@ -51,8 +51,8 @@ TEST(BuildPlan, GivesTimeToGaussiansThatOnlyChangeShape) {
   const std::vector<Route> reshape{{0, 0, 1.0, {wide, Gaussian::from_parameters({0, 0}, 4, 1, 0)}}};
   const std::vector<Route> stay{{0, 0, 1.0, {wide, wide}}};
 
-  const auto reshaped = build_plan(reshape, 1, 1, 2.0);
-  const auto stayed = build_plan(stay, 1, 1, 2.0);
+  const auto reshaped = build_plan(reshape, 1, 1, {2.0});
+  const auto stayed = build_plan(stay, 1, 1, {2.0});
 
   ASSERT_TRUE(reshaped.has_value());
   ASSERT_TRUE(stayed.has_value()) << stayed.error().message;

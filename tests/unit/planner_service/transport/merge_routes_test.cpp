@@ -41,8 +41,8 @@ TEST(MergeRoutes, SharesTheStretchThatTwoRoutesHaveInCommon) {
   const Gaussian goal = at(90, 10);
   const std::vector<Route> routes{{0, 0, 0.4, {s0, a, b, goal}}, {1, 0, 0.6, {s1, a, b, goal}}};
 
-  const auto plan = build_merged_plan(routes, 2, 1, 2.0);
-  const auto apart = build_plan(routes, 2, 1, 2.0);
+  const auto plan = build_merged_plan(routes, 2, 1, {2.0});
+  const auto apart = build_plan(routes, 2, 1, {2.0});
 
   ASSERT_TRUE(plan.has_value()) << plan.error().message;
   EXPECT_EQ(plan->nodes().size(), 5U);
@@ -62,8 +62,8 @@ TEST(MergeRoutes, DelaysNobodyForCompany) {
   const std::vector<Route> routes{{0, 0, 0.5, {at(0, 0), crossing, at(90, 0)}},
                                   {1, 1, 0.5, {at(10, 70), crossing, at(10, -10)}}};
 
-  const auto plan = build_merged_plan(routes, 2, 2, 1.0);
-  const auto apart = build_plan(routes, 2, 2, 1.0);
+  const auto plan = build_merged_plan(routes, 2, 2, {1.0});
+  const auto apart = build_plan(routes, 2, 2, {1.0});
 
   ASSERT_TRUE(plan.has_value());
   EXPECT_EQ(plan->nodes().size(), 6U);
@@ -78,7 +78,7 @@ TEST(MergeRoutes, KeepsRoutesApartThatRunAgainstEachOther) {
   const std::vector<Route> routes{{0, 0, 0.5, {at(0, 0), a, b, at(30, 0)}},
                                   {1, 1, 0.5, {at(30, 5), b, a, at(0, 5)}}};
 
-  const auto plan = build_merged_plan(routes, 2, 2, 1.0);
+  const auto plan = build_merged_plan(routes, 2, 2, {1.0});
 
   // At most one of the two places is passed together: both would be a circle.
   ASSERT_TRUE(plan.has_value()) << plan.error().message;
@@ -91,8 +91,8 @@ TEST(MergeRoutes, IsBuildPlanWithoutAnythingInCommon) {
                                   {1, 0, 0.3, {at(0, 30), at(10, 20), goal}},
                                   {1, 1, 0.2, {at(0, 30), at(7, 7)}}};
 
-  const auto plan = build_merged_plan(routes, 2, 2, 2.0);
-  const auto apart = build_plan(routes, 2, 2, 2.0);
+  const auto plan = build_merged_plan(routes, 2, 2, {2.0});
+  const auto apart = build_plan(routes, 2, 2, {2.0});
 
   ASSERT_TRUE(plan.has_value()) << plan.error().message;
   ASSERT_EQ(plan->nodes().size(), apart->nodes().size());
@@ -123,9 +123,9 @@ TEST(MergeRoutes, KeepsEveryRouteSpeedAndArrivalOnRandomGrids) {
         routes.push_back(route);
       }
     }
-    const auto apart = build_plan(routes, 3, 2, kSpeed_mps).value();
+    const auto apart = build_plan(routes, 3, 2, {kSpeed_mps}).value();
 
-    const auto plan = build_merged_plan(routes, 3, 2, kSpeed_mps);
+    const auto plan = build_merged_plan(routes, 3, 2, {kSpeed_mps});
 
     ASSERT_TRUE(plan.has_value()) << plan.error().message;
     ASSERT_EQ(plan->sources().size(), 3U);

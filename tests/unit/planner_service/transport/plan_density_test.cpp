@@ -77,6 +77,59 @@ TEST(PlanDensity, SeesTheMiddleWhereTwoGaussiansMerge) {
   EXPECT_NEAR(peak.at_m.x(), 0.0, 1e-2);
 }
 
+TEST(PlanDensity, FindsTheDensestDiscOfAGrid) {
+  constexpr double kStep_s = 1.0;
+  constexpr double kRadius_m = 2.0;
+  Rng rng(3);
+  for (int round = 0; round < 5; ++round) {
+    const FlowPlan plan = random_plan(rng);
+    const auto disc = [&](const Mixture& mixture, const Vec2& center_m) {
+      double sum = 0.0;
+      int points = 0;
+      for (double x = -kRadius_m; x <= kRadius_m; x += 0.2) {
+        for (double y = -kRadius_m; y <= kRadius_m; y += 0.2) {
+          if (x * x + y * y > kRadius_m * kRadius_m) continue;
+          sum += 100.0 * mixture.density(center_m + Vec2(x, y));
+          ++points;
+        }
+      }
+      return sum / points;
+    };
+    std::vector<MissionTime> times;
+    for (const PlanNode& node : plan.nodes()) times.push_back(node.time);
+    for (int i = 0; i * kStep_s <= plan.duration().count(); ++i) times.emplace_back(i * kStep_s);
+    double highest = 0.0;
+    for (const MissionTime t : times) {
+      const Mixture mixture = plan.mixture_at(t);
+      for (double x = 0.0; x <= 10.0; x += 0.5) {
+        for (double y = 0.0; y <= 10.0; y += 0.5) {
+          highest = std::max(highest, disc(mixture, {x, y}));
+        }
+      }
+    }
+
+    const DensityPeak densest = densest_disc(plan, 100.0, kRadius_m, kStep_s);
+
+    // Discs on the grid are up to 0.35 m beside the densest one, and have 300 points of it; the
+    // search looks at the tops of a density that is smoothed a little differently.
+    EXPECT_NEAR(densest.per_m2, highest, 0.03 * highest);
+    EXPECT_NEAR(densest.per_m2, disc(plan.mixture_at(densest.time), densest.at_m),
+                0.01 * densest.per_m2);
+  }
+}
+
+TEST(PlanDensity, CountsRobotsInADiscAndNotAtAPoint) {
+  // All robots in a Gaussian of 1 m: 1 − e^(−2) of them are within 2 m.
+  const auto plan =
+      FlowPlan::make({{at(0, 0), MissionTime(0), 1.0}, {at(9, 0), MissionTime(4), 1.0}},
+                     {{0, 1, 1.0}})
+          .value();
+
+  const double per_m2 = densest_disc(plan, 100.0, 2.0, 1.0).per_m2;
+
+  EXPECT_NEAR(per_m2, 100.0 * (1.0 - std::exp(-2.0)) / (4.0 * std::numbers::pi), 1e-3 * per_m2);
+}
+
 TEST(PlanDensity, SharesOfAPeakAddUpToIt) {
   Rng rng(2);
   const FlowPlan plan = random_plan(rng);

@@ -77,8 +77,9 @@ TEST(TimedFlow, MovesNoFasterThanItMay) {
   const FlowScene scene = flow_scene(3, 60);
   EdgeChecker checker(scene.world, scene.risk);
 
-  const auto flow = timed_flow(scene.roadmap, scene.supplies, scene.demands,
-                               {.max_per_m2 = 1.0, .robots = 100.0}, {.speed_mps = 0.8}, checker);
+  const auto flow =
+      timed_flow(scene.roadmap, scene.supplies, scene.demands, {.max_per_m2 = 1.0, .robots = 100.0},
+                 {.speed = {.means_mps = 0.8}}, checker);
 
   ASSERT_TRUE(flow.has_value()) << flow.error().message;
   for (const PlanLeg& leg : flow->plan.legs()) {

@@ -28,7 +28,7 @@ TimedNetwork network_of(const FlowScene& scene) {
   return {scene.roadmap,
           2,
           2,
-          {.speed_mps = kSpeed_mps,
+          {.speed = {.means_mps = kSpeed_mps},
            .step_s = kStep_s,
            .detour = kEverything,
            .delay_price_mps = kPrice_mps},
@@ -125,7 +125,7 @@ TEST(TimedNetwork, LetsGroupsPassOneAfterTheOtherThroughABottleneck) {
   EdgeChecker checker(world, {});
   const std::vector<double> one{1.0};
   const std::vector<double> capacities{1.0, 1.0, 0.34};
-  const TimedNetwork network(roadmap, 1, 1, {.speed_mps = 4.0, .step_s = 3.0}, checker);
+  const TimedNetwork network(roadmap, 1, 1, {.speed = {.means_mps = 4.0}, .step_s = 3.0}, checker);
 
   ASSERT_EQ(network.free_flow_steps(), 2U);
   EXPECT_FALSE(network.solve(2, {one, one, capacities}).has_value());

@@ -47,6 +47,7 @@ planner:
   method: swarmprm
   sampler: uniform
   density_cap: static
+  density_cap_per_m2: 1.5
   samples: 77
   risk_alpha: 0.1
   sigma_min_m: 0.3
@@ -69,6 +70,7 @@ script:
       - {mean_m: [3, 9], covariance_m2: [[0.1, 0], [0, 0.1]], weight: 0.5}
   - {at_s: 7, action: risk, alpha: 0.3}
   - {at_s: 7.25, action: resume}
+  - {at_s: 8, action: clear, robot: 6}
   - {at_s: 60, action: stop}
 )";
 
@@ -118,8 +120,8 @@ template <class Section, std::size_t N>
 void expect_same(const Section& a, const Section& b,
                  const std::array<mission_fields::Field<Section>, N>& fields) {
   // The tables are all that reader and writer know: a member without a row would be lost.
-  // Beside the table: texts, and of robots the body and the groups.
-  constexpr std::size_t kOthers = std::is_same_v<Section, PlannerSpec>   ? 3
+  // Beside the table: texts, what may be automatic, and of robots the body and the groups.
+  constexpr std::size_t kOthers = std::is_same_v<Section, PlannerSpec>   ? 4
                                   : std::is_same_v<Section, RobotsSpec>  ? 2
                                   : std::is_same_v<Section, ControlSpec> ? 2
                                   : std::is_same_v<Section, BodySpec>    ? 1
@@ -142,6 +144,7 @@ void expect_same(const Mission& a, const Mission& b) {
   EXPECT_EQ(a.planner.method, b.planner.method);
   EXPECT_EQ(a.planner.sampler, b.planner.sampler);
   EXPECT_EQ(a.planner.density_cap, b.planner.density_cap);
+  EXPECT_EQ(a.planner.density_cap_per_m2, b.planner.density_cap_per_m2);
   expect_same(a.robots, b.robots, mission_fields::kRobots);
   const auto expect_same_body = [](const BodySpec& one, const BodySpec& other) {
     EXPECT_EQ(one.model, other.model);
@@ -219,10 +222,10 @@ TEST(MissionFile, ReadsEverySection) {
   EXPECT_EQ(mission->start.components().size(), 2U);
   EXPECT_EQ(mission->control.rate_hz, 20.0);
   EXPECT_EQ(mission->launcher.respawn_agent_max, 2U);
+  ASSERT_EQ(mission->script.size(), 9U);
   EXPECT_EQ(mission->criteria.w2_ratio_max, 1.15);
   EXPECT_EQ(mission->criteria.own_place_share_min, 0.0);
   EXPECT_FALSE(mission->criteria.centre_lag_max_s.has_value());
-  ASSERT_EQ(mission->script.size(), 8U);
   EXPECT_EQ(mission->script[6].at_s, 7.25);
   const auto change = [&](std::size_t i) {
     return std::get<SceneChange>(mission->script[i].action);
@@ -234,7 +237,8 @@ TEST(MissionFile, ReadsEverySection) {
   EXPECT_EQ(std::get<RemoveObstacle>(change(3)).obstacle, 0U);
   EXPECT_EQ(std::get<GoTo>(change(4)).goal.components().size(), 2U);
   EXPECT_EQ(std::get<SetRisk>(change(5)).alpha, 0.3);
-  EXPECT_EQ(std::get<CommandKind>(mission->script[7].action), CommandKind::kStop);
+  EXPECT_EQ(std::get<ClearBody>(change(7)).robot, RobotId(6));
+  EXPECT_EQ(std::get<CommandKind>(mission->script[8].action), CommandKind::kStop);
 }
 
 TEST(MissionFile, ReadsBackWhatItWrote) {
@@ -246,6 +250,22 @@ TEST(MissionFile, ReadsBackWhatItWrote) {
 
     ASSERT_TRUE(again.has_value()) << again.error().message << "\n" << to_yaml(*mission);
     expect_same(*mission, *again);
+  }
+}
+
+TEST(MissionFile, ReadsADensityCapThatIsAutomatic) {
+  const auto cap_of = [](const char* value) {
+    return parse_mission(std::string(kLeast) + "planner: {density_cap_per_m2: " + value + "}\n",
+                         "m.yaml");
+  };
+  EXPECT_EQ(parse_mission(kLeast, "least")->planner.density_cap_per_m2, std::nullopt);
+  EXPECT_EQ(cap_of("auto")->planner.density_cap_per_m2, std::nullopt);
+  EXPECT_EQ(cap_of("0")->planner.density_cap_per_m2, 0.0);
+  EXPECT_EQ(cap_of("1.5")->planner.density_cap_per_m2, 1.5);
+  for (const char* bad : {"-1", "automatic", "[auto]", "inf"}) {
+    const auto mission = cap_of(bad);
+    ASSERT_FALSE(mission.has_value()) << bad;
+    EXPECT_NE(mission.error().message.find("planner.density_cap_per_m2"), std::string::npos);
   }
 }
 

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "swarm_core/mission/scene_bodies.hpp"
 #include "swarm_core/mission/scene_change_file.hpp"
 #include "swarm_core/mission/scene_log.hpp"
 
@@ -112,7 +113,10 @@ TEST(SceneLog, ReplaysWhatWasWritten) {
       MoveObstacle{2, {0.1, -1.0 / 3.0}, 7.5},
       RemoveObstacle{0},
       GoTo{Mixture::make({{1.0, Gaussian::from_parameters({3, 3}, 1, 2, 0.5)}}).value()},
-      SetRisk{0.15}};
+      SetRisk{0.15},
+      AddBody{RobotId(7), Circle{{12.1, 1.0 / 3.0}, 0.325}},
+      AddBody{RobotId(3), Circle{{30.5, 8}, 0.2}},
+      ClearBody{RobotId(7)}};
   std::string text;
   Scene scene = first_scene(2);
   for (std::size_t i = 0; i < changes.size(); ++i) {
@@ -130,11 +134,101 @@ TEST(SceneLog, ReplaysWhatWasWritten) {
   ASSERT_TRUE(last.goal.has_value());
   EXPECT_EQ(last.goal->components()[0].gaussian.covariance_m2(),
             scene.goal->components()[0].gaussian.covariance_m2());
-  ASSERT_EQ(last.obstacles.size(), 2U);
+  ASSERT_EQ(last.obstacles.size(), 3U);
+  EXPECT_EQ(last.obstacles[2].owner, RobotId(3));
+  EXPECT_EQ(std::get<Circle>(scenes[scenes.size() - 2].obstacles[3].shape).center_m.y(), 1.0 / 3.0);
   EXPECT_EQ(last.obstacles[0].velocity_mps, scene.obstacles[0].velocity_mps);
   EXPECT_EQ(last.obstacles[0].moving_until, scene.obstacles[0].moving_until);
   EXPECT_EQ(std::get<Polygon>(last.obstacles[1].shape).vertices_m(),
             std::get<Polygon>(scene.obstacles[1].shape).vertices_m());
+}
+
+Circle body_at(double x) { return {{x, 10}, 0.3}; }
+
+TEST(SceneBodies, AreObstaclesUntilTheyAreCleared) {
+  Scene scene = changed(first_scene(2), AddBody{RobotId(9), body_at(20)}, 1.0);
+  scene = changed(scene, AddBody{RobotId(4), body_at(25)}, 2.0);
+  EXPECT_TRUE(has_body(scene, RobotId(4)));
+  EXPECT_NEAR(world_at(mission_world(), scene, at_s(3)).distance_m({20, 10}), -0.3, 1e-12);
+
+  const Scene cleared = changed(scene, ClearBody{RobotId(9)}, 4.0);
+
+  EXPECT_FALSE(has_body(cleared, RobotId(9)));
+  EXPECT_GT(world_at(mission_world(), cleared, at_s(5)).distance_m({20, 10}), 4.0);
+  const auto again = after(cleared, ClearBody{RobotId(9)}, mission_world(), at_s(6));
+  ASSERT_FALSE(again.has_value());
+  EXPECT_NE(again.error().message.find("robot 9"), std::string::npos);
+}
+
+TEST(SceneBodies, AreOneARobot) {
+  Scene scene = changed(first_scene(2), AddBody{RobotId(9), body_at(20)}, 1.0);
+  scene = changed(scene, AddBody{RobotId(9), body_at(22)}, 2.0);
+
+  ASSERT_EQ(scene.obstacles.size(), 1U);
+  EXPECT_EQ(std::get<Circle>(scene.obstacles[0].shape).center_m.x(), 22.0);
+}
+
+TEST(SceneBodies, TakeNoNumberOfAnotherObstacle) {
+  Scene scene = changed(first_scene(2), AddBody{RobotId(0), body_at(20)}, 1.0);
+  scene = changed(scene, AddObstacle{Circle{{30, 10}, 1.0}}, 2.0);
+  scene = changed(scene, MoveObstacle{2, {1, 0}, 0.0}, 3.0);
+
+  EXPECT_NEAR(world_at(mission_world(), scene, at_s(4)).distance_m({31, 10}), -1.0, 1e-12);
+  EXPECT_NEAR(world_at(mission_world(), scene, at_s(4)).distance_m({20, 10}), -0.3, 1e-12);
+}
+
+TEST(SceneBodies, CanBeLeftOut) {
+  Scene scene = changed(first_scene(2), AddObstacle{Circle{{30, 10}, 1.0}}, 1.0);
+  for (std::uint32_t i = 3; i < 7; ++i) scene = changed(scene, AddBody{RobotId(i), body_at(20)}, i);
+
+  EXPECT_EQ(without_bodies(scene).obstacles.size(), 1U);
+  const Scene own_left_out = without_bodies_of(scene, RobotId(4), 2);
+  ASSERT_EQ(own_left_out.obstacles.size(), 3U);
+  EXPECT_EQ(own_left_out.obstacles[1].owner, RobotId(3));
+  EXPECT_EQ(own_left_out.obstacles[2].owner, RobotId(6));
+}
+
+TEST(SceneBodies, AreNoObstaclesOfTheAudit) {
+  std::vector<Scene> scenes = {first_scene(2)};
+  scenes.push_back(changed(scenes.back(), AddBody{RobotId(1), body_at(20)}, 1.0));
+
+  EXPECT_GT(world_phases(mission_world(), scenes).back().world.distance_m({20, 10}), 4.0);
+  EXPECT_EQ(lasting_world(mission_world(), scenes).obstacles().size(), 2U);
+}
+
+TEST(SceneBodies, AreToldWithTheirTimes) {
+  std::vector<Scene> scenes = {first_scene(2)};
+  const auto add = [&](const SceneChange& change, double s) {
+    scenes.push_back(changed(scenes.back(), change, s));
+  };
+  add(AddBody{RobotId(1), body_at(20)}, 1.0);
+  add(AddBody{RobotId(2), body_at(25)}, 2.0);
+  add(ClearBody{RobotId(1)}, 3.0);
+  add(AddBody{RobotId(1), body_at(30)}, 4.0);
+
+  const std::vector<FallenBody> bodies = bodies_of(scenes);
+
+  ASSERT_EQ(bodies.size(), 3U);
+  EXPECT_EQ(bodies[0].robot, RobotId(1));
+  EXPECT_EQ(bodies[0].from, at_s(1.0));
+  EXPECT_EQ(bodies[0].cleared, at_s(3.0));
+  EXPECT_EQ(bodies[1].robot, RobotId(2));
+  EXPECT_FALSE(bodies[1].cleared.has_value());
+  EXPECT_EQ(bodies[2].shape.center_m.x(), 30.0);
+  EXPECT_FALSE(bodies[2].cleared.has_value());
+}
+
+TEST(SceneBodies, AreAtMostAsManyAsTheSceneHolds) {
+  Scene scene = first_scene(2);
+  for (std::uint32_t i = 0; i < Scene::kMaxObstacles; ++i) {
+    scene = changed(scene, AddBody{RobotId(i), body_at(20)}, 1.0);
+  }
+
+  const auto one_more =
+      after(scene, AddBody{RobotId(999), body_at(20)}, mission_world(), at_s(2.0));
+
+  ASSERT_FALSE(one_more.has_value());
+  EXPECT_NE(one_more.error().message.find("256"), std::string::npos);
 }
 
 TEST(SceneLog, EndsWhereALineIsDamaged) {
@@ -154,6 +248,11 @@ TEST(SceneChange, IsReadFromACommandLine) {
   ASSERT_TRUE(change.has_value()) << change.error().message;
   EXPECT_EQ(std::get<Circle>(std::get<AddObstacle>(*change).shape).radius_m, 3.0);
   EXPECT_TRUE(parse_scene_change("risk", "{alpha: 0.2}", mission_world()).has_value());
+  for (const char* keys : {" 7", "7", "robot: 7"}) {
+    const auto clear = parse_scene_change("clear", keys, mission_world());
+    ASSERT_TRUE(clear.has_value()) << keys << ": " << clear.error().message;
+    EXPECT_EQ(std::get<ClearBody>(*clear).robot, RobotId(7));
+  }
 }
 
 TEST(SceneChange, SaysWhatIsWrongWithACommandLine) {
@@ -165,6 +264,11 @@ TEST(SceneChange, SaysWhatIsWrongWithACommandLine) {
   EXPECT_NE(wrong("risk", "").find("alpha is missing"), std::string::npos);
   EXPECT_NE(wrong("move_obstacle", "obstacle: 0, by_m: [1]").find("list of 2"), std::string::npos);
   EXPECT_NE(wrong("remove_obstacle", "obstacle: 0, speed: 1").find("unknown key"),
+            std::string::npos);
+  EXPECT_NE(wrong("clear", "").find("robot is missing"), std::string::npos);
+  EXPECT_NE(wrong("clear", "all").find("clear:1:"), std::string::npos);
+  EXPECT_NE(wrong("clear", "robot: -1").find("robot is -1"), std::string::npos);
+  EXPECT_NE(wrong("add_body", "robot: 1, polygon_m: [[1, 1], [2, 1], [2, 2]]").find("circle_m"),
             std::string::npos);
   EXPECT_NE(wrong("explode", "obstacle: 0").find("explode"), std::string::npos);
   EXPECT_NE(wrong("add_obstacle", "circle_m: {").find("add_obstacle:1:"), std::string::npos);

@@ -1,0 +1,54 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "swarm_core/mission/scene_bodies.hpp"
+
+#include <algorithm>
+
+namespace swarm {
+
+bool has_body(const Scene& scene, RobotId robot) {
+  // Bodies come last, and are few: most robots are looked for in a scene without any.
+  return std::any_of(scene.obstacles.rbegin(), scene.obstacles.rend(),
+                     [&](const SceneObstacle& o) { return o.owner == robot; });
+}
+
+Scene without_bodies(Scene scene) {
+  std::erase_if(scene.obstacles, [](const SceneObstacle& o) { return o.owner.has_value(); });
+  return scene;
+}
+
+Scene without_bodies_of(Scene scene, RobotId first, std::uint32_t robots) {
+  std::erase_if(scene.obstacles, [&](const SceneObstacle& o) {
+    return o.owner && o.owner->value() - first.value() < robots;
+  });
+  return scene;
+}
+
+std::vector<FallenBody> bodies_of(const std::vector<Scene>& scenes) {
+  std::vector<FallenBody> bodies;
+  for (const Scene& scene : scenes) {
+    const UtcTime at(Duration(static_cast<std::int64_t>(scene.version)));
+    const auto in_scene = [&](const FallenBody& body) {
+      return std::find_if(scene.obstacles.begin(), scene.obstacles.end(),
+                          [&](const SceneObstacle& o) { return o.owner == body.robot; });
+    };
+    for (FallenBody& body : bodies) {
+      if (!body.cleared && in_scene(body) == scene.obstacles.end()) body.cleared = at;
+    }
+    for (const SceneObstacle& o : scene.obstacles) {
+      const auto* circle = std::get_if<Circle>(&o.shape);
+      if (!o.owner || circle == nullptr) continue;
+      const auto known = std::find_if(bodies.begin(), bodies.end(), [&](const FallenBody& body) {
+        return body.robot == *o.owner && !body.cleared;
+      });
+      if (known == bodies.end()) {
+        bodies.push_back({.robot = *o.owner, .shape = *circle, .from = at});
+      } else {
+        known->shape = *circle;
+      }
+    }
+  }
+  return bodies;
+}
+
+}  // namespace swarm

@@ -1,0 +1,35 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "swarm_core/mission/scene.hpp"
+
+/// The bodies of robots that are not received any more: obstacles with an owner.
+namespace swarm {
+
+/// Whether a robot's body is an obstacle.
+bool has_body(const Scene& scene, RobotId robot);
+
+/// The scene without the bodies of all robots.
+Scene without_bodies(Scene scene);
+
+/// The scene without the bodies of these robots: nobody keeps off its own body.
+Scene without_bodies_of(Scene scene, RobotId first, std::uint32_t robots);
+
+/// A body that was an obstacle for a while.
+struct FallenBody {
+  RobotId robot;
+  Circle shape;                      ///< the robot's body is somewhere inside
+  UtcTime from{};                    ///< it is an obstacle from then on
+  std::optional<UtcTime> cleared{};  ///< until then; empty: to the end of the run
+};
+
+/// All bodies of a run that went through these scenes, by the time they became obstacles. A robot
+/// that falls again has another one.
+std::vector<FallenBody> bodies_of(const std::vector<Scene>& scenes);
+
+}  // namespace swarm
