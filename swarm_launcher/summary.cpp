@@ -31,7 +31,7 @@ Json empty_summary(const Json& own, const std::string& why) {
        {"robots", "processes", "collisions_robot", "collisions_obstacle", "collisions_fallen",
         "min_robot_gap_m", "min_obstacle_gap_m", "mean_path_m", "geodesic_bound_m", "path_ratio",
         "mission_s", "stop_latency_ms", "state_age_ms", "belief_error_cm", "states_hz",
-        "deadline_miss_ratio", "refused_messages"}) {
+        "deadline_miss_ratio", "refused_messages", "tracking"}) {
     summary[key] = nullptr;
   }
   summary.update(own);
@@ -50,9 +50,10 @@ ExitCode exit_code_of(Outcome outcome, bool audit_ok) {
 }
 
 /// Where the report is, or why there is none.
-std::string write_report(const std::filesystem::path& run_dir, bool audited) {
+std::string write_report(const std::filesystem::path& run_dir,
+                         const Result<monitor::AuditedRun>& audited) {
   if (!audited) return "none";
-  const auto written = monitor::write_report(run_dir);
+  const auto written = monitor::write_report(run_dir, *audited);
   return written ? (run_dir / "report.html").string() : "none: " + written.error().message;
 }
 
@@ -68,9 +69,9 @@ Result<ExitCode> summarise(const std::filesystem::path& run_dir, const Measureme
   if (auto w = shell::write_file(run_dir / shell::kSummaryFile, own.dump(2) + "\n"); !w) {
     return tl::unexpected(w.error());
   }
-  const auto audit = monitor::audit_run(run_dir);  // carries over what was just written
-  Json summary =
-      audit ? Json::parse(monitor::to_json(*audit)) : empty_summary(own, audit.error().message);
+  const auto audited = monitor::audit_run_fully(run_dir);  // carries over what was just written
+  Json summary = audited ? Json::parse(monitor::to_json(audited->audit))
+                         : empty_summary(own, audited.error().message);
   if (measured.outcome != Outcome::kCompleted) summary["outcome"] = to_string(measured.outcome);
   summary["channel"] = measured.channel ? to_string(*measured.channel) : "lock-step";
   if (measured.wall_s) summary["wall_s"] = *measured.wall_s;
@@ -81,11 +82,13 @@ Result<ExitCode> summarise(const std::filesystem::path& run_dir, const Measureme
   if (auto w = shell::write_file(run_dir / shell::kSummaryFile, text); !w) {
     return tl::unexpected(w.error());
   }
-  const std::string report = write_report(run_dir, audit.has_value());
+  const std::string report = write_report(run_dir, audited);
   if (json) {
     std::fputs(text.c_str(), stdout);
   } else {
-    std::fputs((audit ? monitor::to_text(*audit) : audit.error().message + "\n").c_str(), stdout);
+    std::fputs(
+        (audited ? monitor::to_text(audited->audit) : audited.error().message + "\n").c_str(),
+        stdout);
     if (measured.wall_s) {
       std::printf("wall time        %.2f s, %.0f ns per agent and step\n", *measured.wall_s,
                   *measured.ns_per_agent_step);
@@ -93,7 +96,7 @@ Result<ExitCode> summarise(const std::filesystem::path& run_dir, const Measureme
     std::printf("mission          %s\nreport           %s\n",
                 std::string(to_string(measured.outcome)).c_str(), report.c_str());
   }
-  return exit_code_of(measured.outcome, audit && audit->ok());
+  return exit_code_of(measured.outcome, audited && audited->audit.ok());
 }
 
 }  // namespace swarm::launcher

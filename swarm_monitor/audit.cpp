@@ -13,6 +13,8 @@
 
 #include "swarm_core/metrics/geodesic_bound.hpp"
 #include "swarm_monitor/fallen_bodies.hpp"
+#include "swarm_monitor/tracking/criteria.hpp"
+#include "swarm_monitor/tracking/quantile.hpp"
 
 namespace swarm::monitor {
 namespace {
@@ -184,6 +186,21 @@ void measure_paths(const RecordedRun& run, Audit& audit) {
   if (bound > 0.0) audit.path_ratio = *audit.mean_path_m / bound;
 }
 
+/// What tracking needs of the arrivals.
+void measure_arrivals(Audit& audit) {
+  std::vector<double> arrivals_s;
+  for (const RobotAudit& robot : audit.by_robot) {
+    if (robot.arrived && robot.arrived_at_s) arrivals_s.push_back(*robot.arrived_at_s);
+  }
+  Tracking& tracking = audit.tracking;
+  if (!arrivals_s.empty()) {
+    tracking.arrival_spread_s = quantile(arrivals_s, 0.95) - quantile(arrivals_s, 0.05);
+  }
+  if (tracking.plan_s && audit.mission_s) {
+    tracking.mission_over_plan_s = *audit.mission_s - *tracking.plan_s;
+  }
+}
+
 /// `3-7, 12-9 and 40 more`
 std::string list_pairs(const std::vector<Approach>& contacts) {
   std::vector<std::string> pairs;
@@ -226,6 +243,10 @@ void judge(const AuditedRun& audited, Audit& audit) {
     audit.reasons.push_back(
         fmt::format("{} left the world's bounds: robot {}", outside.size(), list(outside)));
   }
+  for (std::string& reason :
+       failed_criteria(audited.run.mission.criteria, audit.tracking, audit.path_ratio)) {
+    audit.reasons.push_back(std::move(reason));
+  }
   if (fills_shape(audited.run)) return;  // whoever finds room stays: no counts are asked for
   const auto& goals = audited.run.goal().components();
   const double tolerance = std::max(2.0, 0.02 * audit.robots);
@@ -265,6 +286,8 @@ AuditedRun audit_recorded(RecordedRun recorded) {
   measure_paths(run, audit);
   audit.mission_s = mission_duration_s(run, audit);
   audit.belief = belief_error(run.tracks);
+  audit.tracking = measure_tracking(run);
+  measure_arrivals(audit);
   audit.collisions_robot = static_cast<std::uint32_t>(audited.robots.contacts.size());
   audit.collisions_fallen = static_cast<std::uint32_t>(audited.robots.fallen_contacts.size());
   std::set<std::uint32_t> touching;

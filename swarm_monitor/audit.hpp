@@ -10,6 +10,7 @@
 #include "swarm_monitor/belief_error.hpp"
 #include "swarm_monitor/clearance.hpp"
 #include "swarm_monitor/recorded_run.hpp"
+#include "swarm_monitor/tracking/tracking.hpp"
 
 namespace swarm::monitor {
 
@@ -62,6 +63,7 @@ struct Audit {
   std::uint64_t refused_messages = 0;
   std::uint32_t outside_bounds = 0;  ///< robots that ever left the world's rectangle
   std::uint64_t damaged_records = 0;
+  Tracking tracking{};  ///< how it flew what was published
 
   /// Measured by the launcher, carried over from its summary.
   std::optional<double> plan_ms, discovery_s, cpu_s, max_rss_mb;

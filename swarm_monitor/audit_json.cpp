@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "swarm_monitor/audit.hpp"
+#include "swarm_monitor/tracking/tracking_json.hpp"
 
 namespace swarm::monitor {
 namespace {
@@ -64,6 +65,7 @@ std::string to_json(const Audit& audit) {
                      {"refused_messages", audit.refused_messages},
                      {"outside_bounds", audit.outside_bounds},
                      {"damaged_records", audit.damaged_records},
+                     {"tracking", tracking_json(audit.tracking)},
                      {"plan_ms", number(audit.plan_ms)},
                      {"discovery_s", number(audit.discovery_s)},
                      {"cpu_s", number(audit.cpu_s)},
@@ -92,6 +94,7 @@ std::string to_text(const Audit& audit) {
     text += "\n";
   }
   if (audit.mission_s) text += fmt::format("  mission time     {:.1f} s\n", *audit.mission_s);
+  text += tracking_text(audit.tracking);
   if (audit.stop) {
     text += fmt::format("  stop to rest     {:.0f} ms (p50), {:.0f} (p99), {:.0f} (max)\n",
                         audit.stop->p50_ms, audit.stop->p99_ms, audit.stop->max_ms);

@@ -12,10 +12,10 @@
 
 #include "swarm_core/shell/run_directory.hpp"
 #include "swarm_monitor/charts.hpp"
-#include "swarm_monitor/plan_deviation.hpp"
 #include "swarm_monitor/png.hpp"
 #include "swarm_monitor/report_page.hpp"
 #include "swarm_monitor/svg.hpp"
+#include "swarm_monitor/tracking/tracking_charts.hpp"
 
 namespace swarm::monitor {
 namespace {
@@ -64,6 +64,26 @@ void add_header(Page& page, const AuditedRun& audited) {
   page.add("</ul>\n");
 }
 
+void add_tracking(Page& page, const Tracking& tracking) {
+  if (tracking.w2) {
+    add_figure(page, number(tracking.w2->ratio(), 2, "×"), "W2 to the plan / floor of sampling");
+  }
+  if (tracking.ending.to_goal) {
+    add_figure(page, number(tracking.ending.to_goal->ratio(), 2, "×"), "W2 to the goal / floor");
+  }
+  if (tracking.centre_lag_s)
+    add_figure(page, number(tracking.centre_lag_s, 1, "s"), "centre's lag");
+  if (const auto& error = tracking.own.error) {
+    add_figure(page, number(error->p95_m, 2, "m"), "off the own reference, 95 %");
+  }
+  if (const auto& density = tracking.density) {
+    add_figure(page, number(density->worst_per_m2, 2, "/m²"), "largest density in 2 m discs");
+  }
+  if (const auto& risk = tracking.risk) {
+    add_figure(page, number(risk->worst_m, 2, "m"), "worst CVaR flown");
+  }
+}
+
 void add_figures(Page& page, const Audit& audit) {
   page.add("<div class=\"figures\">\n");
   add_figure(page, fmt::format("{} / {}", audit.arrived, audit.robots), "robots arrived",
@@ -97,6 +117,7 @@ void add_figures(Page& page, const Audit& audit) {
   add_figure(page, fmt::format("{}", audit.refused_messages), "messages refused");
   add_figure(page, number(audit.cpu_s, 1, "s"), "CPU time of all processes");
   add_figure(page, number(audit.max_rss_mb, 1, "MB"), "memory of the largest process");
+  add_tracking(page, audit.tracking);
   if (audit.collisions_fallen > 0) {
     add_figure(page, fmt::format("{}", audit.collisions_fallen), "pairs that touched, one fallen",
                Tone::kBad);
@@ -109,24 +130,6 @@ void add_figures(Page& page, const Audit& audit) {
     add_figure(page, fmt::format("{}", audit.damaged_records), "damaged records", Tone::kBad);
   }
   page.add("</div>\n");
-}
-
-void add_plan_chart(Page& page, const RecordedRun& run) {
-  const PlanDeviation deviation = plan_deviation(run);
-  if (deviation.centre_off_m.empty()) return;
-  const std::array<Curve, 3> curves{{{"centre off the plan", deviation.centre_off_m},
-                                     {"spread planned", deviation.planned_spread_m},
-                                     {"spread flown", deviation.real_spread_m}}};
-  double most = 0.0;
-  for (const Curve& curve : curves) {
-    most = std::max(most, *std::max_element(curve.values.begin(), curve.values.end()));
-  }
-  page.add(
-      "<figure><h2>Plan and flight</h2>\n{}<figcaption>The planned mixture and the robots that "
-      "were to "
-      "make it up, from the first motion on: how far their centres are apart, and how far they "
-      "spread. Robots keep the plan's way, not its times.</figcaption></figure>\n",
-      line_chart(curves, PlanDeviation::kStep_s, std::max(most, 1e-3), "m"));
 }
 
 void add_charts(Page& page, const AuditedRun& audited) {
@@ -142,7 +145,7 @@ void add_charts(Page& page, const AuditedRun& audited) {
       "<figure><h2>Gap and clearance</h2>\n{}<figcaption>How near each robot ever came to another "
       "and to an obstacle.</figcaption></figure>\n",
       bar_chart(gaps, Clearance::kCap_m, "smallest gap of a robot, m"));
-  add_plan_chart(page, audited.run);
+  page.add("{}", tracking_figures(audited.audit.tracking));
   Histogram age;
   for (const Track& track : audited.run.tracks) age.merge(track.state_age);
   if (const std::string chart = histogram_chart(age); !chart.empty()) {
@@ -324,18 +327,20 @@ std::string report_html(const AuditedRun& audited) {
 Result<AuditedRun> write_report(const std::filesystem::path& run_dir) {
   auto audited = audit_run_fully(run_dir);
   if (!audited) return audited;
-  if (auto written = shell::write_file(run_dir / "paths.svg", paths_svg(*audited)); !written) {
-    return tl::unexpected(written.error());
-  }
-  constexpr int kPictureWidth_px = 1600;
-  if (auto written = write_png(run_dir / "paths.png", paths_svg(*audited), kPictureWidth_px);
-      !written) {
-    return tl::unexpected(written.error());
-  }
-  if (auto written = shell::write_file(run_dir / "report.html", report_html(*audited)); !written) {
+  if (auto written = write_report(run_dir, *audited); !written) {
     return tl::unexpected(written.error());
   }
   return audited;
+}
+
+Result<void> write_report(const std::filesystem::path& run_dir, const AuditedRun& audited) {
+  const std::string paths = paths_svg(audited);
+  if (auto written = shell::write_file(run_dir / "paths.svg", paths); !written) return written;
+  constexpr int kPictureWidth_px = 1600;
+  if (auto written = write_png(run_dir / "paths.png", paths, kPictureWidth_px); !written) {
+    return written;
+  }
+  return shell::write_file(run_dir / "report.html", report_html(audited));
 }
 
 }  // namespace swarm::monitor

@@ -18,5 +18,7 @@ std::string report_html(const AuditedRun& audited);
 
 /// Audits a run and writes report.html, paths.svg and paths.png into its directory.
 Result<AuditedRun> write_report(const std::filesystem::path& run_dir);
+/// The same of a run that was audited already.
+Result<void> write_report(const std::filesystem::path& run_dir, const AuditedRun& audited);
 
 }  // namespace swarm::monitor

@@ -70,8 +70,14 @@ std::vector<PictureBelief> beliefs_at(const Track& track, double time_s) {
 }  // namespace
 
 RecordedSource::RecordedSource(RecordedRun run) : run_(std::move(run)) {
+  moving_from_s_ = std::numeric_limits<double>::infinity();
   for (const Track& track : run_.tracks) {
     if (!track.points.empty()) end_s_ = std::max(end_s_, track.points.back().time_s);
+    for (const TrackPoint& point : track.points) {
+      if (point.mode != RobotMode::kMoving) continue;
+      moving_from_s_ = std::min(moving_from_s_, point.time_s);
+      break;
+    }
   }
   make_scenes();
   make_events();
@@ -123,7 +129,12 @@ void RecordedSource::picture(std::optional<double> time_s, std::optional<RobotId
                              std::vector<std::byte>& out) {
   const double t = std::clamp(time_s.value_or(end_s_), 0.0, end_s_);
   std::optional<Mixture> mixture;
-  if (const auto moment = PlanTimeline(run_).at(t)) mixture = moment->mixture();
+  if (const auto moment = PlanTimeline(run_).at(t)) {
+    mixture = moment->mixture();
+  } else if (run_.clock.empty() && run_.first_plan() != nullptr) {
+    // Recorded before there was a clock: as if it had begun with the motion.
+    mixture = run_.first_plan()->mixture_at(MissionTime(std::max(0.0, t - moving_from_s_)));
+  }
   PictureMaker maker(out, static_cast<std::uint32_t>(run_.tracks.size()), t,
                      t >= end_s_ ? kEndedPhase : static_cast<std::uint32_t>(MissionPhase::kRunning),
                      mixture);

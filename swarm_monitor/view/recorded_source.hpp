@@ -33,6 +33,7 @@ class RecordedSource final : public ViewSource {
 
   RecordedRun run_;
   double end_s_ = 0.0;
+  double moving_from_s_ = 0.0;  // when the plan's time began
   std::vector<std::string> scenes_, events_, series_;
   std::vector<RawChannel> no_channels_;
 };

@@ -153,7 +153,8 @@ TEST_F(Live, ShowsAPlanAsSoonAsItIsThere) {
                                    .epoch = 1,
                                    .sequence_number = 1,
                                    .stamp_utc_ns = 1,
-                                   .mission_time_s = 10.0},
+                                   .mission_time_s = 12.0,
+                                   .plan_time_s = 10.0},
             at_ms(1000));
   source_.poll(at_ms(1000));
 
