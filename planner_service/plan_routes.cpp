@@ -15,6 +15,15 @@ LegSpeed leg_speed(const PlannerOptions& options) {
   return speed;
 }
 
+double mean_path_m(const FlowPlan& flow) {
+  double path_m = 0.0;
+  for (const PlanLeg& leg : flow.legs()) {
+    const Vec2& from_m = flow.nodes()[leg.from].gaussian.mean_m();
+    path_m += leg.mass * (flow.nodes()[leg.to].gaussian.mean_m() - from_m).norm();
+  }
+  return path_m;
+}
+
 Result<PlanResult> plan_of_routes(std::span<const Route> raw, std::span<const Route> routes,
                                   const PlanRequest& request, const LegSpeed& speed,
                                   PlanResult result, StageTimer& whole) {
@@ -38,10 +47,10 @@ Result<PlanResult> plan_of_routes(std::span<const Route> raw, std::span<const Ro
 
 PlanResult plan_of_flow(FlowPlan flow, PlanResult result, StageTimer& whole) {
   PlanStats& stats = result.stats;
+  stats.planned_mean_path_m = mean_path_m(flow);
   for (const PlanLeg& leg : flow.legs()) {
     const Gaussian& from = flow.nodes()[leg.from].gaussian;
     const Gaussian& to = flow.nodes()[leg.to].gaussian;
-    stats.planned_mean_path_m += leg.mass * (to.mean_m() - from.mean_m()).norm();
     stats.cost_m += leg.mass * wasserstein2(from, to);
   }
   stats.raw_mean_path_m = stats.planned_mean_path_m;

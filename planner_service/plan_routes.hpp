@@ -13,6 +13,9 @@ namespace swarm::planner {
 /// How fast the legs of a plan may be by these options.
 LegSpeed leg_speed(const PlannerOptions& options);
 
+/// Σ mass · |Δμ| over the legs [m].
+double mean_path_m(const FlowPlan& flow);
+
 /// The result of a method that ends in routes: their flow, merged where they coincide, and what
 /// they cost, into `result`, which holds the roadmap and the times so far. `raw` are the routes as
 /// the roadmap gave them.

@@ -19,6 +19,7 @@
 #include "planner_service/transport/route.hpp"
 #include "planner_service/transport/shortcuts.hpp"
 #include "planner_service/transport/shortest_routes.hpp"
+#include "planner_service/transport/straighten.hpp"
 #include "planner_service/transport/tighten.hpp"
 #include "planner_service/transport/timed_flow.hpp"
 #include "planner_service/transport/transport_lp.hpp"
@@ -126,7 +127,17 @@ Result<PlanResult> plan_capped(PlanResult result, const PlanRequest& request,
       timed_flow(result.roadmap, supplies, demands, cap, {.speed = leg_speed(options)}, checker);
   if (!flow) return tl::unexpected(flow.error());
   result.stats.transport_ms += stage.lap_ms();
-  return plan_of_flow(std::move(flow->plan), std::move(result), whole);
+  const double raw_mean_path_m = mean_path_m(flow->plan);
+  if (options.shortcuts > 0) {
+    const StraightenOptions straight{.speed = leg_speed(options),
+                                     .sigma_min_m = kSqueezeBelowMin * options.sampler.sigma_min_m};
+    flow->plan =
+        straighten(flow->plan, flow->is_end, request.world, options.risk, cap, straight, checker);
+    result.stats.smoothing_ms += stage.lap_ms();
+  }
+  result = plan_of_flow(std::move(flow->plan), std::move(result), whole);
+  result.stats.raw_mean_path_m = raw_mean_path_m;
+  return result;
 }
 
 Result<PlanResult> plan_uncapped(PlanResult result, const PlanRequest& request,

@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "planner_service/passage_times.hpp"
 #include "planner_service/plan_checks.hpp"
 #include "planner_service/planner.hpp"
 #include "planner_service/transport/plan_density.hpp"
@@ -189,6 +190,7 @@ Result<ExitCode> plan_mission(const PlanCommandOptions& options) {
   const double bound_m = mean_bound_m(*mission);
   Sample sample;
   std::optional<Error> failure;
+  std::string times;
   for (std::uint32_t i = 0; i < options.repeat; ++i) {
     Rng rng(options.seed + i);
     const auto result = planner::plan({mission->world, mission->start, mission->goal},
@@ -199,6 +201,12 @@ Result<ExitCode> plan_mission(const PlanCommandOptions& options) {
       continue;
     }
     sample.add(*result, *mission, bound_m);
+    if (sample.total_ms.size() == 1 && options.times) {
+      const auto passage = planner::narrowest_passage(result->plan, mission->world);
+      times =
+          planner::to_table(planner::group_times(result->plan, passage, planner_options.speed_mps),
+                            passage, mission->robots.count);
+    }
     if (sample.total_ms.size() == 1 && !options.out.empty()) {
       if (auto written = write_plan(options.out, *mission, *result); !written) {
         return tl::unexpected(written.error());
@@ -206,7 +214,8 @@ Result<ExitCode> plan_mission(const PlanCommandOptions& options) {
     }
   }
   if (sample.total_ms.empty()) return tl::unexpected(*failure);
-  std::fputs((options.json ? sample.to_json(bound_m) : sample.to_text(bound_m)).c_str(), stdout);
+  std::fputs((options.json ? sample.to_json(bound_m) : sample.to_text(bound_m) + times).c_str(),
+             stdout);
   if (!failure) return ExitCode::kOk;
   std::fprintf(stderr, "first failure: %s\n", failure->message.c_str());
   return ExitCode::kCriteriaNotMet;

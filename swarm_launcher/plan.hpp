@@ -15,6 +15,7 @@ struct PlanCommandOptions {
   std::uint32_t repeat = 1;   ///< seeds seed … seed + repeat − 1
   std::filesystem::path out;  ///< directory for plan.json and plan.svg; empty: none
   bool json = false;
+  bool times = false;  ///< also print when the groups of the first plan pass its narrowest place
 };
 
 /// `swarm_launcher plan`: plans without flying; prints times as medians, ratios as means, the

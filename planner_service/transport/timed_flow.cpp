@@ -198,6 +198,9 @@ Result<TimedFlow> timed_flow(const Roadmap& roadmap, std::span<const double> sup
       result.max_density_per_m2 = max_density(timed->plan, cap.robots, options.sample_s).per_m2;
       result.network_arcs = network.arc_count(horizon.steps());
       result.plan = std::move(timed->plan);
+      for (const std::uint32_t v : timed->roadmap_node) {
+        result.is_end.push_back(v < terminals.count());
+      }
       return result;
     }
     highest = highest_per_m2(peaks);

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "planner_service/roadmap/edge_check.hpp"
 #include "planner_service/roadmap/roadmap.hpp"
@@ -27,7 +28,8 @@ struct TimedFlowOptions {
 
 struct TimedFlow {
   FlowPlan plan;
-  double cost_m = 0.0;  ///< Σ mass · W₂ length
+  std::vector<bool> is_end;  ///< which of its nodes are start and goal components
+  double cost_m = 0.0;       ///< Σ mass · W₂ length
   double step_s = 0.0;
   double free_flow_s = 0.0;  ///< when everyone could be there on this grid without a cap
   double max_density_per_m2 = 0.0;
