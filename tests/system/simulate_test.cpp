@@ -1,6 +1,9 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
 // Lock-step missions and the papers' tables as programs.
+#include <fstream>
+#include <utility>
+
 #include <nlohmann/json.hpp>
 
 #include "flown_run.hpp"
@@ -48,6 +51,39 @@ TEST(Simulate, GivesTheSameBytesOnAnyNumberOfThreads) {
     ++compared;
   }
   EXPECT_GT(compared, 12U);  // a black box each, the mission, plan and events
+}
+
+/// A mission of deploy/missions with other keys in its control section.
+std::string with_control(const std::filesystem::path& folder, const std::string& name,
+                         const std::string& keys) {
+  std::string text = read_text(std::filesystem::path(SWARM_SOURCE_DIR) / "deploy/missions" / name);
+  text += "\ncontrol: {" + keys + "}\n";
+  const auto file = folder / name;
+  std::ofstream(file) << text;
+  return file.string();
+}
+
+TEST(Simulate, ASwarmThatIgnoresThePlansTimesFailsItsCriteria) {
+  TemporaryFolder folder;
+  const auto fly = [&](const std::string& tracking) {
+    const std::string mission =
+        with_control(folder.path(), "swarmprm_standin.yaml", "tracking: " + tracking);
+    const std::string dir = (folder.path() / tracking).string();
+    Program simulate("swarm_launcher", {"simulate", mission, "--out", dir, "--json"});
+    const int code = simulate.wait();
+    return std::pair(code, nlohmann::json::parse(simulate.out()));
+  };
+
+  const auto [kept, in_time] = fly("plan");
+  EXPECT_EQ(kept, 0) << in_time["reasons"];
+  EXPECT_LT(in_time["tracking"]["swarm"]["ratio"], 1.2);
+
+  const auto [ignored, free] = fly("free");
+  EXPECT_EQ(ignored, 1);
+  EXPECT_EQ(free["arrived"], 100);  // by everything else it is a good flight
+  EXPECT_EQ(free["collisions_robot"], 0);
+  EXPECT_GT(free["tracking"]["swarm"]["ratio"], 3.0);
+  EXPECT_NE(free["reasons"].dump().find("w2"), std::string::npos) << free["reasons"];
 }
 
 class EveryTable : public ::testing::TestWithParam<const char*> {};
