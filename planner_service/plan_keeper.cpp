@@ -171,6 +171,7 @@ void PlanKeeper::publish(SteadyTime now, Step& step) {
   step.publish = true;
   ++version_;
   governor_.issue(version_, now);
+  full_rate_at_ = now;
   for (const PlanWarning& warning : newest_.planned.warnings) {
     step.notices.push_back({true, warning.code, warning.text});
   }

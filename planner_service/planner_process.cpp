@@ -76,7 +76,8 @@ struct PlannerProcess::Impl {
 
   Result<void> plan_first();
   Result<void> join(const shell::RunInfo& run);
-  void obey();
+  void obey(UtcTime now);
+  std::uint64_t newest_stamp(UtcTime now) const;
   void hear_scene(UtcTime now);
   void hear_robots(SteadyTime now);
   void keep_planned(SteadyTime now);
@@ -125,14 +126,26 @@ Result<void> PlannerProcess::Impl::join(const shell::RunInfo& run) {
   return {};
 }
 
+/// Stamps of what is received may be this late, by a clock that is as far off as allowed.
+std::uint64_t PlannerProcess::Impl::newest_stamp(UtcTime now) const {
+  return static_cast<std::uint64_t>((now + limits.clock_skew_refuse).time_since_epoch().count());
+}
+
 /// t0 is the stamp of the start command, which the launcher keeps for late joiners: a restarted
 /// planner finds it again.
-void PlannerProcess::Impl::obey() {
+void PlannerProcess::Impl::obey(UtcTime now) {
+  const std::uint64_t newest_possible = newest_stamp(now);
   commands.clear();
   command_reader->take(commands);
   for (const link::CommandMessage& command : commands) {
     if (const auto ok = link::check_command(command); !ok) {
       refused.count(ok.error());
+      continue;
+    }
+    // Ids are UTC stamps: one from the future is forged, and would stop the plan's clock and lock
+    // out every command after it.
+    if (command.command_id > newest_possible) {
+      refused.count(link::RefusalReason::kForged);
       continue;
     }
     if (command.command_id <= last_command && command.kind != CommandKind::kStop) continue;
@@ -148,8 +161,7 @@ void PlannerProcess::Impl::obey() {
 void PlannerProcess::Impl::hear_scene(UtcTime now) {
   scenes.clear();
   scene_reader->take(scenes);
-  const auto newest_possible =
-      static_cast<std::uint64_t>((now + limits.clock_skew_refuse).time_since_epoch().count());
+  const std::uint64_t newest_possible = newest_stamp(now);
   for (const link::SceneMessage& message : scenes) {
     auto heard = link::check_scene(message, limits);
     if (!heard) {
@@ -274,7 +286,7 @@ Result<void> PlannerProcess::run() {
   while (shell::stop_requests() == 0) {
     p.participant->receive();
     const SteadyTime now = std::chrono::steady_clock::now();
-    p.obey();
+    p.obey(utc_now());
     p.hear_scene(utc_now());
     p.hear_robots(now);
     p.keep_planned(now);
