@@ -14,9 +14,6 @@ namespace {
 // After a start the launcher's scene is due at once; a bus that does not bring it must not keep a
 // mission from flying.
 constexpr Duration kScenePatience = std::chrono::seconds(3);
-constexpr double kFew = 0.05;  // of the robots: no plan of their own
-// A planner that comes back in mid-flight waits this long for robots it does not hear.
-constexpr Duration kHearPatience = std::chrono::milliseconds(1500);
 // Robots that stand for this long are stuck; escapes of their own have not helped by then.
 constexpr Duration kStuckAfter = std::chrono::seconds(8);
 // … and so many of them are reason to lead the swarm another way.
@@ -75,7 +72,7 @@ Result<Replan> PlanKeeper::plan_anew(const World& world, std::span<const HeardRo
   planner_.set_risk({.alpha = scene_.risk_alpha.value_or(mission_.planner.risk_alpha),
                      .delta_m = mission_.planner.risk_delta_m});
   Rng rng(mix_seed(seed_, version_));
-  if (phase_ != MissionPhase::kReady) {
+  if (!heard.empty()) {
     return replan(planner_, world, goal, heard, mission_.robots.count, rng, clock_);
   }
   auto planned = planner_.plan({world, mission_.start, goal}, rng, clock_);
@@ -105,9 +102,10 @@ Result<Replan> PlanKeeper::plan_around_bodies(UtcTime utc, std::span<const Heard
 }
 
 void PlanKeeper::try_again(SteadyTime now, UtcTime utc, Step& step) {
-  const std::vector<HeardRobot> heard = robots_.fresh(now);
-  if (phase_ != MissionPhase::kReady) {
-    if (heard.empty() || (!robots_.heard_all(now) && now - begun_at_ < kHearPatience)) return;
+  std::vector<HeardRobot> heard;
+  if (is_in_flight(now)) {
+    heard = placed(robots_.fresh(now));
+    if (heard.empty() || is_waiting_for_robots(now)) return;
   }
   tried_at_ = now;
   auto planned = plan_around_bodies(utc, heard, step);
@@ -118,14 +116,19 @@ void PlanKeeper::try_again(SteadyTime now, UtcTime utc, Step& step) {
         {true, "replan-failed", "the last plan stays: " + one_line(planned.error().message)});
     return;
   }
+  failed_scene_.reset();
   newest_ = *std::move(planned);
+  if (newest_.planned.excess.by_m > 0.0) {
+    step.notices.push_back({true, "plan-excess", describe(newest_.planned.excess)});
+  }
   publish(now, step);
 }
 
 void PlanKeeper::keep_planned(SteadyTime now, UtcTime utc, Step& step) {
   if (!scene_heard_ && now - begun_at_ < kScenePatience) return;
   const bool published = version_ > 0;
-  if (scene_.version == 0 && !published) {
+  if (phase_ != MissionPhase::kReady && !published && is_waiting_for_robots(now)) return;
+  if (scene_.version == 0 && !published && !is_in_flight_elsewhere(now)) {
     publish(now, step);
     tried_at_ = now;
     return;
@@ -136,18 +139,6 @@ void PlanKeeper::keep_planned(SteadyTime now, UtcTime utc, Step& step) {
   if ((news && (!tried || due)) || (scene_.moves(utc) && due) || is_step_due(now)) {
     try_again(now, utc, step);
   }
-}
-
-/// ROVER plans anew at every step, but not for the last few: to one robot each plan gives another
-/// goal, whichever lacks a share, and it would fly to and fro for good.
-bool PlanKeeper::is_step_due(SteadyTime now) const {
-  if (mission_.planner.method != "rover" || phase_ != MissionPhase::kRunning) return false;
-  const double step_s = mission_.planner.transport_radius_m / mission_.planner.speed_mps;
-  if (now - tried_at_ < from_seconds(step_s)) return false;
-  const std::vector<HeardRobot> heard = robots_.fresh(now);
-  const auto left =
-      std::count_if(heard.begin(), heard.end(), [](const HeardRobot& r) { return !r.arrived; });
-  return static_cast<double>(left) > std::max(1.0, kFew * static_cast<double>(heard.size()));
 }
 
 /// CRoPS: where many are stuck the guide becomes dear, and may lead another way.
@@ -241,8 +232,7 @@ void PlanKeeper::keep_clock(SteadyTime now, UtcTime utc, Step& step) {
     catch_up(now);
     std::vector<RobotLag> lags;
     for (const HeardRobot& robot : robots_.fresh(now)) {
-      // A robot that still follows an older plan says nothing of this one.
-      if (robot.plan_version != version_) continue;
+      if (!says_lag(robot)) continue;
       lags.push_back({robot.robot, robot.lag_s, robot.arrived});
     }
     governor_.judge(lags);

@@ -69,12 +69,18 @@ class PlanKeeper {
   void keep_planned(SteadyTime now, UtcTime utc, Step& step);
   void avoid_jams(SteadyTime now, UtcTime utc, Step& step);
   void try_again(SteadyTime now, UtcTime utc, Step& step);
+  bool takes_steps() const { return mission_.planner.method == "rover"; }
   bool is_step_due(SteadyTime now) const;
+  bool is_in_flight(SteadyTime now) const;
+  bool is_in_flight_elsewhere(SteadyTime now) const;
+  bool is_waiting_for_robots(SteadyTime now) const;
+  std::vector<HeardRobot> placed(std::vector<HeardRobot> robots) const;
   Result<Replan> plan_anew(const World& world, std::span<const HeardRobot> heard);
   Result<Replan> plan_around_bodies(UtcTime utc, std::span<const HeardRobot> heard, Step& step);
   void publish(SteadyTime now, Step& step);
   void keep_clock(SteadyTime now, UtcTime utc, Step& step);
   void catch_up(SteadyTime now);
+  bool says_lag(const HeardRobot& robot) const;
   void report_clock(SteadyTime now, Step& step);
 
   const Mission& mission_;
@@ -88,8 +94,8 @@ class PlanKeeper {
   Replan newest_;
   std::uint32_t version_ = 0;  // 0 = nothing published
   std::uint64_t planned_scene_ = 0;
-  std::uint64_t failed_scene_ = 0;     // that was complained about
-  std::uint64_t bodies_left_out_ = 0;  // scene of which that was reported
+  std::optional<std::uint64_t> failed_scene_{};  // that was complained about
+  std::uint64_t bodies_left_out_ = 0;            // scene of which that was reported
   SteadyTime begun_at_;
   SteadyTime tried_at_;  // to plan anew
   ClockGovernor governor_;

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <utility>
 
-#include "planner_service/mpc/measured_state.hpp"
+#include "planner_service/mpc/flow_groups.hpp"
 #include "planner_service/plan_limits.hpp"
 #include "planner_service/plan_routes.hpp"
 #include "planner_service/roadmap/live_roadmap.hpp"
@@ -31,10 +31,11 @@ SamplerKind sampler_named(std::string_view word) {
   return word == "halton" ? SamplerKind::kHalton : SamplerKind::kFit;
 }
 
-bool same(const Mixture& a, const Mixture& b) {
+/// But for their weights, which may differ from one plan to the next.
+bool same_shapes(const Mixture& a, const Mixture& b) {
   return std::equal(a.components().begin(), a.components().end(), b.components().begin(),
                     b.components().end(), [](const auto& l, const auto& r) {
-                      return l.weight == r.weight && l.gaussian.mean_m() == r.gaussian.mean_m() &&
+                      return l.gaussian.mean_m() == r.gaussian.mean_m() &&
                              l.gaussian.covariance_m2() == r.gaussian.covariance_m2();
                     });
 }
@@ -48,26 +49,6 @@ Result<PlanResult> plan_adoc(const PlanRequest& request, const PlannerOptions& o
   PlanResult result;
   result.stats.search_ms = stage.lap_ms();
   return plan_of_routes(*routes, *routes, request, leg_speed(options), std::move(result), whole);
-}
-
-/// Each robot goes to the component it most likely belongs to.
-std::vector<RobotGroup> groups_of(const Mixture& mixture, std::span<const HeardRobot> robots) {
-  std::vector<RobotGroup> groups;
-  for (const WeightedGaussian& c : mixture.components()) groups.push_back({c.gaussian, {}});
-  for (const HeardRobot& robot : robots) {
-    std::size_t likeliest = 0;
-    double best = -1.0;
-    for (std::size_t j = 0; j < groups.size(); ++j) {
-      const double density =
-          mixture.components()[j].weight * groups[j].gaussian.density(robot.position_m);
-      if (density <= best) continue;
-      best = density;
-      likeliest = j;
-    }
-    groups[likeliest].members.push_back(robot.robot);
-  }
-  std::erase_if(groups, [](const RobotGroup& group) { return group.members.empty(); });
-  return groups;
 }
 
 }  // namespace
@@ -113,7 +94,7 @@ Result<PlanResult> Planner::Memory::plan_swarmprm(const PlanRequest& request,
 
 Result<Rover*> Planner::Memory::rover_for(const World& now, const Mixture& to,
                                           const PlannerOptions& options) {
-  if (!rover || !(world == now) || !same(goal, to)) {
+  if (!rover || !(world == now) || !same_shapes(goal, to)) {
     rover.reset();
     world = now;
     goal = to;
@@ -133,9 +114,11 @@ Result<PlanResult> Planner::Memory::plan_rover(const PlanRequest& request,
   if (!ready) return tl::unexpected(ready.error());
   PlanResult result;
   result.stats.roadmap_ms = stage.lap_ms();
-  auto mission = (*ready)->plan(request.start);
+  auto mission = (*ready)->plan(request.start, request.goal);
   if (!mission) return tl::unexpected(mission.error());
   result.stats.transport_ms = stage.lap_ms();
+  result.excess =
+      excess_of(mission->plan, request.world, options.risk, options.rover.graph.checks_between);
   return plan_of_flow(std::move(mission->plan), std::move(result), whole);
 }
 
@@ -208,9 +191,7 @@ Result<std::vector<RobotGroup>> Planner::measure(const World& world, const Mixtu
   }
   const auto ready = memory_->rover_for(world, goal, options_);
   if (!ready) return tl::unexpected(ready.error());
-  std::vector<Vec2> positions_m;
-  for (const HeardRobot& robot : robots) positions_m.push_back(robot.position_m);
-  return groups_of(measured_mixture((*ready)->graph(), positions_m), robots);
+  return group_by_flow(robots, (*ready)->graph(), goal, {});
 }
 
 bool Planner::avoid(const Vec2& stuck_at_m) {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "planner_service/mpc/adoc.hpp"
+#include "planner_service/mpc/plan_excess.hpp"
 #include "planner_service/mpc/rover.hpp"
 #include "planner_service/roadmap/crops_guide.hpp"
 #include "planner_service/roadmap/roadmap.hpp"
@@ -93,6 +94,7 @@ struct PlanResult {
   Roadmap roadmap;  ///< nodes: start components, goal components, samples
   PlanStats stats;
   std::vector<PlanWarning> warnings;
+  PlanExcess excess{};  ///< rover: of a plan made in mid-flight, from a swarm that breaks its limit
 };
 
 /// Tells the time for PlanStats; the planner itself does not depend on it.
@@ -118,6 +120,7 @@ class Planner {
   Result<std::vector<RobotGroup>> measure(const World& world, const Mixture& goal,
                                           std::span<const HeardRobot> robots);
 
+  Method method() const { return options_.method; }
   const RiskLimit& risk() const { return options_.risk; }
   /// For plans from now on.
   void set_risk(const RiskLimit& risk);

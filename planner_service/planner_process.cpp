@@ -215,6 +215,7 @@ void PlannerProcess::Impl::publish() {
   link::PlanMessage message =
       link::to_message(newest.planned.plan, epoch, PlanVersion(version), now);
   message.scene_version = scene;
+  message.excess_m = newest.planned.excess.by_m;
   for (const PlanEntry& entry : newest.entries) {
     message.entries.push_back({entry.source, entry.share});
   }
@@ -229,7 +230,7 @@ void PlannerProcess::Impl::publish() {
                        scene == 0 ? "" : fmt::format(", {:.1f} ms after the change", after_ms)));
   if (version == 1 && scene == 0) return;  // kept when it was made
   const auto kept = shell::write_file(options.run_dir / fmt::format("plan-{:04}.json", version),
-                                      to_json(newest.planned.plan));
+                                      to_json(newest.planned.plan, newest.planned.excess.by_m));
   if (!kept) announce(link::Severity::kWarning, "plan-file", kept.error().message);
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -22,6 +23,10 @@ struct HeardRobot {
   double lag_s = 0.0;              ///< behind its reference position, in plan time
   std::uint32_t plan_version = 0;  ///< of the plan it follows; 0: none
   double plan_time_s = 0.0;        ///< of that plan's clock, as the robot has it
+  /// Its place in the plan in force, where the planner knows it: the leg it is on, and the
+  /// component of the goal it is led to.
+  std::optional<std::uint32_t> leg{};
+  std::optional<std::uint32_t> goal{};
 };
 
 /// Robots that stand together, and a Gaussian for them that keeps the risk limit.

@@ -225,14 +225,16 @@ void Agent::accept_plan(const FlowPlan& plan, const Vec2& position_m,
 }
 
 /// A robot that is in its goal already keeps the place it was going to there: new plans would
-/// stir those who wait for the last ones.
+/// stir those who wait for the last ones. It goes there in the time of the new plan.
 void Agent::keep_place(Route& route, const Vec2& position_m) const {
   constexpr double kSame_m = 1e-6;
   const bool same_goal = has_route_ && (route.goal.mean_m() - way_.goal.mean_m()).norm() < kSame_m;
   if (!same_goal || !route.goal.contains_99(position_m)) return;
   if (!world_->segment_is_free(position_m, way_.end_m, options_->route.radius_m)) return;
+  const double end_s = route.schedule.end_s();
   route.path = Polyline({position_m, way_.end_m});
-  route.schedule = Schedule({{0.0, route.path.length_m()}});
+  route.schedule = arrived_ ? Schedule({{0.0, route.path.length_m()}})
+                            : Schedule({{0.0, 0.0}, {end_s, route.path.length_m()}});
 }
 
 RobotMode Agent::decide_mode(const AgentInput& input) const {

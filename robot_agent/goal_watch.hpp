@@ -18,6 +18,12 @@ class GoalWatch {
   GoalWatch() = default;
   GoalWatch(const Gaussian& goal, const Vec2& end_m) : goal_(goal), end_m_(end_m) {}
 
+  /// Whether it is for this place in this goal: then a new plan does not begin it anew.
+  bool is_for(const Gaussian& goal, const Vec2& end_m) const {
+    constexpr double kSame_m = 1e-6;
+    return (goal.mean_m() - goal_.mean_m()).norm() < kSame_m && (end_m - end_m_).norm() < kSame_m;
+  }
+
   bool has_arrived(SteadyTime now, const Vec2& position_m) {
     const bool inside = goal_.contains_99(position_m);
     if (arrived_) return arrived_ = inside;

@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "swarm_launcher/summary.hpp"
 
+#include <algorithm>
 #include <cstdio>
 
 #include <nlohmann/json.hpp>
 
+#include "swarm_core/plan/plan_json.hpp"
 #include "swarm_core/shell/run_directory.hpp"
 #include "swarm_monitor/audit.hpp"
 #include "swarm_monitor/report.hpp"
@@ -21,6 +23,32 @@ Json plan_ms(const std::filesystem::path& run_dir) {
   if (!text) return nullptr;
   const Json stats = Json::parse(*text, nullptr, false);
   return stats.is_object() ? stats.value("total_ms", Json()) : Json();
+}
+
+/// By how much the published plans break their own limit.
+struct PlansExcess {
+  std::size_t plans = 0;
+  std::size_t broken = 0;
+  double largest_m = 0.0;
+};
+
+PlansExcess plans_excess(const std::filesystem::path& run_dir) {
+  constexpr std::size_t kLargestPlan = 16U << 20U;
+  PlansExcess excess;
+  std::error_code gone;
+  for (const auto& entry : std::filesystem::directory_iterator(run_dir, gone)) {
+    const std::string name = entry.path().filename().string();
+    const bool is_plan = name == shell::kPlanFile ||
+                         (name.starts_with("plan-") && entry.path().extension() == ".json");
+    if (!is_plan) continue;
+    const auto text = shell::read_file(entry.path(), kLargestPlan);
+    if (!text) continue;
+    const double excess_m = excess_from_json(*text);
+    ++excess.plans;
+    excess.broken += excess_m > 0.0 ? 1 : 0;
+    excess.largest_m = std::max(excess.largest_m, excess_m);
+  }
+  return excess;
 }
 
 /// The summary of a run that left nothing to audit: it ended before a robot made its first step.
@@ -78,6 +106,10 @@ Result<ExitCode> summarise(const std::filesystem::path& run_dir, const Measureme
   if (measured.ns_per_agent_step) summary["ns_per_agent_step"] = *measured.ns_per_agent_step;
   summary["hearing_s"] = measured.hearing_s < 0.0 ? Json() : Json(measured.hearing_s);
   summary["refused_by_launcher"] = measured.refused_by_launcher;
+  const PlansExcess excess = plans_excess(run_dir);
+  summary["plan_excess_m"] = excess.largest_m;
+  summary["plans"] = excess.plans;
+  summary["plans_with_excess"] = excess.broken;
   const std::string text = summary.dump(2) + "\n";
   if (auto w = shell::write_file(run_dir / shell::kSummaryFile, text); !w) {
     return tl::unexpected(w.error());
@@ -92,6 +124,10 @@ Result<ExitCode> summarise(const std::filesystem::path& run_dir, const Measureme
     if (measured.wall_s) {
       std::printf("wall time        %.2f s, %.0f ns per agent and step\n", *measured.wall_s,
                   *measured.ns_per_agent_step);
+    }
+    if (excess.broken > 0) {
+      std::printf("risk limit       broken by %zu of %zu plans, by up to %.2f m\n", excess.broken,
+                  excess.plans, excess.largest_m);
     }
     std::printf("mission          %s\nreport           %s\n",
                 std::string(to_string(measured.outcome)).c_str(), report.c_str());

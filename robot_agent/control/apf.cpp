@@ -14,7 +14,9 @@ void Apf::begin(const Route& route, const World& world) {
   sink_ = route.sink;
   pursuit_ = Pursuit(route.path, world, options_.part(&ApfOptions::pursuit));
   pace_ = Pace(route.schedule, route.path.length_m());
-  watch_ = GoalWatch(route.goal, pursuit_.end_m());
+  if (!watch_.is_for(route.goal, pursuit_.end_m())) {
+    watch_ = GoalWatch(route.goal, pursuit_.end_m());
+  }
   in_time_.reset();
   escape_.forget();
 }

@@ -11,6 +11,7 @@
 
 #include "swarm_core/base/assert.hpp"
 #include "swarm_core/gmm/wasserstein.hpp"
+#include "swarm_core/plan/flow_draw.hpp"
 
 namespace swarm::agent {
 namespace {
@@ -22,18 +23,6 @@ struct Station {
   Vec2 offset_m = Vec2::Zero();  // from the mean, as transported
 };
 
-/// Takes the entry whose stretch of the cumulated masses holds `share`, and rescales `share` to it.
-template <class MassOf>
-std::size_t draw(std::size_t count, MassOf mass_of, double& share) {
-  double total = 0.0;
-  for (std::size_t i = 0; i < count; ++i) total += mass_of(i);
-  double target = share * total;
-  std::size_t chosen = 0;
-  while (chosen + 1 < count && target >= mass_of(chosen)) target -= mass_of(chosen++);
-  share = std::clamp(target / mass_of(chosen), 0.0, std::nextafter(1.0, 0.0));
-  return chosen;
-}
-
 Vec2 clamp_offset(const Gaussian& g, const Vec2& offset, double offset_max) {
   const double d = std::sqrt(g.mahalanobis_squared(g.mean_m() + offset));
   return d > offset_max ? Vec2(offset * (offset_max / d)) : offset;
@@ -43,11 +32,8 @@ Vec2 clamp_offset(const Gaussian& g, const Vec2& offset, double offset_max) {
 std::uint32_t follow(const FlowPlan& plan, std::uint32_t node, double share,
                      std::vector<Station>& stations) {
   for (;;) {
-    const auto out = plan.legs_out(node);
-    if (out.empty()) return node;
-    const std::size_t pick = draw(
-        out.size(), [&](std::size_t i) { return plan.legs()[out[i]].mass; }, share);
-    const std::uint32_t next = plan.legs()[out[pick]].to;
+    if (plan.legs_out(node).empty()) return node;
+    const std::uint32_t next = plan.legs()[draw_leg(plan, node, share)].to;
     const PlanNode& to = plan.nodes()[next];
     const Station& last = stations.back();
     stations.push_back(
@@ -121,13 +107,11 @@ Route finish(const FlowPlan& plan, std::uint32_t node, double share, std::vector
 
 Route route_from_start(const FlowPlan& plan, double share, const Vec2& position_m,
                        const World& world, const RouteOptions& options) {
-  const auto& sources = plan.sources();
-  const std::size_t pick = draw(
-      sources.size(), [&](std::size_t i) { return plan.nodes()[sources[i]].mass; }, share);
-  const PlanNode& from = plan.nodes()[sources[pick]];
+  const std::uint32_t node = plan.sources()[draw_source(plan, share)];
+  const PlanNode& from = plan.nodes()[node];
   const Gaussian& g = from.gaussian;
   const Vec2 offset = clamp_offset(g, position_m - g.mean_m(), options.offset_max);
-  return finish(plan, sources[pick], share, {{g, from.time.count(), offset}}, world, options);
+  return finish(plan, node, share, {{g, from.time.count(), offset}}, world, options);
 }
 
 Route route_from_source(const FlowPlan& plan, std::uint32_t source, double share,

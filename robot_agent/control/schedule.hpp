@@ -36,6 +36,8 @@ class Schedule {
   /// missing before the first entry counts at the schedule's mean speed.
   double lag_s(double plan_time_s, double at_m) const;
 
+  double end_s() const { return entries_.back().time_s; }
+
   /// Mean speed while it moves [m/s]; 1 if it never does.
   double mean_speed_mps() const { return mean_speed_mps_; }
 

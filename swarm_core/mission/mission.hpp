@@ -77,6 +77,7 @@ struct PlannerSpec {
   double collocation_sigma_m = 7.0710678118654755;  ///< … Σ_c = σ² I
   double transport_radius_m = 22.5;                 ///< … of Assumption 2, in W₂
   std::uint32_t horizon = 3;                        ///< rover: h
+  double replan_period_s = 1.0;    ///< rover: a plan from where the robots are each
   double adoc_penalty = 20.0;      ///< adoc: of the share of a Gaussian that is in obstacles
   double crops_clearance_m = 0.5;  ///< crops: nodes nearer to an obstacle are discarded
   double crops_power = 3.0;  ///< crops: p of w(q) = (Σ dist)ᵖ; 3 in the paper, 1 in its code

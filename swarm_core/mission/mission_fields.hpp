@@ -70,7 +70,7 @@ inline constexpr std::array<Field<BodySpec>, 7> kBody{{
     {"position_noise_m", &BodySpec::position_noise_m, between(0, 100)},
 }};
 
-inline constexpr std::array<Field<PlannerSpec>, 19> kPlanner{{
+inline constexpr std::array<Field<PlannerSpec>, 20> kPlanner{{
     {"samples", &PlannerSpec::samples, between(1, 100'000)},
     {"connection_radius_m", &PlannerSpec::connection_radius_m, positive(kMaxExtent_m)},
     {"risk_alpha", &PlannerSpec::risk_alpha, kRiskAlpha},
@@ -86,6 +86,7 @@ inline constexpr std::array<Field<PlannerSpec>, 19> kPlanner{{
     {"collocation_sigma_m", &PlannerSpec::collocation_sigma_m, between(0.01, 1000)},
     {"transport_radius_m", &PlannerSpec::transport_radius_m, positive(kMaxExtent_m)},
     {"horizon", &PlannerSpec::horizon, between(1, 10)},
+    {"replan_period_s", &PlannerSpec::replan_period_s, between(0.1, 3600)},
     {"adoc_penalty", &PlannerSpec::adoc_penalty, between(0, 1e6)},
     {"crops_clearance_m", &PlannerSpec::crops_clearance_m, between(0, 1000)},
     {"crops_power", &PlannerSpec::crops_power, between(0, 10)},

@@ -15,6 +15,8 @@ namespace {
 
 using Json = nlohmann::json;
 
+constexpr const char* kExcess = "excess_m";
+
 tl::unexpected<Error> refuse(const std::string& place, std::string_view what) {
   return fail(ErrorCode::kBadInput, fmt::format("plan: {} {}", place, what));
 }
@@ -111,7 +113,7 @@ Result<std::vector<T>> read_array(const Json& value, const std::string& place, s
 
 }  // namespace
 
-std::string to_json(const FlowPlan& plan) {
+std::string to_json(const FlowPlan& plan, double excess_m) {
   Json nodes = Json::array();
   for (const PlanNode& node : plan.nodes()) {
     const Vec2& mean = node.gaussian.mean_m();
@@ -125,12 +127,17 @@ std::string to_json(const FlowPlan& plan) {
   for (const PlanLeg& leg : plan.legs()) {
     legs.push_back({{"from", leg.from}, {"to", leg.to}, {"mass", leg.mass}});
   }
-  return Json{{"nodes", std::move(nodes)}, {"legs", std::move(legs)}}.dump(1);
+  Json document{{"nodes", std::move(nodes)}, {"legs", std::move(legs)}};
+  if (excess_m > 0.0) document[kExcess] = excess_m;
+  return document.dump(1);
 }
 
 Result<FlowPlan> plan_from_json(std::string_view text) {
   // Without exceptions the parser says only that it failed.
-  const Json document = Json::parse(text, nullptr, false);
+  Json document = Json::parse(text, nullptr, false);
+  if (document.is_object() && document.contains(kExcess) && document[kExcess].is_number()) {
+    document.erase(kExcess);
+  }
   if (document.is_discarded()) return fail(ErrorCode::kBadInput, "plan: not a JSON document");
   if (auto keys = check_keys(document, {"nodes", "legs"}, "document"); !keys) {
     return tl::unexpected(keys.error());
@@ -140,6 +147,12 @@ Result<FlowPlan> plan_from_json(std::string_view text) {
   auto legs = read_array<PlanLeg>(document["legs"], "legs", FlowPlan::kMaxLegs, read_leg);
   if (!legs) return tl::unexpected(legs.error());
   return FlowPlan::make(*std::move(nodes), *std::move(legs));
+}
+
+double excess_from_json(std::string_view text) {
+  const Json document = Json::parse(text, nullptr, false);
+  const bool has = document.is_object() && document.contains(kExcess);
+  return has && document[kExcess].is_number() ? document[kExcess].get<double>() : 0.0;
 }
 
 }  // namespace swarm

@@ -41,7 +41,8 @@ class DirectoryObserver final : public SimulationObserver {
   void on_plan(std::uint32_t version, const planner::PlanResult& planned) override {
     const auto name = version == 1 ? std::filesystem::path(shell::kPlanFile)
                                    : std::filesystem::path(fmt::format("plan-{:04}.json", version));
-    if (auto w = shell::write_file(dir_ / name, to_json(planned.plan)); !w && !failure_) {
+    if (auto w = shell::write_file(dir_ / name, to_json(planned.plan, planned.excess.by_m));
+        !w && !failure_) {
       failure_ = w.error();
     }
   }

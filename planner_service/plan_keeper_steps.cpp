@@ -1,0 +1,77 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+// Plans from where the robots are: when, and what the keeper knows of the robots then.
+#include <algorithm>
+
+#include "planner_service/mpc/flow_groups.hpp"
+#include "planner_service/plan_keeper.hpp"
+#include "swarm_core/mission/placement.hpp"
+#include "swarm_core/plan/flow_draw.hpp"
+
+namespace swarm::planner {
+namespace {
+
+// A planner that comes back in mid-flight waits this long for robots it does not hear.
+constexpr Duration kHearPatience = std::chrono::milliseconds(1500);
+// With a plan each second a status is a plan or two old.
+constexpr std::uint32_t kPlansBack = 3;
+
+}  // namespace
+
+/// ROVER plans anew from where the robots are, at a period, until the last one has arrived.
+bool PlanKeeper::is_step_due(SteadyTime now) const {
+  if (!takes_steps() || phase_ != MissionPhase::kRunning) return false;
+  if (now - tried_at_ < from_seconds(mission_.planner.replan_period_s)) return false;
+  const std::vector<HeardRobot> heard = robots_.fresh(now);
+  return std::any_of(heard.begin(), heard.end(), [](const HeardRobot& r) { return !r.arrived; });
+}
+
+/// The robots have left their start: the mission runs, or did for a planner before this one.
+bool PlanKeeper::is_in_flight(SteadyTime now) const {
+  return phase_ != MissionPhase::kReady || is_in_flight_elsewhere(now);
+}
+
+/// The robots follow a later plan than the first, which a planner before this one made.
+bool PlanKeeper::is_in_flight_elsewhere(SteadyTime now) const {
+  if (version_ > 0) return false;
+  const std::vector<HeardRobot> heard = robots_.fresh(now);
+  return std::any_of(heard.begin(), heard.end(),
+                     [](const HeardRobot& r) { return r.plan_version > 1; });
+}
+
+bool PlanKeeper::is_waiting_for_robots(SteadyTime now) const {
+  return !robots_.heard_all(now) && now - begun_at_ < kHearPatience;
+}
+
+/// With their places in the plan in force.
+std::vector<HeardRobot> PlanKeeper::placed(std::vector<HeardRobot> robots) const {
+  if (!takes_steps() || version_ == 0) return robots;
+  const FlowPlan& plan = newest_.planned.plan;
+  const Mixture& goal = scene_.goal ? *scene_.goal : mission_.goal;
+  const MissionTime at(governor_.plan_time_s());
+  for (HeardRobot& robot : robots) {
+    const std::uint32_t id = robot.robot.value();
+    double share = stratified_share(id, mission_.robots.count);
+    std::size_t source = 0;
+    if (newest_.entries.empty()) {
+      source = draw_source(plan, share);
+    } else {
+      if (newest_.entries[id].source == PlanEntry::kAnywhere) continue;
+      source = newest_.entries[id].source;
+      share = newest_.entries[id].share / 65536.0;
+    }
+    const FlowPlace place = place_in_flow(plan, source, share, at);
+    robot.goal = component_at(goal, plan.nodes()[place.sink].gaussian.mean_m());
+    robot.leg = place.leg;
+  }
+  return robots;
+}
+
+/// A robot that follows an older plan says nothing of this one, unless each goes on from where the
+/// one before has led: then a status may be a few plans old.
+bool PlanKeeper::says_lag(const HeardRobot& robot) const {
+  if (robot.plan_version > version_) return false;
+  return version_ - robot.plan_version <= (takes_steps() ? kPlansBack : 0);
+}
+
+}  // namespace swarm::planner
