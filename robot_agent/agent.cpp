@@ -218,6 +218,7 @@ void Agent::accept_plan(const FlowPlan& plan, const Vec2& position_m,
   method().begin(route, *world_);
   way_.goal = route.goal;
   way_.end_m = route.path.vertices_m().back();
+  way_.end_s = route.schedule.end_s();
   has_route_ = true;
   way_.plan_digest = plan.digest();
   way_.begin_m = route.path.at(0.0);
@@ -231,7 +232,10 @@ void Agent::keep_place(Route& route, const Vec2& position_m) const {
   const bool same_goal = has_route_ && (route.goal.mean_m() - way_.goal.mean_m()).norm() < kSame_m;
   if (!same_goal || !route.goal.contains_99(position_m)) return;
   if (!world_->segment_is_free(position_m, way_.end_m, options_->route.radius_m)) return;
-  const double end_s = route.schedule.end_s();
+  // In no more time than it had left: each plan would put its arrival off else.
+  const auto before = method().tracking();
+  const double left_s = before ? std::max(1.0, way_.end_s - before->plan_time_s) : way_.end_s;
+  const double end_s = std::min(route.schedule.end_s(), left_s);
   route.path = Polyline({position_m, way_.end_m});
   route.schedule = arrived_ ? Schedule({{0.0, route.path.length_m()}})
                             : Schedule({{0.0, 0.0}, {end_s, route.path.length_m()}});

@@ -164,6 +164,7 @@ class Agent {
     std::uint64_t plan_digest = 0;
     Vec2 begin_m = Vec2::Zero();
     Vec2 end_m = Vec2::Zero();
+    double end_s = 0.0;  // of the schedule
     Gaussian goal{};
   };
   Way way_;

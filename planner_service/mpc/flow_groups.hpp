@@ -15,7 +15,7 @@ namespace swarm::planner {
 struct FlowGroupOptions {
   double sigma_max_m = 8.0;    ///< a wider group is divided across its longer axis
   double sigma_floor_m = 0.5;  ///< added to each group's shape: one robot has none
-  double join_m = 3.0;         ///< groups nearer than this, in W₂, become one
+  double join_m = 6.0;         ///< groups nearer than this, in W₂, become one
   double clearance_m = 0.3;    ///< of a group's mean to obstacles; below, it is divided
   std::size_t groups_max = 64;
 };
