@@ -201,20 +201,21 @@ void PlanKeeper::catch_up(SteadyTime now) {
 }
 
 void PlanKeeper::report_clock(SteadyTime now, Step& step) {
-  if (governor_.hopeless() != hopeless_told_) {
-    hopeless_told_ = governor_.hopeless();
-    if (!hopeless_told_.empty()) {
-      std::string names;
-      for (std::size_t i = 0; i < std::min(kNamed, hopeless_told_.size()); ++i) {
-        names += fmt::format("{}{}", i == 0 ? "" : ", ", hopeless_told_[i].value());
-      }
-      step.notices.push_back(
-          {true, "robots-late",
-           fmt::format("{} robot(s) are more than {} s behind the plan, its clock does not wait "
-                       "for them: robot {}{}",
-                       hopeless_told_.size(), mission_.plan_clock.hopeless_lag_s, names,
-                       hopeless_told_.size() > kNamed ? " …" : "")});
+  std::vector<RobotId> fresh;  // not reported before, for this plan
+  for (const RobotId robot : governor_.hopeless()) {
+    if (hopeless_told_.insert(robot).second) fresh.push_back(robot);
+  }
+  if (!fresh.empty()) {
+    std::string names;
+    for (std::size_t i = 0; i < std::min(kNamed, fresh.size()); ++i) {
+      names += fmt::format("{}{}", i == 0 ? "" : ", ", fresh[i].value());
     }
+    step.notices.push_back(
+        {true, "robots-late",
+         fmt::format("{} more robot(s) are over {} s behind the plan, its clock does not wait for "
+                     "them: robot {}{}",
+                     fresh.size(), mission_.plan_clock.hopeless_lag_s, names,
+                     fresh.size() > kNamed ? " …" : "")});
   }
   const bool is_slow = governor_.rate() < 1.0 && phase_ == MissionPhase::kRunning;
   if (!is_slow) full_rate_at_ = now;

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -96,7 +97,7 @@ class PlanKeeper {
   SteadyTime judged_at_;     // the robots' lags
   SteadyTime full_rate_at_;  // when the clock last ran at full rate
   bool slow_told_ = false;
-  std::vector<RobotId> hopeless_told_;
+  std::set<RobotId> hopeless_told_;
 };
 
 }  // namespace swarm::planner

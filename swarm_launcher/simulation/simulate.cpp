@@ -46,7 +46,9 @@ class DirectoryObserver final : public SimulationObserver {
     }
   }
 
-  void on_clock(const PlanClock& reading) override { clock_ << plan_clock_line(reading); }
+  void on_clock(const PlanClock& reading) override {
+    clock_ << plan_clock_line(reading) << std::flush;
+  }
 
   void on_scene(const Scene& scene, const SceneChange& change) override {
     scenes_ << scene_log_line(scene.version, change) << std::flush;

@@ -117,10 +117,10 @@ Result<Flown> fly(const Mission& mission, const SimulationOptions& options, bool
   const Simulation::Cost cost = (*simulation)->cost();
   const monitor::AuditedRun audited = monitor::audit_recorded({.mission = mission,
                                                                .plans = plan.plans,
-                                                               .clock = plan.clock,
                                                                .begin = Simulation::begin_utc(),
                                                                .tracks = recording.tracks(),
-                                                               .scenes = plan.scenes});
+                                                               .scenes = plan.scenes,
+                                                               .clock = plan.clock});
   const monitor::Audit& audit = audited.audit;
   flown.robots = audit.robots;
   flown.arrived = audit.arrived;

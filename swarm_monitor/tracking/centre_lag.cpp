@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kStep_s = 0.05;
 constexpr double kTable_s = 0.25;
+constexpr double kMostEntries = 20'000;  // a plan of more than 5000 s has a coarser table
 /// Sums of squares nearer than this share are the same.
 constexpr double kSame = 1e-9;
 
@@ -20,21 +21,23 @@ constexpr double kSame = 1e-9;
 class MeanTable {
  public:
   explicit MeanTable(const FlowPlan& plan) {
-    const double duration_s = plan.duration().count();
-    const auto steps = static_cast<std::size_t>(std::ceil(duration_s / kTable_s)) + 1;
+    const double duration_s = std::max(0.0, plan.duration().count());
+    step_s_ = std::max(kTable_s, duration_s / kMostEntries);
+    const auto steps = static_cast<std::size_t>(std::ceil(duration_s / step_s_)) + 1;
     for (std::size_t k = 0; k < steps; ++k) {
-      means_.push_back(plan_mean(plan, static_cast<double>(k) * kTable_s));
+      means_.push_back(plan_mean(plan, static_cast<double>(k) * step_s_));
     }
   }
   Vec2 at(double plan_time_s) const {
     const double entry =
-        std::clamp(plan_time_s / kTable_s, 0.0, static_cast<double>(means_.size() - 1));
+        std::clamp(plan_time_s / step_s_, 0.0, static_cast<double>(means_.size() - 1));
     const auto k = std::min(static_cast<std::size_t>(entry), means_.size() - 1);
     const Vec2& next = means_[std::min(k + 1, means_.size() - 1)];
     return means_[k] + (entry - static_cast<double>(k)) * (next - means_[k]);
   }
 
  private:
+  double step_s_ = kTable_s;
   std::vector<Vec2> means_;
 };
 

@@ -30,7 +30,8 @@ struct DensityCourse {
   std::optional<double> over_cap(double peak_per_m2) const;
 };
 
-/// The mission's cap on the density of χ(t); empty if it has none.
+/// The mission's cap on the density of χ(t), the automatic one of swarmprm included; empty if it
+/// has none.
 std::optional<double> density_cap_of(const Mission& mission);
 
 /// Empty without moments. 1 to 3 ms a moment for 500 robots and 300 legs.

@@ -44,7 +44,8 @@ class Buckets {
 
  private:
   std::int32_t cell(double x) const {
-    return static_cast<std::int32_t>(std::floor(std::clamp(x / size_m_, -1e9, 1e9)));
+    const double c = std::floor(x / size_m_);
+    return c > -1e9 && c < 1e9 ? static_cast<std::int32_t>(c) : 0;  // a log may be damaged
   }
   static std::uint64_t key(std::int32_t x, std::int32_t y) {
     return (static_cast<std::uint64_t>(static_cast<std::uint32_t>(x)) << 32U) |
@@ -154,7 +155,7 @@ std::size_t most_in_a_disc(std::span<const Vec2> points, double radius_m) {
       if (j == i) return;
       const Vec2 d = points[j] - points[i];
       const double distance_m = d.norm();
-      if (distance_m > 2.0 * radius_m) return;
+      if (!(distance_m <= 2.0 * radius_m)) return;
       if (distance_m == 0.0) {
         ++always;
         return;

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "swarm_core/base/assert.hpp"
+#include "swarm_core/mission/scene_bodies.hpp"
 #include "swarm_core/risk/mixture_cvar.hpp"
 #include "swarm_monitor/tracking/swarm_walk.hpp"
 
@@ -18,7 +19,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// Farther from an obstacle than this, how much farther is of no interest.
 constexpr double kNear_m = -5.0;
 
-/// The map of a run over time, made anew only when it changed.
+/// The map of a run over time, made anew only when it changed. Without bodies: those are robots.
 class WorldOverTime {
  public:
   explicit WorldOverTime(const RecordedRun& run) : run_(run), world_(&run.mission.world) {}
@@ -34,7 +35,7 @@ class WorldOverTime {
     if (newest == nullptr || as_before) return *world_;
     scene_ = newest;
     moved_ = newest->moves(now);
-    changed_ = world_at(run_.mission.world, *newest, now);
+    changed_ = world_at(run_.mission.world, without_bodies(*newest), now);
     world_ = &changed_;
     return *world_;
   }

@@ -12,6 +12,8 @@ namespace swarm::monitor {
 namespace {
 
 constexpr std::size_t kFewestMoments = 20;
+/// A stamp far off must not take hours.
+constexpr double kMostSteps = 20'000.0;
 
 std::optional<ClockUse> clock_use(const RecordedRun& run, const PlanTimeline& timeline,
                                   const MotionSpan& motion, double step_s) {
@@ -69,10 +71,10 @@ Tracking measure_tracking(const RecordedRun& run, const TrackingEffort& effort) 
   const auto motion = motion_of(run.tracks);
   if (!motion) return tracking;
   const PlanTimeline timeline(run);
-  tracking.clock = clock_use(run, timeline, *motion, effort.step_s);
+  const double step_s = std::max(effort.step_s, (motion->end_s - motion->begin_s) / kMostSteps);
+  tracking.clock = clock_use(run, timeline, *motion, step_s);
   if (!tracking.clock) return tracking;
-  const std::vector<PlanMoment> all =
-      timeline.moments(motion->begin_s, motion->end_s, effort.step_s);
+  const std::vector<PlanMoment> all = timeline.moments(motion->begin_s, motion->end_s, step_s);
   const std::size_t fine = std::max(
       kFewestMoments, effort.most_robot_moments / std::max<std::size_t>(1, run.tracks.size()));
   const std::vector<PlanMoment> moments = thinned(all, fine);

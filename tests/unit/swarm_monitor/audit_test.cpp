@@ -132,6 +132,26 @@ TEST(Audit, LetsTheFallenLieWhereTheyFell) {
   EXPECT_EQ(audit.reasons.back(), "1 pairs touched after one had fallen: 0-1");
 }
 
+TEST(Audit, LetsAFallenBodyLieUntilItIsCleared) {
+  SyntheticRun files(2);
+  files.write(0, {.positions_m = straight({5, 5}, {12, 5}, 50), .graceful = false});
+  files.write(1, {.positions_m = straight({2, 5}, {30, 5}, 400), .goal = 1});
+  auto run = read_run(files.dir());
+  ASSERT_TRUE(run.has_value());
+  // Robot 1 is at robot 0's last place, (12, 5), after 14.3 s.
+  const auto change = [&](const SceneChange& c, double time_s) {
+    auto next = after(run->scenes.back(), c, run->mission.world, run->begin + from_seconds(time_s));
+    ASSERT_TRUE(next.has_value()) << next.error().message;
+    run->scenes.push_back(*next);
+  };
+  change(AddBody{RobotId(0), Circle{{12, 5}, 0.3}}, 7.0);
+  const auto collisions = [&] { return audit_recorded(*run).audit.collisions_fallen; };
+
+  EXPECT_EQ(collisions(), 1U);
+  change(ClearBody{RobotId(0)}, 12.0);
+  EXPECT_EQ(collisions(), 0U);
+}
+
 TEST(Audit, FindsRobotsInObstacles) {
   SyntheticRun files(2);
   files.write(0, {.positions_m = straight({5, 10}, {30, 10}, 100)});
