@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "robot_agent/control/detour.hpp"
 #include "swarm_core/base/assert.hpp"
 #include "swarm_core/gmm/wasserstein.hpp"
 #include "swarm_core/plan/flow_draw.hpp"
@@ -88,15 +89,27 @@ Route finish(const FlowPlan& plan, std::uint32_t node, double share, std::vector
   const std::uint32_t last = follow(plan, node, share, stations);
   const auto sink = std::find(plan.sinks().begin(), plan.sinks().end(), last);
   SWARM_ASSERT(sink != plan.sinks().end());
-  std::vector<Vec2> vertices = free_vertices(stations, world, options);
-  double at_m = begin_m ? (vertices.front() - *begin_m).norm() : 0.0;
+  // Fallen robots are small against a plan: their bodies bend a path, they do not narrow the swarm.
+  const std::vector<Vec2> own_m = free_vertices(stations, world.without_bodies(), options);
+  const DetourOptions detour{.radius_m = options.radius_m, .touch_m = options.leg_clearance_m};
+  std::vector<Vec2> vertices;
+  double at_m = 0.0;
+  const auto go_to = [&](const Vec2& next_m) {
+    if (!vertices.empty()) at_m += (next_m - vertices.back()).norm();
+    vertices.push_back(next_m);
+  };
+  if (begin_m) go_to(*begin_m);
   std::vector<Schedule::Entry> schedule;
   schedule.reserve(stations.size());
   for (std::size_t i = 0; i < stations.size(); ++i) {
-    if (i > 0) at_m += (vertices[i] - vertices[i - 1]).norm();
+    const Vec2 next_m = beside_bodies(own_m[i], world, detour);
+    if (!vertices.empty()) {
+      for (const Vec2& bend_m : around_bodies(vertices.back(), next_m, world, detour))
+        go_to(bend_m);
+    }
+    go_to(next_m);
     schedule.push_back({stations[i].time_s, at_m});
   }
-  if (begin_m) vertices.insert(vertices.begin(), *begin_m);
   return {.path = Polyline(std::move(vertices)),
           .schedule = Schedule(std::move(schedule)),
           .sink = static_cast<std::uint32_t>(sink - plan.sinks().begin()),

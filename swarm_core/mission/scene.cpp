@@ -172,7 +172,10 @@ World world_at(const World& mission_world, const Scene& scene, UtcTime now) {
     }
   }
   for (; changed != scene.obstacles.end(); ++changed) take(*changed);
-  Result<World> world = World::make(mission_world.bounds_m(), std::move(obstacles), velocities_mps);
+  const auto bodies = std::count_if(scene.obstacles.begin(), scene.obstacles.end(),
+                                    [](const SceneObstacle& o) { return o.owner.has_value(); });
+  Result<World> world = World::make(mission_world.bounds_m(), std::move(obstacles), velocities_mps,
+                                    static_cast<std::size_t>(bodies));
   SWARM_ASSERT(world.has_value());  // shapes were checked when they were read
   return *std::move(world);
 }

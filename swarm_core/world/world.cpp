@@ -180,8 +180,9 @@ ConvexObstacle::Faced ConvexObstacle::faced(const Vec2& point_m) const {
 }
 
 Result<World> World::make(Box bounds_m, std::vector<Obstacle> obstacles,
-                          std::span<const Vec2> velocities_mps) {
+                          std::span<const Vec2> velocities_mps, std::size_t bodies) {
   SWARM_ASSERT(velocities_mps.empty() || velocities_mps.size() == obstacles.size());
+  SWARM_ASSERT(bodies <= obstacles.size());
   if (!bounds_m.min_m.allFinite() || !bounds_m.max_m.allFinite() ||
       (bounds_m.min_m.array() >= bounds_m.max_m.array()).any()) {
     return fail(ErrorCode::kBadInput, "world: bounds must be finite, min below max on both axes");
@@ -222,6 +223,14 @@ Result<World> World::make(Box bounds_m, std::vector<Obstacle> obstacles,
       part.velocity_mps = velocities_mps[part.obstacle];
       world.fastest_mps_ = std::max(world.fastest_mps_, part.velocity_mps.norm());
     }
+  }
+  if (bodies > 0) {
+    const std::size_t others = obstacles.size() - bodies;
+    auto without = make(bounds_m, {obstacles.begin(), obstacles.end() - static_cast<long>(bodies)},
+                        velocities_mps.first(std::min(others, velocities_mps.size())));
+    SWARM_ASSERT(without.has_value());  // a part of what was checked above
+    world.bodies_ = bodies;
+    world.without_bodies_ = std::make_shared<const World>(*std::move(without));
   }
   world.obstacles_ = std::move(obstacles);
   world.boxes_ = BoxIndex(std::move(boxes));

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
 #include <span>
 #include <variant>
 #include <vector>
@@ -70,15 +71,22 @@ class World {
   World() = default;
 
   /// Refuses an empty or non-finite rectangle and circles without a positive, finite radius.
-  /// `velocities_mps` is empty (nothing moves) or has one for each obstacle.
+  /// `velocities_mps` is empty (nothing moves) or has one for each obstacle. The last `bodies`
+  /// obstacles are those of fallen robots.
   static Result<World> make(Box bounds_m, std::vector<Obstacle> obstacles,
-                            std::span<const Vec2> velocities_mps = {});
+                            std::span<const Vec2> velocities_mps = {}, std::size_t bodies = 0);
 
   /// Whether it is the same rectangle with the same obstacles in the same order, to the last bit.
   bool operator==(const World& other) const;
 
   const Box& bounds_m() const { return bounds_m_; }
   const std::vector<Obstacle>& obstacles() const { return obstacles_; }
+
+  /// Those of them that are bodies of fallen robots. They are small against a plan: each robot gets
+  /// around them by itself.
+  std::span<const Obstacle> bodies() const { return std::span(obstacles_).last(bodies_); }
+  /// The map without them.
+  const World& without_bodies() const { return without_bodies_ ? *without_bodies_ : *this; }
 
   /// The obstacles, non-convex ones decomposed into convex parts.
   const std::vector<ConvexObstacle>& convex_obstacles() const { return convex_obstacles_; }
@@ -114,6 +122,8 @@ class World {
   double fastest_mps_ = 0.0;
   BoxIndex boxes_;         // of obstacles_
   BoxIndex convex_boxes_;  // of convex_obstacles_
+  std::size_t bodies_ = 0;
+  std::shared_ptr<const World> without_bodies_;  // null: there are none
 };
 
 }  // namespace swarm

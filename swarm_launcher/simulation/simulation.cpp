@@ -327,11 +327,11 @@ bool Simulation::step() {
     for (const Collected& c : collected_) recording_.link().state_age.merge(c.ages);
     return false;
   }
-  keep_planned();
   if (world_moves_) {
     world_ = world_at(mission_.world, scene_, utc(now_));
     world_moves_ = scene_.moves(utc(now_));
   }
+  keep_planned();  // robots make their paths on the new map
   recording_.begin_period();
   coast_fallen();
   const auto begin = std::chrono::steady_clock::now();

@@ -149,7 +149,11 @@ TEST(SceneBodies, AreObstaclesUntilTheyAreCleared) {
   Scene scene = changed(first_scene(2), AddBody{RobotId(9), body_at(20)}, 1.0);
   scene = changed(scene, AddBody{RobotId(4), body_at(25)}, 2.0);
   EXPECT_TRUE(has_body(scene, RobotId(4)));
-  EXPECT_NEAR(world_at(mission_world(), scene, at_s(3)).distance_m({20, 10}), -0.3, 1e-12);
+  const World world = world_at(mission_world(), scene, at_s(3));
+  EXPECT_NEAR(world.distance_m({20, 10}), -0.3, 1e-12);
+  EXPECT_EQ(world.bodies().size(), 2U);
+  EXPECT_EQ(world.without_bodies().obstacles().size(), 2U);
+  EXPECT_GT(world.without_bodies().distance_m({20, 10}), 4.0);
 
   const Scene cleared = changed(scene, ClearBody{RobotId(9)}, 4.0);
 

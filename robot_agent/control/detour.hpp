@@ -1,0 +1,28 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "swarm_core/world/world.hpp"
+
+namespace swarm::agent {
+
+struct DetourOptions {
+  double radius_m = 0.2;
+  double touch_m = 0.3;  ///< a path nearer than this to a body is bent …
+  double keep_m = 0.5;   ///< … to go around it at this surface distance
+};
+
+/// Points that lead from a point to another around the bodies of fallen robots on the straight line
+/// between them, in order, without its ends; empty if the line is free. Bodies no robot fits
+/// between are gone around together, on the shorter side that is free; where neither is, the line
+/// stays straight and avoidance is left to the safety filter. O(bodies²) for each body on the line.
+std::vector<Vec2> around_bodies(const Vec2& from_m, const Vec2& to_m, const World& world,
+                                const DetourOptions& options);
+
+/// The nearest point beside all bodies that a robot can be at, or the point itself if there is
+/// none.
+Vec2 beside_bodies(const Vec2& point_m, const World& world, const DetourOptions& options);
+
+}  // namespace swarm::agent
