@@ -2,8 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "swarm_core/metrics/assignment.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
+#include <utility>
 #include <vector>
 
 // LEMON's templates alone: its library is not linked.
@@ -18,6 +21,154 @@ namespace {
 
 constexpr double kUnitsPerCost = 1e6;
 constexpr double kMaxCost = 1e9;
+
+/// Shortest augmenting paths with two cheap rounds before them (Jonker and Volgenant, 1987), on
+/// whole costs: every step is exact. Column potentials v keep c(i, j) − v(j) smallest at i's
+/// column.
+class Assignment {
+ public:
+  Assignment(const std::vector<std::int64_t>& costs, std::size_t n)
+      : costs_(costs), n_(n), potential_(n, 0), row_of_(n, kNone), column_of_(n, kNone) {}
+
+  /// The smallest total cost, in units.
+  std::int64_t solve() {
+    if (n_ == 1) return costs_[0];
+    reduce_columns();
+    for (int round = 0; round < 2; ++round) reduce_rows();
+    for (const std::size_t row : free_) augment(row);
+    std::int64_t total = 0;
+    for (std::size_t i = 0; i < n_; ++i) total += costs_[i * n_ + column_of_[i]];
+    return total;
+  }
+
+ private:
+  static constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
+  static constexpr std::int64_t kFar = std::numeric_limits<std::int64_t>::max();
+
+  const std::int64_t* row(std::size_t i) const { return costs_.data() + i * n_; }
+  void assign(std::size_t i, std::size_t j) {
+    row_of_[j] = i;
+    column_of_[i] = j;
+  }
+
+  /// Each column to its cheapest row, if that row is still free; then the potential of each such
+  /// column is lowered as far as its row allows.
+  void reduce_columns() {
+    std::vector<std::size_t> cheapest(n_, 0);
+    for (std::size_t j = 0; j < n_; ++j) potential_[j] = costs_[j];
+    for (std::size_t i = 1; i < n_; ++i) {
+      for (std::size_t j = 0; j < n_; ++j) {
+        if (row(i)[j] >= potential_[j]) continue;
+        potential_[j] = row(i)[j];
+        cheapest[j] = i;
+      }
+    }
+    std::vector<std::size_t> wanted(n_, 0);
+    for (std::size_t j = 0; j < n_; ++j) {
+      if (++wanted[cheapest[j]] == 1) assign(cheapest[j], j);
+    }
+    for (std::size_t i = 0; i < n_; ++i) {
+      if (wanted[i] == 0) free_.push_back(i);
+      if (wanted[i] != 1) continue;
+      std::int64_t least = kFar;
+      for (std::size_t j = 0; j < n_; ++j) {
+        if (j != column_of_[i]) least = std::min(least, row(i)[j] - potential_[j]);
+      }
+      potential_[column_of_[i]] -= least;
+    }
+  }
+
+  /// Each free row takes its cheapest column, at the price at which the second one is as cheap; who
+  /// had it is free in turn. At most a few tries a row: what is left costs an augmentation each.
+  void reduce_rows() {
+    std::vector<std::size_t> left;
+    std::size_t tries = 4 * n_;
+    while (!free_.empty()) {
+      const std::size_t i = free_.back();
+      free_.pop_back();
+      if (tries == 0) {
+        left.push_back(i);
+        continue;
+      }
+      --tries;
+      std::int64_t first = kFar, second = kFar;
+      std::size_t at_first = 0, at_second = 0;
+      for (std::size_t j = 0; j < n_; ++j) {
+        const std::int64_t reduced = row(i)[j] - potential_[j];
+        if (reduced >= second) continue;
+        if (reduced < first) {
+          second = std::exchange(first, reduced);
+          at_second = std::exchange(at_first, j);
+        } else {
+          second = reduced;
+          at_second = j;
+        }
+      }
+      const bool outbids = first < second;
+      std::size_t j = at_first;
+      potential_[j] -= second - first;
+      if (!outbids && row_of_[j] != kNone) j = at_second;
+      const std::size_t owner = row_of_[j];
+      assign(i, j);
+      if (owner == kNone) continue;
+      column_of_[owner] = kNone;
+      (outbids ? free_ : left).push_back(owner);
+    }
+    free_ = std::move(left);
+  }
+
+  /// The cheapest path from a free row to a free column (Dijkstra), along which rows move on.
+  void augment(std::size_t free_row) {
+    distance_.resize(n_);
+    from_.assign(n_, free_row);
+    open_.resize(n_);
+    std::iota(open_.begin(), open_.end(), 0);
+    std::size_t nearest = 0;  // index into open_
+    for (std::size_t j = 0; j < n_; ++j) {
+      distance_[j] = row(free_row)[j] - potential_[j];
+      if (distance_[j] < distance_[nearest]) nearest = j;
+    }
+    closed_.clear();
+    while (row_of_[open_[nearest]] != kNone) {
+      const std::size_t j = open_[nearest];
+      open_[nearest] = open_.back();
+      open_.pop_back();
+      closed_.push_back(j);
+      const std::size_t i = row_of_[j];
+      const std::int64_t offset = row(i)[j] - potential_[j] - distance_[j];
+      std::int64_t least = kFar;
+      for (std::size_t o = 0; o < open_.size(); ++o) {
+        const std::size_t k = open_[o];
+        const std::int64_t through = row(i)[k] - potential_[k] - offset;
+        if (through < distance_[k]) {
+          distance_[k] = through;
+          from_[k] = i;
+        }
+        if (distance_[k] < least || (distance_[k] == least && row_of_[k] == kNone)) {
+          least = distance_[k];
+          nearest = o;
+        }
+      }
+    }
+    const std::size_t end = open_[nearest];
+    const std::int64_t reached = distance_[end];
+    for (const std::size_t j : closed_) potential_[j] += distance_[j] - reached;
+    for (std::size_t j = end;;) {
+      const std::size_t i = from_[j];
+      const std::size_t next = column_of_[i];
+      assign(i, j);
+      if (i == free_row) return;
+      j = next;
+    }
+  }
+
+  const std::vector<std::int64_t>& costs_;
+  std::size_t n_;
+  std::vector<std::int64_t> potential_;
+  std::vector<std::size_t> row_of_, column_of_, free_;
+  std::vector<std::int64_t> distance_;
+  std::vector<std::size_t> from_, open_, closed_;
+};
 
 }  // namespace
 
@@ -59,8 +210,14 @@ double transport_cost(std::span<const double> costs, std::span<const std::int64_
 
 double assignment_cost(std::span<const double> costs, std::size_t n) {
   SWARM_ASSERT(costs.size() == n * n);
-  const std::vector<std::int64_t> ones(n, 1);
-  return transport_cost(costs, ones, ones);
+  if (n == 0) return 0.0;
+  std::vector<std::int64_t> units;
+  units.reserve(costs.size());
+  for (const double cost : costs) {
+    SWARM_ASSERT(cost >= 0.0 && cost <= kMaxCost);
+    units.push_back(std::llround(cost * kUnitsPerCost));
+  }
+  return static_cast<double>(Assignment(units, n).solve()) / kUnitsPerCost;
 }
 
 }  // namespace swarm

@@ -16,8 +16,9 @@ class ReferenceCurve {
   static constexpr double kSpacing_s = 0.2;  ///< entries nearer than this are left out
   static constexpr double kBeyond_s = 10.0;
   static constexpr double kWindow_s = 60.0;  ///< lags are looked for up to here
-  static constexpr double kAtRest_m = 0.7;   ///< this near to a waiting reference is in time
-  static constexpr double kRest_mps = 0.1;   ///< a slower reference waits
+  /// This near to a waiting reference is in time: as far as neighbours push each other.
+  static constexpr double kAtRest_m = 1.0;
+  static constexpr double kRest_mps = 0.1;  ///< a slower reference waits
 
   /// Entries that do not ascend in τ are left out.
   void add(double plan_time_s, const Vec2& reference_m);

@@ -3,6 +3,7 @@
 #include "swarm_core/metrics/assignment.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numeric>
 #include <vector>
@@ -39,6 +40,25 @@ TEST(Assignment, EqualsTheBestOfAllPermutations) {
       const auto costs = random_costs(n * n, rng);
       // Each of the n costs is rounded to 1e-6.
       EXPECT_NEAR(assignment_cost(costs, n), by_all_permutations(costs, n), 1e-6 * 7);
+    }
+  }
+}
+
+TEST(Assignment, EqualsTheNetworkSimplex) {
+  Rng rng(3);
+  for (const std::size_t n : {2U, 30U, 150U}) {
+    const std::vector<std::int64_t> ones(n, 1);
+    for (int round = 0; round < 12; ++round) {
+      std::vector<double> costs(n * n);
+      for (double& cost : costs) {
+        // Many equal ones, a wide range, a common range.
+        cost = round % 3 == 0   ? std::floor(uniform(rng, 0.0, 4.0))
+               : round % 3 == 1 ? uniform(rng, 0.0, 1e9)
+                                : uniform(rng, 0.0, 100.0);
+      }
+      const double expected = transport_cost(costs, ones, ones);
+      // It adds up whole costs of up to 1e15 as doubles.
+      EXPECT_NEAR(assignment_cost(costs, n), expected, 1e-12 * expected) << n << " " << round;
     }
   }
 }
