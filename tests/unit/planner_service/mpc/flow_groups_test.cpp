@@ -217,7 +217,7 @@ TEST(OrderByFlow, IsTheCheapestOfAllAssignments) {
       least = std::min(least, cost_of(plan, robots, goal, any));
     } while (std::next_permutation(any.begin(), any.end()));
     EXPECT_NEAR(cost_of(plan, robots, goal, sinks), least, 1e-6 * least);
-    EXPECT_LE(std::abs(std::count(sinks.begin(), sinks.end(), 1U) - 3.5), 0.5);
+    EXPECT_LE(std::abs(static_cast<double>(std::count(sinks.begin(), sinks.end(), 1U)) - 3.5), 0.5);
   }
 }
 
