@@ -97,8 +97,7 @@ std::vector<std::filesystem::path> files_in(const std::filesystem::path& folder,
 bool is_attached(const std::string& name) {
   return name == shell::kMissionFile || name == shell::kSceneFile || name == shell::kEventsFile ||
          name == shell::kSummaryFile || name == shell::kRunFile || name == shell::kPlanStatsFile ||
-         name == shell::kPlanClockFile ||
-         (name.starts_with("plan") && name.ends_with(".json"));
+         name == shell::kPlanClockFile || (name.starts_with("plan") && name.ends_with(".json"));
 }
 
 std::string media_type_of(const std::string& name) {
