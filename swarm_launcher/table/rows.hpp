@@ -76,8 +76,10 @@ class Rows {
   };
   Result<void> add_in_turns(const std::vector<Named>& named, std::span<const Mission> missions,
                             std::uint32_t seeds, const SimulationOptions& options = {});
-  /// The newest row shows where something fails: it need not hold.
-  void may_fail() { rows_.back().must_hold = false; }
+  /// The newest rows show where something fails: they need not hold.
+  void may_fail(std::size_t count = 1) {
+    for (std::size_t i = 0; i < count; ++i) rows_[rows_.size() - 1 - i].must_hold = false;
+  }
 
   const std::vector<Row>& all() const { return rows_; }
   const Row& newest() const { return rows_.back(); }
