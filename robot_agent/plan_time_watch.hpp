@@ -39,7 +39,7 @@ class PlanTimeWatch {
   /// From now on the process follows this version; `same_flow`: under another name, the old plan.
   void on_plan(std::uint32_t version, bool same_flow);
 
-  /// τ of the plan followed; empty until a heartbeat tells it.
+  /// τ of the plan followed; empty until a heartbeat of that plan is received.
   std::optional<PlanTime> at(SteadyTime now);
 
  private:

@@ -8,7 +8,7 @@ namespace swarm::monitor {
 
 /// Lets the bodies of fallen robots lie: a robot whose log ends without "exit" stays at its last
 /// point until the end of the run, or until the scene says that its body was cleared. One whose log
-/// goes on has been respawned: its body is that of the track, also between the two lives.
+/// goes on has been respawned: its body is that of the track, also between its two incarnations.
 /// O(robots + scenes · bodies).
 void lay_fallen_bodies(RecordedRun& run);
 

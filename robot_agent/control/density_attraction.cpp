@@ -7,7 +7,7 @@
 namespace swarm::agent {
 namespace {
 
-constexpr double kNone_per_m2 = 1e-9;  // nobody is here, and nobody is to be
+constexpr double kNone_per_m2 = 1e-9;  // neither robots nor a plan for any
 
 PlannedDensity::Value estimate(const Vec2& position_m, std::span<const Neighbour> neighbours,
                                double kernel_m) {

@@ -17,7 +17,7 @@ bool has_body(const Scene& scene, RobotId robot);
 /// The scene without the bodies of all robots.
 Scene without_bodies(Scene scene);
 
-/// The scene without the bodies of these robots: nobody keeps off its own body.
+/// The scene without the bodies of these robots: a robot does not keep off its own body.
 Scene without_bodies_of(Scene scene, RobotId first, std::uint32_t robots);
 
 /// A body that was an obstacle for a while.

@@ -19,7 +19,7 @@ struct PlanMoment {
   Mixture mixture() const { return published->plan.mixture_at(MissionTime(plan_time_s)); }
 };
 
-/// Which plan is in force when, as the published clock says and nobody else. A pure function of
+/// Which plan is in force when, by the published clock alone. A pure function of
 /// plans and clock; both must outlive it.
 class PlanTimeline {
  public:

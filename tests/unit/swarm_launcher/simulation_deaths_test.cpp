@@ -117,7 +117,7 @@ TEST(SimulationDeaths, LeaveBodiesThatTheOthersGetAround) {
 }
 
 TEST(SimulationDeaths, LeaveABodyOnTheNextOnesPath) {
-  // In single file: whoever follows meets the body.
+  // In single file, so that the robot behind meets the body.
   Mission mission = small_mission();
   mission.robots.count = 20;
   const Flight flight = fly(mission, {.kills = {{.at_s = 6.0, .count = 2},
