@@ -144,7 +144,8 @@ std::vector<PublishedPlan> read_plans(const Texts& texts) {
   for (const auto& [name, text] : texts) {
     const std::uint32_t version = plan_version_of(name);
     if (version == 0) continue;
-    if (auto plan = plan_from_json(text)) plans.push_back({version, std::move(*plan)});
+    auto plan = plan_from_json(text);
+    if (plan) plans.push_back({version, std::move(*plan), excess_from_json(text)});
   }
   const auto older = [](const PublishedPlan& a, const PublishedPlan& b) {
     return a.version < b.version;
@@ -292,6 +293,12 @@ Result<RecordedRun> read_recording(const std::filesystem::path& file) {
 }
 
 }  // namespace
+
+double RecordedRun::plan_excess_m() const {
+  double largest_m = 0.0;
+  for (const PublishedPlan& plan : plans) largest_m = std::max(largest_m, plan.excess_m);
+  return largest_m;
+}
 
 Result<RecordedRun> read_run(const std::filesystem::path& from) {
   return std::filesystem::is_regular_file(from) ? read_recording(from) : read_directory(from);

@@ -70,6 +70,7 @@ struct RunEvent {
 struct PublishedPlan {
   std::uint32_t version = 0;  ///< 1 is the first
   FlowPlan plan;
+  double excess_m = 0.0;  ///< by how much it breaks its own constraints
 };
 
 /// A run, read. Audits and reports are pure functions of it.
@@ -87,6 +88,8 @@ struct RecordedRun {
   const Mixture& goal() const;
   /// The plan that the mission started with; null if none was published.
   const FlowPlan* first_plan() const { return plans.empty() ? nullptr : &plans.front().plan; }
+  /// Largest constraint violation of all plans.
+  double plan_excess_m() const;
 };
 
 /// Of a run directory, or of a recording of one. Fails (kEnvironment) if there is no readable

@@ -86,6 +86,7 @@ void LiveSource::add_scene() {
                   .world = world,
                   .goal = goal(),
                   .plan = state_.plan() ? &*state_.plan() : nullptr,
+                  .plan_excess_m = state_.plan_excess_m(),
                   .from_s = state_.begin() ? to_seconds(now_ - *state_.begin()) : 0.0,
                   .live = true,
                   .control = control_,
@@ -169,6 +170,8 @@ std::string LiveSource::metrics() const {
   m.add("swarm_plan_seconds", "gauge", "Time of the plan's clock.", state_.plan_time_s(now_));
   m.add("swarm_plan_rate", "gauge", "Seconds of plan time per second.", state_.plan_rate());
   m.add("swarm_plan_version", "gauge", "Version of the plan.", state_.plan_version());
+  m.add("swarm_plan_excess_metres", "gauge", "Largest constraint violation that a plan reported.",
+        state_.plan_excess_m());
   m.add("swarm_states_received_total", "counter", "States heard, each once.", states.received);
   m.add("swarm_states_lost_total", "counter", "States whose numbers were skipped.", states.lost);
   m.add("swarm_states_duplicate_total", "counter", "States heard again.", states.duplicates);

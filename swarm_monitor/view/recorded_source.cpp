@@ -97,6 +97,7 @@ void RecordedSource::make_scenes() {
                                   .world = phase.world,
                                   .goal = *goal,
                                   .plan = run_.first_plan(),
+                                  .plan_excess_m = run_.plan_excess_m(),
                                   .from_s = from_s,
                                   .end_s = end_s_}));
   }

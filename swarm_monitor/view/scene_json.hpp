@@ -19,6 +19,7 @@ struct SceneFacts {
   const World& world;  ///< as it stands
   const Mixture& goal;
   const FlowPlan* plan = nullptr;
+  double plan_excess_m = 0.0;  ///< largest constraint violation of the plans so far
   double from_s = 0.0;
   double end_s = 0.0;
   bool live = false;

@@ -110,6 +110,7 @@ void SwarmState::take_plan(const TappedSample& sample) {
   if (!plans_.accept(message.epoch, message.version)) return;
   plan_ = std::move(*plan);
   plan_version_ = message.version;
+  plan_excess_m_ = std::max(plan_excess_m_, message.excess_m);
   ++version_;
 }
 

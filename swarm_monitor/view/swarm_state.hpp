@@ -59,6 +59,8 @@ class SwarmState {
   double plan_rate() const { return plan_rate_; }
   const std::optional<FlowPlan>& plan() const { return plan_; }
   std::uint32_t plan_version() const { return plan_version_; }
+  /// Largest constraint violation that a received plan reported.
+  double plan_excess_m() const { return plan_excess_m_; }
   const Scene& scene() const { return scene_; }
   /// Grows with every change of plan or scene.
   std::uint64_t version() const { return version_; }
@@ -82,6 +84,7 @@ class SwarmState {
   std::vector<Robot> robots_;
   std::optional<FlowPlan> plan_;
   std::uint32_t plan_version_ = 0;
+  double plan_excess_m_ = 0.0;
   link::PlanSequence plans_;
   Scene scene_;
   std::uint64_t version_ = 0;

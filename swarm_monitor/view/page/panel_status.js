@@ -15,6 +15,8 @@ export class Status {
     put(byId('kind'), scene.live ? 'live' : 'recording');
     byId('kind').dataset.kind = scene.live ? 'live' : 'recording';
     byId('kind').hidden = false;
+    byId('excess-entry').hidden = !(scene.plan_excess_m > 0);
+    put(byId('excess'), `${(scene.plan_excess_m ?? 0).toFixed(2)} m`);
   }
 
   picture(phase, counts, robots) {

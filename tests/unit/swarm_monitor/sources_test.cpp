@@ -145,8 +145,9 @@ TEST_F(Live, ShowsAPlanAsSoonAsItIsThere) {
   std::vector<PlanNode> nodes{{mission.start.components()[0].gaussian, MissionTime(0), 1.0},
                               {mission.goal.components()[0].gaussian, MissionTime(20), 1.0}};
   const auto plan = FlowPlan::make(nodes, {{.from = 0, .to = 1, .mass = 1.0}}).value();
-  tap_->say("swarm/plan", link::to_message(plan, PlannerEpoch(1), PlanVersion(1), at_ms(0)),
-            at_ms(1000));
+  link::PlanMessage message = link::to_message(plan, PlannerEpoch(1), PlanVersion(1), at_ms(0));
+  message.excess_m = 0.25;
+  tap_->say("swarm/plan", message, at_ms(1000));
   tap_->say("swarm/heartbeat",
             link::HeartbeatMessage{.phase = MissionPhase::kRunning,
                                    .version = 1,
@@ -160,6 +161,7 @@ TEST_F(Live, ShowsAPlanAsSoonAsItIsThere) {
 
   const auto scene = nlohmann::json::parse(source_.scenes().back());
   EXPECT_EQ(scene["plan"]["legs"].size(), 1U);
+  EXPECT_EQ(scene["plan_excess_m"], 0.25);
   EXPECT_TRUE(scene["control"]);
   std::vector<std::byte> bytes;
   source_.picture({}, {}, bytes);
