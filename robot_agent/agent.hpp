@@ -3,15 +3,11 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <string>
-#include <variant>
 
-#include "robot_agent/control/apf.hpp"
-#include "robot_agent/control/control_method.hpp"
-#include "robot_agent/control/crops.hpp"
-#include "robot_agent/control/intermittent_diffusion.hpp"
+#include "robot_agent/agent_options.hpp"
+#include "robot_agent/control/guarded_method.hpp"
 #include "robot_agent/control/route.hpp"
 #include "robot_agent/control/safety_filter.hpp"
 #include "robot_agent/neighbour_table.hpp"
@@ -23,41 +19,11 @@
 
 namespace swarm::agent {
 
-/// What robots with the same body have in common.
-struct AgentOptions {
-  std::string method = "apf";  ///< of control
-  RouteOptions route;
-  ApfOptions apf;
-  IntermittentDiffusionOptions diffusion;
-  CropsOptions crops;
-  SafetyOptions safety;
-  NeighbourOptions neighbours;
-  SayOptions say;
-};
-
 /// What is a robot's own.
 struct AgentIdentity {
   RobotId robot;
   double share = 0.0;     ///< of the stratified draw, see stratified_share()
   bool underway = false;  ///< respawned: it may be anywhere along its way
-};
-
-/// The options of a robot of a mission, and of any other with its body.
-Shared<AgentOptions> agent_options(const Mission& mission, RobotId robot);
-
-/// The same for one robot after the other: made once for each body. \pre the mission outlives it
-class AgentOptionsOf {
- public:
-  explicit AgentOptionsOf(const Mission& mission) : mission_(mission) {}
-  const Shared<AgentOptions>& operator()(RobotId robot) {
-    const auto [found, is_new] = by_body_.try_emplace(&body_of(mission_.robots, robot));
-    if (is_new) found->second = agent_options(mission_, robot);
-    return found->second;
-  }
-
- private:
-  const Mission& mission_;
-  std::map<const BodySpec*, Shared<AgentOptions>> by_body_;
 };
 
 AgentIdentity agent_identity(const Mission& mission, RobotId robot);
@@ -128,22 +94,17 @@ class Agent {
 
   bool has_route() const { return has_route_; }
   /// Index of the goal (sink of the plan) this robot is at or goes to. \pre has_route()
-  std::uint32_t goal(const Vec2& position_m) const { return method().goal(position_m); }
+  std::uint32_t goal(const Vec2& position_m) const { return method_.goal(position_m); }
   /// Where the present way begins. \pre has_route()
   const Vec2& way_begin_m() const { return way_.begin_m; }
   /// Plan time by which it is behind its reference position; negative if ahead; 0 once arrived.
-  double lag_s() const { return has_route_ && !arrived_ ? method().lag_s() : 0.0; }
+  double lag_s() const { return has_route_ && !arrived_ ? method_.lag_s() : 0.0; }
+  /// Why the control method is not called any more; empty while it works. A robot without one stops.
+  const std::string& control_fault() const { return method_.fault(); }
   /// How often it freed itself from a deadlock.
-  std::uint32_t escapes() const { return method().escapes(); }
+  std::uint32_t escapes() const { return method_.escapes(); }
 
  private:
-  const ControlMethod& method() const {
-    return std::visit([](const ControlMethod& any) -> const ControlMethod& { return any; },
-                      method_);
-  }
-  ControlMethod& method() {
-    return std::visit([](ControlMethod& any) -> ControlMethod& { return any; }, method_);
-  }
   void keep_place(Route& route, const Vec2& position_m) const;
   RobotMode decide_mode(const AgentInput& input) const;
 
@@ -153,7 +114,7 @@ class Agent {
   NeighbourTable neighbours_;
   SafetyFilter filter_;
   SayPolicy say_;
-  std::variant<Apf, Crops, IntermittentDiffusion> method_;
+  GuardedMethod method_;
   Vec2 mean_mps_ = Vec2::Zero();  // of the commanded velocity
   bool has_route_ = false;
   bool arrived_ = false;

@@ -15,6 +15,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "robot_agent/control/density_attraction.hpp"
 #include "robot_agent/drivers/simulated_robot.hpp"
 #include "robot_agent/inbox.hpp"
 #include "robot_agent/robot.hpp"

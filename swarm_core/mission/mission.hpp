@@ -11,6 +11,7 @@
 
 #include "swarm_core/base/ids.hpp"
 #include "swarm_core/gmm/mixture.hpp"
+#include "swarm_core/mission/options.hpp"
 #include "swarm_core/mission/phase.hpp"
 #include "swarm_core/mission/scene.hpp"
 #include "swarm_core/risk/cvar.hpp"
@@ -32,6 +33,7 @@ struct BodySpec {
   double hear_radius_m = 0.0;          ///< its sensing range; 0 = link.hear_radius_m
   double motion_noise_m = 0.0;         ///< σ of w(k) [ROVER, eq. 9]
   double position_noise_m = 0.0;       ///< σ of its measured position
+  OptionValues options{};              ///< of its driver
 };
 
 /// A number of robots that differ from the others.
@@ -82,6 +84,7 @@ struct PlannerSpec {
   double crops_clearance_m = 0.5;  ///< crops: nodes nearer to an obstacle are discarded
   double crops_power = 3.0;  ///< crops: p of w(q) = (Σ dist)ᵖ; 3 in the paper, 1 in its code
   double crops_goal_radius_m = 1.0;  ///< crops: of the intermediate goals
+  OptionValues options{};            ///< of a planning method that declares its own
 };
 
 struct ControlSpec {
@@ -110,6 +113,7 @@ struct ControlSpec {
   double diffusion_flow_s = 2.5;          ///< longest gradient flow before diffusing (i_max steps)
   double diffusion_noise_mps05 = 3.0;     ///< largest σ of the virtual diffusion [m/√s]
   double diffusion_time_s = 10.0;         ///< its longest duration; 0 = plain gradient descent
+  OptionValues options{};                 ///< of a control method that declares its own
 };
 
 struct SafetySpec {

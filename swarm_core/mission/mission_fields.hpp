@@ -23,10 +23,8 @@ struct Field {
   yaml::Range range;
 };
 
-/// Over 0 and at most `high`.
-constexpr yaml::Range positive(double high) { return {.low = 0.0, .high = high, .low_open = true}; }
-/// From `low` to `high`, both allowed.
-constexpr yaml::Range between(double low, double high) { return {.low = low, .high = high}; }
+using swarm::between;
+using swarm::positive;
 
 /// Coordinates and sizes: beyond this it is no place robots of this size drive in.
 inline constexpr double kMaxExtent_m = 1e6;

@@ -39,8 +39,9 @@ bool is_good_name(std::string_view name) {
 
 class MissionReader {
  public:
-  MissionReader(const std::filesystem::path& directory, yaml::Violations& violations)
-      : violations_(violations), shapes_(violations, directory) {}
+  MissionReader(const std::filesystem::path& directory, const Catalogue& catalogue,
+                yaml::Violations& violations)
+      : catalogue_(catalogue), violations_(violations), shapes_(violations, directory) {}
 
   Mission read(const Node& root) {
     MapReader top(root, "", violations_);
@@ -91,17 +92,25 @@ class MissionReader {
     if (node == nullptr) return;
     MapReader keys(*node, std::string(key), violations_);
     if constexpr (std::is_same_v<Section, ControlSpec>) {
-      read_choice(keys, "method", mission_fields::kControlMethods, section.method);
+      read_component(keys, "method", mission_fields::kControlMethods, catalogue_.control_methods,
+                     section.method);
       read_choice(keys, "tracking", mission_fields::kTracking, section.tracking);
     }
     if constexpr (std::is_same_v<Section, PlannerSpec>) {
-      read_choice(keys, "method", mission_fields::kPlannerMethods, section.method);
+      read_component(keys, "method", mission_fields::kPlannerMethods, catalogue_.planning_methods,
+                     section.method);
       read_choice(keys, "sampler", mission_fields::kPlannerSamplers, section.sampler);
       read_choice(keys, "density_cap", mission_fields::kDensityCaps, section.density_cap);
       read_automatic(keys, "density_cap_per_m2", mission_fields::kDensityCap_per_m2,
                      section.density_cap_per_m2);
     }
     read_fields(keys, section, fields);
+    if constexpr (std::is_same_v<Section, ControlSpec>) {
+      read_options(keys, catalogue_.control_methods, section.options);
+    }
+    if constexpr (std::is_same_v<Section, PlannerSpec>) {
+      read_options(keys, catalogue_.planning_methods, section.options);
+    }
     keys.finish();
   }
 
@@ -113,8 +122,9 @@ class MissionReader {
   }
 
   void read_body(MapReader& keys, BodySpec& body) {
-    read_choice(keys, "model", mission_fields::kRobotModels, body.model);
+    read_component(keys, "model", mission_fields::kRobotModels, catalogue_.drivers, body.model);
     read_fields(keys, body, mission_fields::kBody);
+    read_options(keys, catalogue_.drivers, body.options);
   }
 
   void read_robots(const Node& node) {
@@ -195,6 +205,50 @@ class MissionReader {
     if (chosen) choice = *std::move(chosen);
   }
 
+  /// The name of a built-in component, or of one in the catalogue.
+  void read_component(MapReader& keys, std::string_view key,
+                      std::span<const std::string_view> built_in, const Components& others,
+                      std::string& name) {
+    std::vector<std::string_view> known(built_in.begin(), built_in.end());
+    for (const ComponentSpec& component : others) {
+      if (std::find(known.begin(), known.end(), component.name) == known.end()) {
+        known.emplace_back(component.name);
+      }
+    }
+    if (!catalogue_.is_open) return read_choice(keys, key, known, name);
+    const Node* node = keys.take(key);
+    if (node == nullptr) return;
+    if (auto text = yaml::read_text(*node, keys.path_of(key), violations_)) name = *text;
+  }
+
+  /// The options that components of a section declare, whichever of them the mission names.
+  void read_options(MapReader& keys, const Components& components, OptionValues& values) {
+    if (catalogue_.is_open) {
+      for (const auto& [key, node] : keys.take_scalars()) values.set(key, node->text);
+      return;
+    }
+    for (const ComponentSpec& component : components) {
+      for (const OptionSpec& option : component.options) {
+        if (const Node* node = keys.take(option.key)) read_option(*node, keys, option, values);
+      }
+    }
+  }
+
+  void read_option(const Node& node, const MapReader& keys, const OptionSpec& option,
+                   OptionValues& values) {
+    const std::string path = keys.path_of(option.key);
+    bool good = false;
+    if (option.kind == OptionSpec::Kind::kChoice) {
+      const std::vector<std::string_view> words(option.words.begin(), option.words.end());
+      good = yaml::read_choice(node, path, words, violations_).has_value();
+    } else if (option.kind == OptionSpec::Kind::kCount) {
+      good = yaml::read_count(node, path, option.range, violations_).has_value();
+    } else {
+      good = yaml::read_number(node, path, option.range, violations_).has_value();
+    }
+    if (good) values.set(option.key, node.text);
+  }
+
   void read_world(const Node& node) {
     MapReader keys(node, "world", violations_);
     std::optional<Box> bounds;
@@ -261,7 +315,6 @@ class MissionReader {
       const std::string path = fmt::format("script[{}]", i);
       MapReader keys((*items)[i], path, violations_);
       std::optional<double> at_s;
-      std::optional<MissionAction> action;
       if (const Node* value = keys.take("at_s", true)) {
         at_s = yaml::read_number(*value, keys.path_of("at_s"), mission_fields::kScriptTime_s,
                                  violations_);
@@ -277,11 +330,11 @@ class MissionReader {
                             : yaml::read_choice(*word, keys.path_of("action"),
                                                 mission_fields::kScriptActions, violations_);
       if (!name) continue;  // which other keys belong here is not known
-      action = read_action(*name, keys, path, (*items)[i].at);
+      const auto action = read_action(*name, keys, path, (*items)[i].at);
       keys.finish();
       if (!at_s || !action) continue;
       if (has_world_) follow_scene(scene, *action, *at_s, (*items)[i].at, path);
-      mission_.script.push_back({.at_s = *at_s, .action = std::move(*action)});
+      mission_.script.push_back({.at_s = *at_s, .action = *action});
     }
   }
 
@@ -326,6 +379,7 @@ class MissionReader {
     }
   }
 
+  const Catalogue& catalogue_;
   yaml::Violations& violations_;
   Mission mission_;
   ShapeReader shapes_;
@@ -337,7 +391,7 @@ class MissionReader {
 }  // namespace
 
 Result<Mission> parse_mission(std::string_view text, const std::string& name,
-                              const std::filesystem::path& directory) {
+                              const std::filesystem::path& directory, const Catalogue& catalogue) {
   if (text.size() > kMaxMissionBytes) {
     return fail(ErrorCode::kBadInput, fmt::format("{}:1:1: {} bytes; must be <= {}", name,
                                                   text.size(), kMaxMissionBytes));
@@ -348,12 +402,12 @@ Result<Mission> parse_mission(std::string_view text, const std::string& name,
     violations.add(root.error().at, root.error().what);
     return tl::unexpected(violations.to_error(name));
   }
-  Mission mission = MissionReader(directory, violations).read(*root);
+  Mission mission = MissionReader(directory, catalogue, violations).read(*root);
   if (!violations.empty()) return tl::unexpected(violations.to_error(name));
   return mission;
 }
 
-Result<Mission> load_mission(const std::filesystem::path& file) {
+Result<Mission> load_mission(const std::filesystem::path& file, const Catalogue& catalogue) {
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(file.c_str(), "rb"),
                                                                &std::fclose);
   if (!stream) {
@@ -373,7 +427,7 @@ Result<Mission> load_mission(const std::filesystem::path& file) {
     return fail(ErrorCode::kBadInput,
                 fmt::format("{}: cannot be read; is it a file?", file.string()));
   }
-  return parse_mission(text, file.filename().string(), file.parent_path());
+  return parse_mission(text, file.filename().string(), file.parent_path(), catalogue);
 }
 
 }  // namespace swarm

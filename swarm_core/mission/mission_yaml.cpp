@@ -84,6 +84,11 @@ void write_fields(Out out, const Section& section,
   }
 }
 
+/// The values of a component's own options, as checked when they were read.
+void write_options(Out out, const OptionValues& options) {
+  for (const auto& [key, text] : options.all()) fmt::format_to(out, "  {}: {}\n", key, text);
+}
+
 /// A section must not be empty, and none of its keys need be set.
 void write_criteria(Out out, const CriteriaSpec& criteria) {
   std::string keys;
@@ -95,6 +100,7 @@ void write_robots(Out out, const RobotsSpec& robots) {
   fmt::format_to(out, "robots:\n  model: {}\n", robots.model);
   write_fields(out, robots, mission_fields::kRobots);
   write_fields<BodySpec>(out, robots, mission_fields::kBody);
+  write_options(out, robots.options);
   if (robots.groups.empty()) return;
   fmt::format_to(out, "  groups:\n");
   for (const RobotGroupSpec& group : robots.groups) {
@@ -103,6 +109,9 @@ void write_robots(Out out, const RobotsSpec& robots) {
       fmt::format_to(
           out, ", {}: {}", field.key,
           static_cast<const BodySpec&>(group).*std::get<double BodySpec::*>(field.member));
+    }
+    for (const auto& [key, text] : group.options.all()) {
+      fmt::format_to(out, ", {}: {}", key, text);
     }
     fmt::format_to(out, "}}\n");
   }
@@ -140,9 +149,11 @@ std::string to_yaml(const Mission& mission) {
                      ? fmt::format("{}", *mission.planner.density_cap_per_m2)
                      : std::string(mission_fields::kAutomatic));
   write_fields(out, mission.planner, mission_fields::kPlanner);
+  write_options(out, mission.planner.options);
   fmt::format_to(out, "control:\n  method: {}\n  tracking: {}\n", mission.control.method,
                  mission.control.tracking);
   write_fields(out, mission.control, mission_fields::kControl);
+  write_options(out, mission.control.options);
   fmt::format_to(out, "safety:\n");
   write_fields(out, mission.safety, mission_fields::kSafety);
   fmt::format_to(out, "link:\n");

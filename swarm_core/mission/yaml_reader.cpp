@@ -66,12 +66,6 @@ Error Violations::to_error(const std::string& file) const {
   return {ErrorCode::kBadInput, std::move(message)};
 }
 
-std::string to_string(const Range& range) {
-  const std::string low = fmt::format("{} {}", range.low_open ? ">" : ">=", range.low);
-  if (range.high == std::numeric_limits<double>::infinity()) return "must be " + low;
-  return fmt::format("must be {} and <= {}", low, range.high);
-}
-
 MapReader::MapReader(const Node& node, std::string path, Violations& violations)
     : path_(std::move(path)), at_(node.at), violations_(violations) {
   is_map_ = node.kind == Node::Kind::kMap;
@@ -104,6 +98,17 @@ const Node* MapReader::take(std::string_view key, bool required) {
     violations_.add(at_, fmt::format("{} is missing; add it", path_of(key)));
   }
   return nullptr;
+}
+
+std::vector<std::pair<std::string, const Node*>> MapReader::take_scalars() {
+  std::vector<std::pair<std::string, const Node*>> scalars;
+  std::erase_if(entries_, [&](const auto& item) {
+    const Node& value = item.second->value;
+    if (value.kind != Node::Kind::kScalar) return false;
+    scalars.emplace_back(std::string(item.first), &value);
+    return true;
+  });
+  return scalars;
 }
 
 void MapReader::finish() {

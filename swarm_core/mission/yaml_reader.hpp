@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "swarm_core/mission/options.hpp"
 #include "swarm_core/mission/yaml_tree.hpp"
 
 namespace swarm::yaml {
@@ -27,16 +28,7 @@ class Violations {
   std::vector<std::pair<Position, std::string>> all_;
 };
 
-/// Numbers a key accepts.
-struct Range {
-  double low = 0.0;
-  double high = 0.0;
-  bool low_open = false;
-  bool contains(double x) const { return (low_open ? x > low : x >= low) && x <= high; }
-};
-
-/// `must be > 0 and <= 10`
-std::string to_string(const Range& range);
+using swarm::Range;
 
 /// Reads the keys of one mapping strictly: each known key at most once, unknown ones are violations
 /// that name the nearest known key. Paths such as `link.hear_radius_m` name values in messages.
@@ -48,7 +40,10 @@ class MapReader {
   /// The value of a key, or null if it is absent (a violation if `required`).
   const Node* take(std::string_view key, bool required = false);
 
-  /// Reports the keys nobody took.
+  /// The scalar values that are not taken yet, by key.
+  std::vector<std::pair<std::string, const Node*>> take_scalars();
+
+  /// Reports the keys that were not taken.
   void finish();
 
   bool is_map() const { return is_map_; }

@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include "robot_agent/control/density_attraction.hpp"
 #include "swarm_core/mission/placement.hpp"
 
 namespace swarm::launcher {

@@ -12,6 +12,7 @@
 #include <gtest/gtest.h>
 
 #include "robot_agent/agent.hpp"
+#include "robot_agent/control/builtin_methods.hpp"
 #include "swarm_core/mission/mission_file.hpp"
 #include "swarm_core/mission/placement.hpp"
 
@@ -31,7 +32,8 @@ class Swarm {
     velocities_mps_.assign(positions_m_.size(), Vec2::Zero());
     for (std::uint32_t i = 0; i < mission_.robots.count; ++i) {
       const Shared<AgentOptions> options = agent_options(mission_, RobotId(i));
-      methods_.emplace_back(options->diffusion);
+      methods_.emplace_back(
+          intermittent_diffusion_options(mission_, body_of(mission_.robots, RobotId(i))));
       methods_.back().begin(Route{}, mission_.world);
       filters_.emplace_back(mission_.world, options->safety);
       rngs_.emplace_back(agent_rng(RobotId(i), seed));
@@ -232,7 +234,7 @@ TEST(IntermittentDiffusion, StepsKeepTheBoundAndLoseEnergy) {
 
 TEST(IntermittentDiffusion, ArrivesWithHysteresis) {
   const Mission mission = letter_q();
-  IntermittentDiffusion method(agent_options(mission, RobotId(0))->diffusion);
+  IntermittentDiffusion method(intermittent_diffusion_options(mission, mission.robots));
   method.begin(Route{}, mission.world);
   const Vec2 on_letter_m(3.6, 0.35);
   // Alone, F + G is the squared distance to the stroke's edge, 0.25 m from its middle.

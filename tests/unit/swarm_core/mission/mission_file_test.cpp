@@ -120,11 +120,12 @@ template <class Section, std::size_t N>
 void expect_same(const Section& a, const Section& b,
                  const std::array<mission_fields::Field<Section>, N>& fields) {
   // The tables are all that reader and writer know: a member without a row would be lost.
-  // Beside the table: texts, what may be automatic, and of robots the body and the groups.
-  constexpr std::size_t kOthers = std::is_same_v<Section, PlannerSpec>   ? 4
+  // Beside the table: texts, what may be automatic, options of components, and of robots the body
+  // and the groups.
+  constexpr std::size_t kOthers = std::is_same_v<Section, PlannerSpec>   ? 5
                                   : std::is_same_v<Section, RobotsSpec>  ? 2
-                                  : std::is_same_v<Section, ControlSpec> ? 2
-                                  : std::is_same_v<Section, BodySpec>    ? 1
+                                  : std::is_same_v<Section, ControlSpec> ? 3
+                                  : std::is_same_v<Section, BodySpec>    ? 2
                                                                          : 0;
   if constexpr (std::is_same_v<Section, CriteriaSpec>) {
     static_assert(sizeof(Section) == N * sizeof(std::optional<double>));

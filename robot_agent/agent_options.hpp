@@ -1,0 +1,50 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+
+#include "robot_agent/control/route.hpp"
+#include "robot_agent/control/safety_filter.hpp"
+#include "robot_agent/control_registry.hpp"
+#include "robot_agent/neighbour_table.hpp"
+#include "robot_agent/say_policy.hpp"
+#include "swarm_core/base/result.hpp"
+#include "swarm_core/base/shared.hpp"
+#include "swarm_core/mission/mission.hpp"
+
+namespace swarm::agent {
+
+/// What robots with the same body have in common.
+struct AgentOptions {
+  PreparedControl control;
+  RouteOptions route;
+  SafetyOptions safety;
+  NeighbourOptions neighbours;
+  SayOptions say;
+};
+
+/// The options of a robot of a mission, and of any other with its body. kBadInput if the registry
+/// has no such control method, or what the method says of the mission.
+Result<Shared<AgentOptions>> agent_options(const Mission& mission, RobotId robot,
+                                           const ControlRegistry& registry);
+/// The same with a built-in method. \pre mission.control.method is one
+Shared<AgentOptions> agent_options(const Mission& mission, RobotId robot);
+
+/// The options of all robots of a mission, made once for each body. The mission outlives it.
+class AgentOptionsOf {
+ public:
+  static Result<AgentOptionsOf> make(const Mission& mission, const ControlRegistry& registry);
+  /// With a built-in method.
+  explicit AgentOptionsOf(const Mission& mission);
+
+  const Shared<AgentOptions>& operator()(RobotId robot) const;
+
+ private:
+  AgentOptionsOf(const Mission& mission, std::map<const BodySpec*, Shared<AgentOptions>> by_body);
+
+  const Mission* mission_;
+  std::map<const BodySpec*, Shared<AgentOptions>> by_body_;
+};
+
+}  // namespace swarm::agent

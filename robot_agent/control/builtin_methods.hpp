@@ -1,0 +1,19 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "robot_agent/control_registry.hpp"
+
+/// The methods of the papers, as a registry takes them.
+namespace swarm::agent {
+
+ControlEntry apf_method();
+ControlEntry crops_method();
+ControlEntry intermittent_diffusion_method();
+
+struct IntermittentDiffusionOptions;
+/// What a mission asks of intermittent_diffusion for robots with this body.
+IntermittentDiffusionOptions intermittent_diffusion_options(const Mission& mission,
+                                                            const BodySpec& body);
+
+}  // namespace swarm::agent

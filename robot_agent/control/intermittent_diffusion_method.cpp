@@ -1,0 +1,50 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
+#include "robot_agent/control/builtin_methods.hpp"
+#include "robot_agent/control/intermittent_diffusion.hpp"
+
+namespace swarm::agent {
+IntermittentDiffusionOptions intermittent_diffusion_options(const Mission& mission,
+                                                            const BodySpec& body) {
+  const ControlSpec& c = mission.control;
+  return {.shape = mission.goal_shape,
+          .goal = mission.goal,
+          .repulsion = {.strength_m2 = c.diffusion_strength_m2,
+                        .range_m =
+                            c.diffusion_range_m > 0.0 ? c.diffusion_range_m : 10.0 * body.radius_m},
+          .diffusion = {.noise_mps05 = c.diffusion_noise_mps05,
+                        .time_s = c.diffusion_time_s,
+                        .clearance_m = body.radius_m + mission.safety.obstacle_margin_m},
+          .obstacles = {.radius_m = body.radius_m,
+                        .gap_m = c.obstacle_gap_m,
+                        .push_mps = c.obstacle_push_mps},
+          .radius_m = body.radius_m,
+          .tolerance_m2 = c.diffusion_tolerance_m2,
+          .gain_hz = c.diffusion_gain_hz,
+          .cruise_mps = std::min(c.cruise_mps, body.speed_max_mps),
+          .period = from_seconds(1.0 / c.rate_hz),
+          .flow_time = from_seconds(c.diffusion_flow_s)};
+}
+
+namespace {
+
+Result<PreparedControl> prepare(const ControlContext& context) {
+  const Shared<IntermittentDiffusionOptions> options =
+      intermittent_diffusion_options(context.mission, context.body);
+  return PreparedControl{
+      .make = [options] { return ControlSlot::of<IntermittentDiffusion>(options); }};
+}
+
+}  // namespace
+
+ControlEntry intermittent_diffusion_method() {
+  return {.spec = {.name = "intermittent_diffusion",
+                   .doc = "Shape formation by gradient flow and intermittent diffusion, without a "
+                          "path [intermittent diffusion, Alg. 1]",
+                   .options = {}},
+          .prepare = prepare};
+}
+
+}  // namespace swarm::agent

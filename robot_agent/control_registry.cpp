@@ -1,0 +1,53 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "robot_agent/control_registry.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "robot_agent/control/builtin_methods.hpp"
+#include "swarm_core/base/assert.hpp"
+
+namespace swarm::agent {
+
+void ControlRegistry::add(ControlEntry entry) {
+  SWARM_ASSERT(find(entry.spec.name) == nullptr && entry.prepare);
+  for (const OptionSpec& option : entry.spec.options) {
+    for (const ControlEntry& other : entries_) {
+      const auto& theirs = other.spec.options;
+      SWARM_ASSERT(std::all_of(theirs.begin(), theirs.end(), [&](const OptionSpec& o) {
+        return o.key != option.key || o == option;
+      }));
+    }
+  }
+  entries_.push_back(std::move(entry));
+}
+
+const ControlEntry* ControlRegistry::find(std::string_view name) const {
+  const auto found = std::find_if(entries_.begin(), entries_.end(),
+                                  [&](const ControlEntry& e) { return e.spec.name == name; });
+  return found == entries_.end() ? nullptr : &*found;
+}
+
+Components ControlRegistry::specs() const {
+  Components specs;
+  for (const ControlEntry& entry : entries_) specs.push_back(entry.spec);
+  return specs;
+}
+
+void register_builtin_control(ControlRegistry& registry) {
+  registry.add(apf_method());
+  registry.add(crops_method());
+  registry.add(intermittent_diffusion_method());
+}
+
+const ControlRegistry& builtin_control() {
+  static const ControlRegistry registry = [] {
+    ControlRegistry made;
+    register_builtin_control(made);
+    return made;
+  }();
+  return registry;
+}
+
+}  // namespace swarm::agent

@@ -1,0 +1,24 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cmath>
+
+#include "swarm_core/mission/mission.hpp"
+
+namespace swarm::agent {
+
+/// What the safety filter keeps off obstacles [m]: the mission's margin, and twice the noise of a
+/// measured position and a step.
+inline double obstacle_margin_m(const Mission& mission, const BodySpec& body) {
+  return mission.safety.obstacle_margin_m +
+         2.0 * std::hypot(body.position_noise_m, body.motion_noise_m);
+}
+
+/// Gap above which a robot has room [m]. In a dense region gaps are as small as the filter's
+/// margin, so that what presses begins well above.
+inline double room_gap_m(const Mission& mission) {
+  return mission.safety.neighbour_margin_m + 0.5;
+}
+
+}  // namespace swarm::agent

@@ -1,0 +1,117 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "swarm_core/mission/catalogue.hpp"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace swarm {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::array<std::pair<OptionSpec::Kind, std::string_view>, 3> kKinds{
+    {{OptionSpec::Kind::kNumber, "number"},
+     {OptionSpec::Kind::kCount, "count"},
+     {OptionSpec::Kind::kChoice, "choice"}}};
+
+Json option_json(const OptionSpec& option) {
+  const auto kind = std::find_if(kKinds.begin(), kKinds.end(),
+                                 [&](const auto& k) { return k.first == option.kind; });
+  Json json{{"key", option.key},
+            {"kind", kind->second},
+            {"default", option.fallback},
+            {"doc", option.doc}};
+  if (option.kind == OptionSpec::Kind::kChoice) {
+    json["words"] = option.words;
+  } else {
+    json["low"] = option.range.low;
+    json["high"] = option.range.high;
+    json["low_open"] = option.range.low_open;
+  }
+  return json;
+}
+
+Json components_json(const Components& components) {
+  Json list = Json::array();
+  for (const ComponentSpec& component : components) {
+    Json options = Json::array();
+    for (const OptionSpec& option : component.options) options.push_back(option_json(option));
+    list.push_back(
+        {{"name", component.name}, {"doc", component.doc}, {"options", std::move(options)}});
+  }
+  return list;
+}
+
+// Throws nlohmann's exceptions on what is missing or of another type; catalogue_from_json() ends
+// them.
+OptionSpec option_from(const Json& json) {
+  OptionSpec option{.key = json.at("key").get<std::string>(),
+                    .fallback = json.at("default").get<std::string>(),
+                    .doc = json.at("doc").get<std::string>()};
+  const auto word = json.at("kind").get<std::string>();
+  const auto kind =
+      std::find_if(kKinds.begin(), kKinds.end(), [&](const auto& k) { return k.second == word; });
+  if (kind != kKinds.end()) option.kind = kind->first;
+  if (option.kind == OptionSpec::Kind::kChoice) {
+    option.words = json.at("words").get<std::vector<std::string>>();
+  } else {
+    option.range = {.low = json.at("low").get<double>(),
+                    .high = json.at("high").get<double>(),
+                    .low_open = json.at("low_open").get<bool>()};
+  }
+  return option;
+}
+
+Components components_from(const Json& list) {
+  Components components;
+  for (const Json& json : list) {
+    ComponentSpec component{.name = json.at("name").get<std::string>(),
+                            .doc = json.at("doc").get<std::string>(),
+                            .options = {}};
+    for (const Json& option : json.at("options")) component.options.push_back(option_from(option));
+    components.push_back(std::move(component));
+  }
+  return components;
+}
+
+}  // namespace
+
+const ComponentSpec* find_component(const Components& components, std::string_view name) {
+  const auto found = std::find_if(components.begin(), components.end(),
+                                  [&](const ComponentSpec& c) { return c.name == name; });
+  return found == components.end() ? nullptr : &*found;
+}
+
+Catalogue open_catalogue() {
+  Catalogue catalogue;
+  catalogue.is_open = true;
+  return catalogue;
+}
+
+std::string to_json(const Catalogue& catalogue) {
+  return Json{{"planning_methods", components_json(catalogue.planning_methods)},
+              {"control_methods", components_json(catalogue.control_methods)},
+              {"drivers", components_json(catalogue.drivers)}}
+      .dump(2);
+}
+
+Result<Catalogue> catalogue_from_json(std::string_view text, const std::string& name) {
+  try {
+    const Json json = Json::parse(text);
+    Catalogue catalogue;
+    catalogue.planning_methods = components_from(json.at("planning_methods"));
+    catalogue.control_methods = components_from(json.at("control_methods"));
+    catalogue.drivers = components_from(json.at("drivers"));
+    return catalogue;
+  } catch (const Json::exception& e) {
+    return fail(ErrorCode::kBadInput,
+                fmt::format("{}: its description of itself cannot be read: {}", name, e.what()));
+  }
+}
+
+}  // namespace swarm

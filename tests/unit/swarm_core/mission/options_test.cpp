@@ -1,0 +1,87 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "swarm_core/mission/option_table.hpp"
+
+#include <gtest/gtest.h>
+
+#include "swarm_core/mission/catalogue.hpp"
+#include "swarm_core/mission/mission_file.hpp"
+
+namespace swarm {
+namespace {
+
+struct Spiral {
+  double gain_hz = 0.1;
+  std::uint32_t turns = 3;
+  std::string sense = "left";
+};
+
+OptionTable<Spiral> table() {
+  return OptionTable<Spiral>()
+      .number("gain_hz", &Spiral::gain_hz, positive(10), "speed per metre off the path")
+      .count("turns", &Spiral::turns, between(1, 100), "turns before it gives up")
+      .choice("sense", &Spiral::sense, {"left", "right"}, "to which side it turns");
+}
+
+TEST(OptionTable, TakesDefaultsFromTheStruct) {
+  const auto specs = table().specs();
+  ASSERT_EQ(specs.size(), 3U);
+  EXPECT_EQ(specs[0].fallback, "0.1");
+  EXPECT_EQ(specs[1].fallback, "3");
+  EXPECT_EQ(specs[2].fallback, "left");
+  EXPECT_EQ(table().read({}).gain_hz, 0.1);
+}
+
+TEST(OptionTable, ReadsWhatIsSet) {
+  OptionValues values;
+  values.set("gain_hz", 0.30000000000000004);
+  values.set("turns", 7);
+  values.set("sense", "right");
+  const Spiral spiral = table().read(values);
+  EXPECT_EQ(spiral.gain_hz, 0.30000000000000004);
+  EXPECT_EQ(spiral.turns, 7U);
+  EXPECT_EQ(spiral.sense, "right");
+}
+
+TEST(Catalogue, IsTheSameAfterJson) {
+  Catalogue catalogue;
+  catalogue.control_methods.push_back({"spiral", "Turns around its path", table().specs()});
+  const auto read = catalogue_from_json(to_json(catalogue), "agent");
+  ASSERT_TRUE(read);
+  ASSERT_EQ(read->control_methods.size(), 1U);
+  EXPECT_EQ(read->control_methods[0].name, "spiral");
+  EXPECT_EQ(read->control_methods[0].options, table().specs());
+}
+
+TEST(Catalogue, RefusesWhatIsNoDescription) {
+  EXPECT_FALSE(catalogue_from_json("usage: my_agent --help", "my_agent"));
+  EXPECT_FALSE(catalogue_from_json("{}", "my_agent"));
+}
+
+constexpr const char* kMission = R"(version: 1
+robots: {count: 1, model: my_robot, port: 7}
+world: {bounds_m: [0, 0, 60, 30]}
+start: [{mean_m: [10, 15], covariance_m2: [[1, 0], [0, 1]], weight: 1}]
+goal: [{mean_m: [50, 15], covariance_m2: [[1, 0], [0, 1]], weight: 1}]
+planner: {method: my_planner, depth: 3}
+control: {method: spiral, gain_hz: 0.5}
+)";
+
+TEST(OpenCatalogue, KeepsNamesAndKeysThatItDoesNotKnow) {
+  const auto mission = parse_mission(kMission, "m.yaml", {}, open_catalogue());
+  ASSERT_TRUE(mission) << mission.error().message;
+  EXPECT_EQ(mission->planner.method, "my_planner");
+  EXPECT_EQ(mission->planner.options.number("depth"), 3.0);
+  EXPECT_EQ(mission->control.options.number("gain_hz"), 0.5);
+  EXPECT_EQ(mission->robots.options.number("port"), 7.0);
+  const auto again = parse_mission(to_yaml(*mission), "m.yaml", {}, open_catalogue());
+  ASSERT_TRUE(again) << again.error().message;
+  EXPECT_EQ(again->robots.options, mission->robots.options);
+}
+
+TEST(ClosedCatalogue, RefusesThem) {
+  EXPECT_FALSE(parse_mission(kMission, "m.yaml"));
+}
+
+}  // namespace
+}  // namespace swarm
