@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "robot_agent/driver_registry.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "robot_agent/drivers/lag.hpp"
+#include "robot_agent/drivers/simulated_robot.hpp"
+#include "swarm_core/base/assert.hpp"
+
+namespace swarm::agent {
+namespace {
+
+DriverEntry simulated(std::string name, std::string doc) {
+  return {.spec = {.name = std::move(name), .doc = std::move(doc), .options = {}},
+          .make = [](const DriverContext& context) -> Result<std::unique_ptr<Driver>> {
+            return std::make_unique<SimulatedRobot>(make_simulated_body(
+                context.body(), context.now, context.position_m, context.seed));
+          },
+          .lag_s = lag_s};
+}
+
+}  // namespace
+
+void DriverRegistry::add(DriverEntry entry) {
+  SWARM_ASSERT(find(entry.spec.name) == nullptr && entry.make);
+  entries_.push_back(std::move(entry));
+}
+
+const DriverEntry* DriverRegistry::find(std::string_view name) const {
+  const auto found = std::find_if(entries_.begin(), entries_.end(),
+                                  [&](const DriverEntry& e) { return e.spec.name == name; });
+  return found == entries_.end() ? nullptr : &*found;
+}
+
+Components DriverRegistry::specs() const {
+  Components specs;
+  for (const DriverEntry& entry : entries_) specs.push_back(entry.spec);
+  return specs;
+}
+
+void register_builtin_drivers(DriverRegistry& registry) {
+  registry.add(simulated("single_integrator", "Simulated: has a commanded velocity at once"));
+  registry.add(simulated("double_integrator", "Simulated: accelerates within a limit"));
+  registry.add(simulated("unicycle", "Simulated: drives forwards and turns, within limits"));
+}
+
+}  // namespace swarm::agent
