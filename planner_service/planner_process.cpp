@@ -20,9 +20,10 @@
 #include "swarm_core/plan/plan_json.hpp"
 #include "swarm_core/shell/run_directory.hpp"
 #include "swarm_core/shell/stop_signal.hpp"
+#include "swarm_link/gate/content_checks.hpp"
 #include "swarm_link/run_meeting.hpp"
+#include "swarm_link/to_message.hpp"
 #include "swarm_link/topics.hpp"
-#include "swarm_link/validation.hpp"
 
 namespace swarm::planner {
 namespace {

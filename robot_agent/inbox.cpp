@@ -33,7 +33,7 @@ void Inbox::receive_plans(std::uint64_t newest) {
       refused_.count(plan.error());
     } else if (message.epoch > newest) {
       refused_.count(RefusalReason::kForged);
-    } else if (!plan_sequence_.accept(message.epoch, message.version)) {
+    } else if (!plan_sequence_.accept({message.epoch, message.version})) {
       refused_.count(RefusalReason::kStale);
     } else {
       plan_time_.on_plan(message.version, plan->digest() == plan_digest_);

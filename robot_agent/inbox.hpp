@@ -14,8 +14,9 @@
 #include "robot_agent/neighbour_table.hpp"
 #include "robot_agent/plan_time_watch.hpp"
 #include "swarm_core/metrics/histogram.hpp"
+#include "swarm_link/gate/content_checks.hpp"
+#include "swarm_link/gate/newest_key.hpp"
 #include "swarm_link/state_channel.hpp"
-#include "swarm_link/validation.hpp"
 
 namespace swarm::agent {
 
@@ -123,7 +124,7 @@ class Inbox {
   MissionWatch mission_;
   PlanTimeWatch plan_time_;
   std::uint64_t plan_digest_ = 0;
-  link::PlanSequence plan_sequence_;
+  link::NewestKey<std::pair<std::uint64_t, std::uint32_t>> plan_sequence_{{0, 0}};
   link::RefusalCounters refused_;
   std::uint64_t undecodable_seen_ = 0;
   std::uint64_t last_heartbeat_ = 0;

@@ -31,9 +31,9 @@
 #include "swarm_launcher/supervisor.hpp"
 #include "swarm_launcher/swarm_view.hpp"
 #include "swarm_link/domain_lock.hpp"
+#include "swarm_link/gate/content_checks.hpp"
 #include "swarm_link/join.hpp"
 #include "swarm_link/messages.hpp"
-#include "swarm_link/validation.hpp"
 
 namespace swarm::launcher {
 

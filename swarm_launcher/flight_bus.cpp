@@ -57,7 +57,7 @@ void Flight::read_bus(SteadyTime now) {
   heard_events_.clear();
   event_reader_->take(heard_events_);
   for (const link::EventMessage& event : heard_events_) {
-    if (const auto ok = link::check_event(event); !ok) {
+    if (const auto ok = link::check_event(event, limits_); !ok) {
       refused_.count(ok.error());
       continue;
     }

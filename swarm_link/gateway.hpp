@@ -8,9 +8,9 @@
 
 #include "swarm_core/base/result.hpp"
 #include "swarm_core/base/time.hpp"
+#include "swarm_link/gate/content_checks.hpp"
 #include "swarm_link/port.hpp"
 #include "swarm_link/state_channel.hpp"
-#include "swarm_link/validation.hpp"
 
 namespace swarm::link {
 

@@ -107,7 +107,7 @@ void SwarmState::take_plan(const TappedSample& sample) {
     ++refused_;
     return;
   }
-  if (!plans_.accept(message.epoch, message.version)) return;
+  if (!plans_.accept({message.epoch, message.version})) return;
   plan_ = std::move(*plan);
   plan_version_ = message.version;
   ++version_;
@@ -143,7 +143,7 @@ void SwarmState::take_heartbeat(const TappedSample& sample) {
 void SwarmState::take_event(const TappedSample& sample) {
   link::EventMessage message;
   if (!decode(event_codec_, sample, message)) return;
-  if (!link::check_event(message) || events_.size() == kMostEvents) {
+  if (!link::check_event(message, limits_) || events_.size() == kMostEvents) {
     ++refused_;
     return;
   }

@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "swarm_core/metrics/histogram.hpp"
@@ -13,8 +14,9 @@
 #include "swarm_core/mission/scene.hpp"
 #include "swarm_core/plan/flow_plan.hpp"
 #include "swarm_link/cdr/codec.hpp"
+#include "swarm_link/gate/content_checks.hpp"
+#include "swarm_link/gate/newest_key.hpp"
 #include "swarm_link/stream_meter.hpp"
-#include "swarm_link/validation.hpp"
 #include "swarm_monitor/recorded_run.hpp"
 #include "swarm_monitor/recording/bus_tap.hpp"
 
@@ -82,7 +84,7 @@ class SwarmState {
   std::vector<Robot> robots_;
   std::optional<FlowPlan> plan_;
   std::uint32_t plan_version_ = 0;
-  link::PlanSequence plans_;
+  link::NewestKey<std::pair<std::uint64_t, std::uint32_t>> plans_{{0, 0}};
   Scene scene_;
   std::uint64_t version_ = 0;
   MissionPhase phase_ = MissionPhase::kReady;

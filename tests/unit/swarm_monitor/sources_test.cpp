@@ -9,6 +9,7 @@
 
 #include "swarm_core/mcap/writer.hpp"
 #include "swarm_core/mission/mission_file.hpp"
+#include "swarm_link/to_message.hpp"
 #include "swarm_monitor/recording/replay.hpp"
 #include "swarm_monitor/view/live_source.hpp"
 #include "swarm_monitor/view/recorded_source.hpp"
