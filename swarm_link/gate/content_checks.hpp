@@ -12,6 +12,8 @@
 #include "swarm_link/messages.hpp"
 
 /// What one message must satisfy by itself: schema, sizes, finite numbers, ranges. Pure functions.
+/// What it must satisfy next to the messages before it and to our clock is the Gate's: a receiver
+/// asks the Gate, never these alone.
 namespace swarm::link {
 
 /// PlanEntryMessage::source of a robot that may enter where it likes.
