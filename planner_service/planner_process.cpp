@@ -14,15 +14,15 @@
 #include <unistd.h>
 
 #include "planner_service/plan_keeper.hpp"
+#include "planner_service/planner_inbox.hpp"
 #include "swarm_core/base/clock.hpp"
 #include "swarm_core/mission/mission_file.hpp"
-#include "swarm_core/mission/phase.hpp"
 #include "swarm_core/plan/plan_json.hpp"
 #include "swarm_core/shell/run_directory.hpp"
 #include "swarm_core/shell/stop_signal.hpp"
 #include "swarm_link/run_meeting.hpp"
+#include "swarm_link/to_message.hpp"
 #include "swarm_link/topics.hpp"
-#include "swarm_link/validation.hpp"
 
 namespace swarm::planner {
 namespace {
@@ -59,27 +59,14 @@ struct PlannerProcess::Impl {
   link::WriterPtr<link::PlanMessage> plan_writer;
   link::WriterPtr<link::HeartbeatMessage> heartbeat_writer;
   link::WriterPtr<link::EventMessage> event_writer;
-  link::ReaderPtr<link::CommandMessage> command_reader;
-  link::ReaderPtr<link::SceneMessage> scene_reader;
-  link::ReaderPtr<link::StatusMessage> status_reader;
-  link::WireLimits limits;
-  MissionPhase phase = MissionPhase::kReady;
-  std::uint64_t last_command = 0;
-  std::int64_t t0_utc_ns = 0;
+  std::optional<PlannerInbox> inbox;
   std::uint64_t beats = 0;
   std::ofstream clock_file;
-  link::RefusalCounters refused;
-  std::uint64_t refusals_told = 0;
-  std::vector<link::CommandMessage> commands;
-  std::vector<link::SceneMessage> scenes;
-  std::vector<link::StatusMessage> statuses;
+  link::RefusalCounters reported;  // what was announced as an event already
 
   Result<void> plan_first();
   Result<void> join(const shell::RunInfo& run);
-  void obey(UtcTime now);
-  std::uint64_t newest_stamp(UtcTime now) const;
-  void hear_scene(UtcTime now);
-  void hear_robots(SteadyTime now);
+  void receive(SteadyTime now);
   void keep_planned(SteadyTime now);
   void publish();
   void announce(link::Severity severity, const std::string& code, const std::string& text);
@@ -117,71 +104,19 @@ Result<void> PlannerProcess::Impl::join(const shell::RunInfo& run) {
   plan_writer = std::move(*plans);
   heartbeat_writer = std::move(*heartbeats);
   event_writer = std::move(*events);
-  command_reader = std::move(*orders);
-  scene_reader = std::move(*scene_changes);
-  status_reader = std::move(*health);
+  inbox.emplace(Readers{std::move(*orders), std::move(*scene_changes), std::move(*health)},
+                link::wire_limits(mission));
   clock_file.open(options.run_dir / shell::kPlanClockFile, std::ios::app);
-  limits = link::wire_limits(mission);
   keeper->begin(std::chrono::steady_clock::now());
   return {};
 }
 
-/// Stamps of what is received may be this late, by a clock that is as far off as allowed.
-std::uint64_t PlannerProcess::Impl::newest_stamp(UtcTime now) const {
-  return static_cast<std::uint64_t>((now + limits.clock_skew_refuse).time_since_epoch().count());
-}
-
-/// t0 is the stamp of the start command, which the launcher keeps for late joiners: a restarted
-/// planner finds it again.
-void PlannerProcess::Impl::obey(UtcTime now) {
-  const std::uint64_t newest_possible = newest_stamp(now);
-  commands.clear();
-  command_reader->take(commands);
-  for (const link::CommandMessage& command : commands) {
-    if (const auto ok = link::check_command(command); !ok) {
-      refused.count(ok.error());
-      continue;
-    }
-    // Ids are UTC stamps: one from the future is forged, and would stop the plan's clock and lock
-    // out every command after it.
-    if (command.command_id > newest_possible) {
-      refused.count(link::RefusalReason::kForged);
-      continue;
-    }
-    if (command.command_id <= last_command && command.kind != CommandKind::kStop) continue;
-    last_command = std::max(last_command, command.command_id);
-    const MissionPhase before = phase;
-    phase = phase_after(phase, command.kind);
-    if (before == MissionPhase::kReady && phase == MissionPhase::kRunning)
-      t0_utc_ns = command.stamp_utc_ns;
-  }
-  keeper->set_phase(phase);
-}
-
-void PlannerProcess::Impl::hear_scene(UtcTime now) {
-  scenes.clear();
-  scene_reader->take(scenes);
-  const std::uint64_t newest_possible = newest_stamp(now);
-  for (const link::SceneMessage& message : scenes) {
-    auto heard = link::check_scene(message, limits);
-    if (!heard) {
-      refused.count(heard.error());
-    } else if (heard->version > newest_possible) {
-      refused.count(link::RefusalReason::kForged);
-    } else if (!keeper->take_scene(std::move(*heard))) {
-      refused.count(link::RefusalReason::kStale);
-    }
-  }
-}
-
-void PlannerProcess::Impl::hear_robots(SteadyTime now) {
-  statuses.clear();
-  status_reader->take(statuses);
-  for (const link::StatusMessage& status : statuses) {
-    if (const auto ok = link::check_status(status, limits); !ok) {
-      refused.count(ok.error());
-      continue;
-    }
+void PlannerProcess::Impl::receive(SteadyTime now) {
+  participant->receive();
+  inbox->receive(utc_now());
+  keeper->set_phase(inbox->phase());
+  for (Scene& scene : inbox->scenes()) keeper->take_scene(std::move(scene));
+  for (const link::StatusMessage& status : inbox->statuses()) {
     for (const link::RobotStatusMessage& robot : status.robots) {
       keeper->hear({.robot = RobotId(robot.robot_id),
                     .position_m = {robot.x_m, robot.y_m},
@@ -244,15 +179,16 @@ void PlannerProcess::Impl::announce(link::Severity severity, const std::string& 
 }
 
 void PlannerProcess::Impl::beat(UtcTime now) {
-  if (const std::uint64_t total = refused.total(); total > refusals_told) {
-    announce(link::Severity::kWarning, "refused", fmt::format("{} message(s) so far", total));
-    refusals_told = total;
-  }
+  link::report_new(inbox->refused(), reported,
+                   [&](link::RefusalReason reason, std::uint32_t times) {
+                     announce(link::Severity::kWarning, "refused",
+                              fmt::format("{} message(s): {}", times, link::to_string(reason)));
+                   });
   const std::int64_t stamp = now.time_since_epoch().count();
-  const double mission_time_s =
-      t0_utc_ns == 0 ? 0.0 : 1e-9 * static_cast<double>(stamp - t0_utc_ns);
+  const std::int64_t t0 = inbox->t0_utc_ns();
+  const double mission_time_s = t0 == 0 ? 0.0 : 1e-9 * static_cast<double>(stamp - t0);
   const PlanClock clock = keeper->clock(now);
-  heartbeat_writer->write({.phase = phase,
+  heartbeat_writer->write({.phase = inbox->phase(),
                            .version = clock.plan_version,
                            .epoch = epoch.value(),
                            .sequence_number = ++beats,
@@ -285,11 +221,8 @@ Result<void> PlannerProcess::run() {
   const Duration beat_period = from_seconds(1.0 / p.mission.timing.heartbeat_hz);
   SteadyTime next_beat = std::chrono::steady_clock::now();
   while (shell::stop_requests() == 0) {
-    p.participant->receive();
     const SteadyTime now = std::chrono::steady_clock::now();
-    p.obey(utc_now());
-    p.hear_scene(utc_now());
-    p.hear_robots(now);
+    p.receive(now);
     p.keep_planned(now);
     if (now >= next_beat) {
       p.beat(utc_now());

@@ -14,32 +14,12 @@
 #include "robot_agent/neighbour_table.hpp"
 #include "robot_agent/plan_time_watch.hpp"
 #include "swarm_core/metrics/histogram.hpp"
+#include "swarm_link/gate/gate.hpp"
 #include "swarm_link/state_channel.hpp"
-#include "swarm_link/validation.hpp"
 
 namespace swarm::agent {
 
-/// Remembers what a robot of ours said lately, to tell its echo from somebody who claims its id.
-class EchoGuard {
- public:
-  void said(const link::RobotStateMessage& state) {
-    said_[next_++ % said_.size()] = {state.sequence_number, state.stamp_utc_ns};
-  }
-  bool is_echo(const link::RobotStateMessage& state) const {
-    for (const Said& s : said_) {
-      if (s.sequence == state.sequence_number && s.stamp == state.stamp_utc_ns) return true;
-    }
-    return false;
-  }
-
- private:
-  struct Said {
-    std::uint32_t sequence = 0;
-    std::int64_t stamp = 0;
-  };
-  std::array<Said, 64> said_{};
-  std::size_t next_ = 0;
-};
+using link::EchoGuard;
 
 struct Readers {
   link::ReaderPtr<link::PlanMessage> plan;
@@ -48,7 +28,7 @@ struct Readers {
   link::ReaderPtr<link::CommandMessage> command;
 };
 
-/// A plan that passed the edge.
+/// A plan that passed the gate.
 struct NewPlan {
   FlowPlan flow;
   std::vector<link::PlanEntryMessage> entries;  ///< by robot id; empty in a mission's first plan
@@ -61,8 +41,8 @@ struct NewPlan {
   }
 };
 
-/// The edge of an agent process: takes everything that arrived, checks it, counts what is refused,
-/// and hands on domain objects.
+/// What an agent process receives: takes everything that arrived, has the gate check it, and hands
+/// on domain objects.
 class Inbox {
  public:
   /// No robot listens farther than `hear_radius_m`.
@@ -76,10 +56,7 @@ class Inbox {
     receive_fixed_topics(steady_now, utc_now);
     begin_states();
     for (const link::CellStatesMessage& batch : batches_) {
-      if (const auto ok = link::check_batch(batch); !ok) {
-        refused_.count(ok.error());
-        continue;
-      }
+      if (!gate_.batch(batch)) continue;
       for (const link::RobotStateMessage& state : batch.states) {
         receive_state(state, steady_now, utc_now, own(RobotId(state.robot_id)));
       }
@@ -104,15 +81,17 @@ class Inbox {
   std::optional<PlanTime> plan_time(SteadyTime now) { return plan_time_.at(now); }
   std::int64_t stop_stamp_utc_ns() const { return stop_stamp_utc_ns_; }
 
-  link::RefusalCounters& refused() { return refused_; }
+  const link::RefusalCounters& refused() const { return gate_.refused(); }
   std::uint32_t skewed() const {
     return skewed_;
   }  ///< states whose clock differs by more than the warning
 
  private:
   void receive_fixed_topics(SteadyTime now, UtcTime utc_now);
-  void receive_plans(std::uint64_t newest);
-  void receive_scenes(std::uint64_t newest);
+  void receive_plans(UtcTime utc_now);
+  void receive_scenes(UtcTime utc_now);
+  void receive_heartbeats(SteadyTime now, UtcTime utc_now);
+  void receive_commands(UtcTime utc_now);
   void begin_states();
   void receive_state(const link::RobotStateMessage& state, SteadyTime steady_now, UtcTime utc_now,
                      const EchoGuard* own);
@@ -123,14 +102,9 @@ class Inbox {
   MissionWatch mission_;
   PlanTimeWatch plan_time_;
   std::uint64_t plan_digest_ = 0;
-  link::PlanSequence plan_sequence_;
-  link::RefusalCounters refused_;
-  std::uint64_t undecodable_seen_ = 0;
-  std::uint64_t last_heartbeat_ = 0;
-  std::uint64_t heartbeat_epoch_ = 0;
+  link::Gate gate_;
   std::optional<NewPlan> new_plan_;
   std::optional<Scene> new_scene_;
-  std::uint64_t scene_version_ = 0;
   std::uint64_t plan_scene_version_ = 0;
   std::uint64_t plan_epoch_ = 0;
   std::uint32_t plan_version_ = 0;

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdint>
-
 #include "swarm_core/base/time.hpp"
 #include "swarm_core/mission/phase.hpp"
 
@@ -14,8 +12,8 @@ namespace swarm::agent {
 ///
 ///   ready ──start──▶ running ◀──resume/pause──▶ paused        any ──stop──▶ stopped (for good)
 ///
-/// Commands carry growing ids; one that was seen, or is older than one obeyed, changes nothing,
-/// except that a stop is always obeyed.
+/// Commands have passed the Gate: each once, in the order of their ids, except that a stop may come
+/// at any time and more than once.
 class MissionWatch {
  public:
   /// `settle`: so long a planner must be heard again after a silence. Whoever was cut off from it
@@ -23,8 +21,7 @@ class MissionWatch {
   explicit MissionWatch(Duration planner_silence, Duration settle = Duration::zero())
       : planner_silence_(planner_silence), settle_(settle) {}
 
-  enum class Outcome { kObeyed, kDuplicate, kStale };
-  Outcome on_command(CommandKind kind, std::uint64_t command_id);
+  void on_command(CommandKind kind) { phase_ = phase_after(phase_, kind); }
 
   void on_heartbeat(SteadyTime now) {
     if (!heard_ || now - heard_at_ > planner_silence_) back_at_ = now;
@@ -41,7 +38,6 @@ class MissionWatch {
   Duration planner_silence_;
   Duration settle_;
   MissionPhase phase_ = MissionPhase::kReady;
-  std::uint64_t last_command_ = 0;
   bool heard_ = false;
   SteadyTime heard_at_;
   SteadyTime back_at_;  // heard without a silence since

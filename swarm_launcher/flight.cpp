@@ -149,8 +149,7 @@ Result<void> Flight::join() {
   if (!event) return tl::unexpected(event.error());
   if (!command) return tl::unexpected(command.error());
   if (!scene) return tl::unexpected(scene.error());
-  status_reader_ = std::move(*status);
-  event_reader_ = std::move(*event);
+  inbox_.emplace(std::move(*status), std::move(*event), link::wire_limits(options_.mission));
   command_writer_ = std::move(*command);
   auto status_relay = participant_->make_writer(link::relayed_status_topic());
   auto event_relay = participant_->make_writer(link::relayed_event_topic());
@@ -163,7 +162,6 @@ Result<void> Flight::join() {
   if (!control) return tl::unexpected(control.error());
   control_.emplace(std::move(*control));
 
-  limits_ = link::wire_limits(options_.mission);
   supervisor_.emplace(
       SupervisorOptions{.robots = options_.mission.robots.count,
                         .per_process = options_.per_process,
@@ -362,7 +360,7 @@ Result<Measurements> Flight::fly() {
                          1e-6 * static_cast<double>(own.ru_utime.tv_usec + own.ru_stime.tv_usec);
   measurements_.discovery_s = supervisor_->discovery_s();
   measurements_.hearing_s = supervisor_->hearing_s();
-  measurements_.refused_by_launcher = refused_.total();
+  measurements_.refused_by_launcher = inbox_->refused().total();
   measurements_.outcome = supervisor_->outcome();
   measurements_.channel = channel_.channel;
   return measurements_;

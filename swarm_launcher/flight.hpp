@@ -23,6 +23,7 @@
 #include "swarm_launcher/fallen_body.hpp"
 #include "swarm_launcher/flight_choices.hpp"
 #include "swarm_launcher/gateway.hpp"
+#include "swarm_launcher/health_inbox.hpp"
 #include "swarm_launcher/hosts/remote_hosts.hpp"
 #include "swarm_launcher/monitors.hpp"
 #include "swarm_launcher/progress.hpp"
@@ -33,7 +34,6 @@
 #include "swarm_link/domain_lock.hpp"
 #include "swarm_link/join.hpp"
 #include "swarm_link/messages.hpp"
-#include "swarm_link/validation.hpp"
 
 namespace swarm::launcher {
 
@@ -108,8 +108,7 @@ class Flight {
   Progress progress_;
   std::unique_ptr<link::DiscoveryServer> server_;  // none where hubs are the meeting place
   std::unique_ptr<link::Participant> participant_;
-  link::ReaderPtr<link::StatusMessage> status_reader_;
-  link::ReaderPtr<link::EventMessage> event_reader_;
+  std::optional<HealthInbox> inbox_;
   link::WriterPtr<link::CommandMessage> command_writer_;
   link::WriterPtr<link::StatusMessage> status_relay_;  // for monitors
   link::WriterPtr<link::EventMessage> event_relay_;
@@ -123,12 +122,8 @@ class Flight {
   std::optional<Supervisor> supervisor_;
   SwarmView view_;
   std::vector<std::optional<LastKnown>> reported_;  // by the newest status of each robot
-  link::WireLimits limits_;
-  link::RefusalCounters refused_;
   std::map<pid_t, ProcessIndex> children_;
   Measurements measurements_;
-  std::vector<link::StatusMessage> statuses_;
-  std::vector<link::EventMessage> heard_events_;
   SteadyTime shown_at_;
   int interrupts_seen_ = 0;
   std::uint32_t planner_starts_ = 0;

@@ -29,13 +29,8 @@ void Flight::log(const LogEvent& event) {
 
 void Flight::read_bus(SteadyTime now) {
   participant_->receive();
-  statuses_.clear();
-  status_reader_->take(statuses_);
-  for (const link::StatusMessage& status : statuses_) {
-    if (const auto ok = link::check_status(status, limits_); !ok) {
-      refused_.count(ok.error());
-      continue;
-    }
+  inbox_->receive(utc_now());
+  for (const link::StatusMessage& status : inbox_->statuses()) {
     if (observer_ != nullptr) observer_->on_status(status);
     status_relay_->write(status);
     const UtcTime stamp(Duration(status.stamp_utc_ns));
@@ -54,13 +49,7 @@ void Flight::read_bus(SteadyTime now) {
                               .sent_at = sent_at});
     }
   }
-  heard_events_.clear();
-  event_reader_->take(heard_events_);
-  for (const link::EventMessage& event : heard_events_) {
-    if (const auto ok = link::check_event(event); !ok) {
-      refused_.count(ok.error());
-      continue;
-    }
+  for (const link::EventMessage& event : inbox_->events()) {
     events_.write(event);
     event_relay_->write(event);
   }

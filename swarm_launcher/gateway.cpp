@@ -46,10 +46,11 @@ Result<ExitCode> run_gateway(const GatewayCommandOptions& options) {
       (options.parent_pid == 0 || static_cast<std::uint32_t>(::getppid()) == options.parent_pid)) {
     (*gateway)->relay(kPatience, utc_now());
   }
-  std::fprintf(stderr, "%llu states to topics, %llu to groups, %llu refused\n",
-               static_cast<unsigned long long>((*gateway)->to_topics()),
-               static_cast<unsigned long long>((*gateway)->to_groups()),
-               static_cast<unsigned long long>((*gateway)->refused().total()));
+  using link::RefusalReason;
+  const link::RefusalCounters& refused = (*gateway)->refused();
+  const std::uint64_t echoes = refused[RefusalReason::kDuplicate] + refused[RefusalReason::kStale];
+  fmt::print(stderr, "{} states to topics, {} to groups, {} refused, {} echoes\n",
+             (*gateway)->to_topics(), (*gateway)->to_groups(), refused.total() - echoes, echoes);
   return ExitCode::kOk;
 }
 

@@ -8,7 +8,7 @@
 
 #include "swarm_core/mission/scene_log.hpp"
 #include "swarm_core/shell/run_directory.hpp"
-#include "swarm_link/validation.hpp"
+#include "swarm_link/to_message.hpp"
 
 namespace swarm::launcher {
 

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "swarm_link/cell_traffic.hpp"
+#include "swarm_link/gateway_inbox.hpp"
 #include "swarm_link/groups/group_channel.hpp"
 #include "swarm_link/groups/group_tap.hpp"
 
@@ -35,7 +36,7 @@ class ChannelGateway final : public Gateway {
         topics_(std::move(topics)),
         groups_(std::move(groups)),
         batches_(options.topic_cell_size_m),
-        newest_utc_ns_(options.limits.robots, 0) {}
+        inbox_(options.limits) {}
 
   void relay(Duration patience, UtcTime now) override {
     participant_.receive();
@@ -56,11 +57,12 @@ class ChannelGateway final : public Gateway {
     } else {
       std::this_thread::sleep_for(patience);
     }
-    take_fresh(now);
+    inbox_.take_fresh(heard_, now, fresh_);
     const std::size_t from_groups = fresh_.size();
     heard_.clear();
     for (auto& [cell, topic] : topics_) topic.reader->take(heard_);
-    take_fresh(now);
+    inbox_.take_fresh(heard_, now, fresh_);
+    inbox_.set_undecodable(undecodable());
     to_groups_ += groups_->publish(std::span(fresh_).subspan(from_groups));
     for (const CellStatesMessage& batch : batches_.sort(fresh_)) {
       const auto topic = topics_.find({batch.cell_x, batch.cell_y});
@@ -73,7 +75,7 @@ class ChannelGateway final : public Gateway {
   bool in_use() const override { return in_use_; }
   std::uint64_t to_topics() const override { return to_topics_; }
   std::uint64_t to_groups() const override { return to_groups_; }
-  const RefusalCounters& refused() const override { return refused_; }
+  const RefusalCounters& refused() const override { return inbox_.refused(); }
 
  private:
   void look(UtcTime now) {
@@ -84,24 +86,10 @@ class ChannelGateway final : public Gateway {
     });
   }
 
-  /// What is heard and was not before: also an echo of ours was.
-  void take_fresh(UtcTime now) {
-    for (const CellStatesMessage& batch : heard_) {
-      if (const auto ok = check_batch(batch); !ok) {
-        refused_.count(ok.error());
-        continue;
-      }
-      for (const RobotStateMessage& state : batch.states) {
-        if (const auto ok = check_state(state, options_.limits, now); !ok) {
-          refused_.count(ok.error());
-          continue;
-        }
-        std::int64_t& newest = newest_utc_ns_[state.robot_id];
-        if (state.stamp_utc_ns <= newest) continue;
-        newest = state.stamp_utc_ns;
-        fresh_.push_back(state);
-      }
-    }
+  std::uint64_t undecodable() const {
+    std::uint64_t undecodable = 0;
+    for (const auto& [cell, topic] : topics_) undecodable += topic.reader->undecodable();
+    return undecodable;
   }
 
   Participant& participant_;
@@ -110,10 +98,9 @@ class ChannelGateway final : public Gateway {
   std::unique_ptr<StateChannel> groups_;
   std::unique_ptr<GroupTap> tap_;
   CellBatches batches_;
-  std::vector<std::int64_t> newest_utc_ns_;  // by robot
+  GatewayInbox inbox_;
   std::vector<CellStatesMessage> heard_;
   std::vector<RobotStateMessage> fresh_;
-  RefusalCounters refused_;
   UtcTime looked_at_{};
   bool in_use_ = false;
   std::uint64_t to_topics_ = 0;

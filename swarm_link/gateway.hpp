@@ -8,9 +8,10 @@
 
 #include "swarm_core/base/result.hpp"
 #include "swarm_core/base/time.hpp"
+#include "swarm_link/gate/refusal.hpp"
+#include "swarm_link/gate/wire_limits.hpp"
 #include "swarm_link/port.hpp"
 #include "swarm_link/state_channel.hpp"
-#include "swarm_link/validation.hpp"
 
 namespace swarm::link {
 
@@ -38,6 +39,7 @@ class Gateway {
   virtual bool in_use() const = 0;
   virtual std::uint64_t to_topics() const = 0;  ///< states carried
   virtual std::uint64_t to_groups() const = 0;
+  /// Most are duplicate or stale: echoes of what it published itself.
   virtual const RefusalCounters& refused() const = 0;
 };
 

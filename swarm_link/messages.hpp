@@ -11,7 +11,7 @@
 
 /// What travels on the bus, as plain structs without any vendor's types: field for field the
 /// structs of idl/swarm.idl, which documents them. Numbers here may be anything a peer sent; they
-/// become domain objects only through swarm_link/validation.hpp.
+/// are used only once they have passed the Gate (swarm_link/gate/gate.hpp).
 namespace swarm::link {
 
 inline constexpr std::uint16_t kSchemaVersion = 4;

@@ -175,7 +175,8 @@ std::string LiveSource::metrics() const {
   m.add("swarm_states_received_total", "counter", "States heard, each once.", states.received);
   m.add("swarm_states_lost_total", "counter", "States whose numbers were skipped.", states.lost);
   m.add("swarm_states_duplicate_total", "counter", "States heard again.", states.duplicates);
-  m.add("swarm_messages_refused_total", "counter", "Messages that were refused.", state_.refused());
+  m.add("swarm_messages_refused_total", "counter", "Messages that were refused.",
+        state_.refused().total());
   m.add("swarm_events_total", "counter", "Events heard of.", state_.events().size());
   std::string text = m.take();
   text +=

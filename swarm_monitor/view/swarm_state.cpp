@@ -22,7 +22,7 @@ constexpr std::size_t kMostEvents = 100'000;
 }  // namespace
 
 SwarmState::SwarmState(const Mission& mission)
-    : limits_(link::wire_limits(mission)),
+    : gate_({.limits = link::wire_limits(mission), .stamps = link::Stamps::kRecorded}),
       robots_(mission.robots.count),
       scene_(first_scene(mission.world.obstacles().size())),
       meter_(mission.robots.count) {}
@@ -39,6 +39,8 @@ void SwarmState::take(const TappedSample& sample) {
     take_scene(sample);
   } else if (topic == "swarm/heartbeat") {
     take_heartbeat(sample);
+  } else if (topic == "swarm/command") {
+    take_command(sample);
   } else if (topic == "swarm/event") {
     take_event(sample);
   }
@@ -48,22 +50,15 @@ template <class M>
 bool SwarmState::decode(link::Codec<M>& codec, const TappedSample& sample, M& out) {
   auto* bytes = reinterpret_cast<std::byte*>(const_cast<unsigned char*>(sample.bytes.data()));
   const bool decoded = codec.decode({bytes, sample.bytes.size()}, out);
-  refused_ += decoded ? 0 : 1;
+  if (!decoded) gate_.set_undecodable(++undecodable_);
   return decoded;
 }
 
 void SwarmState::take_states(const TappedSample& sample) {
   if (!decode(states_codec_, sample, states_)) return;
-  if (!link::check_batch(states_)) {
-    ++refused_;
-    return;
-  }
+  if (!gate_.batch(states_)) return;
   for (const link::RobotStateMessage& state : states_.states) {
-    // Clocks are not judged: a replay's stamps are of another day.
-    if (!link::check_state(state, limits_, UtcTime(Duration(state.stamp_utc_ns)))) {
-      ++refused_;
-      continue;
-    }
+    if (!gate_.state(state, sample.heard)) continue;
     if (!begin_) begin_ = sample.heard;
     meter_.hear(state, sample.heard);
     Robot& robot = robots_[state.robot_id];
@@ -78,10 +73,7 @@ void SwarmState::take_states(const TappedSample& sample) {
 
 void SwarmState::take_status(const TappedSample& sample) {
   if (!decode(status_codec_, sample, status_)) return;
-  if (!link::check_status(status_, limits_)) {
-    ++refused_;
-    return;
-  }
+  if (!gate_.status(status_, sample.heard)) return;
   for (const link::RobotStatusMessage& status : status_.robots) {
     Robot& robot = robots_[status.robot_id];
     // Where it is its states tell better, if there are any.
@@ -102,12 +94,8 @@ void SwarmState::take_status(const TappedSample& sample) {
 void SwarmState::take_plan(const TappedSample& sample) {
   link::PlanMessage message;
   if (!decode(plan_codec_, sample, message)) return;
-  auto plan = link::check_plan(message, limits_);
-  if (!plan) {
-    ++refused_;
-    return;
-  }
-  if (!plans_.accept(message.epoch, message.version)) return;
+  auto plan = gate_.plan(message, sample.heard);
+  if (!plan) return;
   plan_ = std::move(*plan);
   plan_version_ = message.version;
   plan_excess_m_ = std::max(plan_excess_m_, message.excess_m);
@@ -117,12 +105,9 @@ void SwarmState::take_plan(const TappedSample& sample) {
 void SwarmState::take_scene(const TappedSample& sample) {
   link::SceneMessage message;
   if (!decode(scene_codec_, sample, message)) return;
-  auto scene = link::check_scene(message, limits_);
-  if (!scene) {
-    ++refused_;
-    return;
-  }
-  if (scene->version == scene_.version) return;
+  auto scene = gate_.scene(message, sample.heard);
+  // Version 0 is the mission file's, which is shown from the beginning.
+  if (!scene || scene->version == 0) return;
   scene_ = std::move(*scene);
   ++version_;
 }
@@ -130,10 +115,7 @@ void SwarmState::take_scene(const TappedSample& sample) {
 void SwarmState::take_heartbeat(const TappedSample& sample) {
   link::HeartbeatMessage message;
   if (!decode(heartbeat_codec_, sample, message)) return;
-  if (!link::check_heartbeat(message)) {
-    ++refused_;
-    return;
-  }
+  if (!gate_.heartbeat(message, sample.heard)) return;
   phase_ = message.phase;
   mission_time_s_ = message.mission_time_s;
   plan_time_s_ = message.plan_time_s;
@@ -141,13 +123,16 @@ void SwarmState::take_heartbeat(const TappedSample& sample) {
   beat_at_ = sample.heard;
 }
 
+void SwarmState::take_command(const TappedSample& sample) {
+  // Nothing of a command is shown but that it was refused; what it does, heartbeats report.
+  link::CommandMessage message;
+  if (decode(command_codec_, sample, message)) (void)gate_.command(message, sample.heard);
+}
+
 void SwarmState::take_event(const TappedSample& sample) {
   link::EventMessage message;
   if (!decode(event_codec_, sample, message)) return;
-  if (!link::check_event(message) || events_.size() == kMostEvents) {
-    ++refused_;
-    return;
-  }
+  if (!gate_.event(message) || events_.size() == kMostEvents) return;
   events_.push_back({.time_s = begin_ ? to_seconds(sample.heard - *begin_) : 0.0,
                      .source = link::source_name(message.source),
                      .severity = std::string(link::to_string(message.severity)),

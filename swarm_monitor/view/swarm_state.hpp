@@ -13,15 +13,16 @@
 #include "swarm_core/mission/scene.hpp"
 #include "swarm_core/plan/flow_plan.hpp"
 #include "swarm_link/cdr/codec.hpp"
+#include "swarm_link/gate/gate.hpp"
 #include "swarm_link/stream_meter.hpp"
-#include "swarm_link/validation.hpp"
 #include "swarm_monitor/recorded_run.hpp"
 #include "swarm_monitor/recording/bus_tap.hpp"
 
 namespace swarm::monitor {
 
-/// What is known of a swarm that flies, from its bus alone. Everything is checked as agents do;
-/// what is refused is counted. Pure: fed with samples, told the time.
+/// What is known of a swarm in flight, from its bus alone. Every sample passes the gate or is
+/// counted; only the age of states is not judged, for the flight may be a replay. Pure: gets
+/// samples and the time.
 class SwarmState {
  public:
   explicit SwarmState(const Mission& mission);
@@ -68,7 +69,7 @@ class SwarmState {
   std::optional<UtcTime> begin() const { return begin_; }          ///< first state heard
   const link::StreamMeter& meter() const { return meter_; }
   link::StreamMeter& meter() { return meter_; }
-  std::uint64_t refused() const { return refused_; }
+  const link::RefusalCounters& refused() const { return gate_.refused(); }
 
  private:
   template <class M>
@@ -78,14 +79,14 @@ class SwarmState {
   void take_plan(const TappedSample& sample);
   void take_scene(const TappedSample& sample);
   void take_heartbeat(const TappedSample& sample);
+  void take_command(const TappedSample& sample);
   void take_event(const TappedSample& sample);
 
-  link::WireLimits limits_;
+  link::Gate gate_;
   std::vector<Robot> robots_;
   std::optional<FlowPlan> plan_;
   std::uint32_t plan_version_ = 0;
   double plan_excess_m_ = 0.0;
-  link::PlanSequence plans_;
   Scene scene_;
   std::uint64_t version_ = 0;
   MissionPhase phase_ = MissionPhase::kReady;
@@ -96,13 +97,14 @@ class SwarmState {
   std::vector<RunEvent> events_;
   std::optional<UtcTime> begin_;
   link::StreamMeter meter_;
-  std::uint64_t refused_ = 0;
+  std::uint64_t undecodable_ = 0;
 
   link::Codec<link::CellStatesMessage> states_codec_;
   link::Codec<link::StatusMessage> status_codec_;
   link::Codec<link::PlanMessage> plan_codec_;
   link::Codec<link::SceneMessage> scene_codec_;
   link::Codec<link::HeartbeatMessage> heartbeat_codec_;
+  link::Codec<link::CommandMessage> command_codec_;
   link::Codec<link::EventMessage> event_codec_;
   link::CellStatesMessage states_;
   link::StatusMessage status_;

@@ -23,8 +23,8 @@ std::string top_text(const SwarmState& state, const TopFacts& facts, UtcTime now
       facts.name, to_string(state.phase()), state.mission_time_s(now), state.plan_version(),
       counts.heard, state.robots().size(), counts.moving, counts.arrived, counts.lost,
       std::isfinite(counts.nearest_gap_m) ? fmt::format("{:.2f} m", counts.nearest_gap_m) : "–",
-      facts.states_hz, ms(0.5), ms(0.99), state.meter().counts().lost, state.refused(), "robot",
-      "mode", "x m", "y m", "m/s", "gap m", "neighbours", "late %");
+      facts.states_hz, ms(0.5), ms(0.99), state.meter().counts().lost, state.refused().total(),
+      "robot", "mode", "x m", "y m", "m/s", "gap m", "neighbours", "late %");
   std::vector<std::size_t> order(state.robots().size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   const auto urgency = [&](std::size_t i) {

@@ -86,6 +86,18 @@ TEST(Includes, PointDownwardsOnly) {
   knows_only("robot_agent", {"swarm_core", "swarm_link", "robot_agent"});
 }
 
+// So that it can be used, and tested, without a bus.
+TEST(Includes, OfTheGateKnowMessagesAndTheCoreAlone) {
+  const int files =
+      for_each_include({"swarm_link/gate"}, [](const auto& file, const auto& include) {
+        if (!include.starts_with("swarm_link/")) return;
+        EXPECT_TRUE(include.starts_with("swarm_link/gate/") ||
+                    include == "swarm_link/messages.hpp" || include == "swarm_link/wire_bounds.hpp")
+            << file << " includes " << include;
+      });
+  EXPECT_GT(files, 5);
+}
+
 TEST(Includes, MixNoVendorsInOneFolder) {
   for_each_include({"swarm_link/fastdds"}, [](const auto& file, const auto& include) {
     EXPECT_FALSE(include.starts_with("dds/") || include.starts_with("ddsc")) << file;

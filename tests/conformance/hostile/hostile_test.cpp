@@ -4,7 +4,7 @@
 // the next good sample is heard.
 #include <gtest/gtest.h>
 
-#include "swarm_link/validation.hpp"
+#include "swarm_link/gate/content_checks.hpp"
 #include "tests/conformance/bus.hpp"
 #include "tests/conformance/hostile/hostile_writer.hpp"
 

@@ -9,6 +9,7 @@
 
 #include "swarm_core/mcap/writer.hpp"
 #include "swarm_core/mission/mission_file.hpp"
+#include "swarm_link/to_message.hpp"
 #include "swarm_monitor/recording/replay.hpp"
 #include "swarm_monitor/view/live_source.hpp"
 #include "swarm_monitor/view/recorded_source.hpp"
@@ -134,7 +135,7 @@ TEST_F(Live, CountsWhatIsMissingAndWhatIsRefused) {
   source_.poll(at_ms(1200));
 
   EXPECT_EQ(source_.state().meter().counts().lost, 2U);
-  EXPECT_EQ(source_.state().refused(), 2U);
+  EXPECT_EQ(source_.state().refused().total(), 2U);
   EXPECT_NE(source_.metrics().find("swarm_states_lost_total 2\n"), std::string::npos);
 }
 

@@ -5,7 +5,7 @@
 #include <span>
 #include <utility>
 
-#include "swarm_link/validation.hpp"
+#include "swarm_link/gate/content_checks.hpp"
 #include "swarm_link/wire_bounds.hpp"
 
 namespace swarm::link {
@@ -14,10 +14,6 @@ namespace {
 // Beyond this it is no place robots drive in, and no speed they could get out of the way of.
 constexpr double kMaxCoordinate_m = 1e6;
 constexpr double kMaxSpeed_mps = 1e6;
-
-tl::unexpected<RefusalReason> refuse(RefusalReason reason) {
-  return tl::unexpected<RefusalReason>(reason);
-}
 
 bool is_place(const PointMessage& p) {
   // False for NaN as well.
@@ -114,41 +110,6 @@ Checked<Scene> check_scene(const SceneMessage& message, const WireLimits& limits
               .risk_alpha = std::nullopt};
   if (message.risk_alpha > 0.0) scene.risk_alpha = message.risk_alpha;
   return scene;
-}
-
-SceneMessage to_message(const Scene& scene) {
-  SceneMessage message{.version = scene.version,
-                       .risk_alpha = scene.risk_alpha.value_or(0.0),
-                       .next_id = scene.next_id,
-                       .removed = scene.removed};
-  for (const SceneObstacle& o : scene.obstacles) {
-    SceneObstacleMessage& out = message.obstacles.emplace_back();
-    out.obstacle_id = o.id;
-    if (o.owner) out.owner_robot_id = o.owner->value();
-    out.velocity_x_mps = o.velocity_mps.x();
-    out.velocity_y_mps = o.velocity_mps.y();
-    out.moving_from_utc_ns = o.moving_from.time_since_epoch().count();
-    out.moving_until_utc_ns = o.moving_until.time_since_epoch().count();
-    if (const auto* circle = std::get_if<Circle>(&o.shape)) {
-      out.center = {circle->center_m.x(), circle->center_m.y()};
-      out.radius_m = circle->radius_m;
-      continue;
-    }
-    const auto& vertices = std::get<Polygon>(o.shape).vertices_m();
-    out.vertices = static_cast<std::uint32_t>(vertices.size());
-    for (const Vec2& v : vertices) message.vertices.push_back({v.x(), v.y()});
-  }
-  if (!scene.goal) return message;
-  for (const auto& [weight, gaussian] : scene.goal->components()) {
-    const Mat2& c = gaussian.covariance_m2();
-    message.goal.push_back({.mean_x_m = gaussian.mean_m().x(),
-                            .mean_y_m = gaussian.mean_m().y(),
-                            .covariance_xx_m2 = c(0, 0),
-                            .covariance_xy_m2 = c(0, 1),
-                            .covariance_yy_m2 = c(1, 1),
-                            .weight = weight});
-  }
-  return message;
 }
 
 }  // namespace swarm::link

@@ -1,14 +1,14 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-#include "swarm_link/validation.hpp"
+#include "swarm_link/gate/content_checks.hpp"
 
 #include <limits>
-#include <set>
 
 #include <gtest/gtest.h>
 
 #include "swarm_core/base/random.hpp"
 #include "swarm_core/metrics/histogram.hpp"
+#include "swarm_link/to_message.hpp"
 #include "swarm_link/wire_bounds.hpp"
 
 namespace swarm::link {
@@ -201,6 +201,8 @@ TEST(StatusCheck, RefusesEachKindOfNonsense) {
   EXPECT_TRUE(
       refused(verdict([](auto& m) { m.robots[0].robot_id = 100; }), RefusalReason::kOutOfRange));
   EXPECT_TRUE(
+      refused(verdict([](auto& m) { m.first_robot_id = 100; }), RefusalReason::kOutOfRange));
+  EXPECT_TRUE(
       refused(verdict([](auto& m) { m.robots[0].y_m = 46.0; }), RefusalReason::kOutOfRange));
   EXPECT_TRUE(refused(verdict([](auto& m) { m.robots[0].mode = static_cast<RobotMode>(5); }),
                       RefusalReason::kOutOfRange));
@@ -210,7 +212,7 @@ TEST(StatusCheck, RefusesEachKindOfNonsense) {
 
 TEST(EventCheck, RefusesLongTextsAndControlCharacters) {
   const EventMessage good{.severity = Severity::kError, .code = "plan-refused", .text = "Größe 3"};
-  const auto verdict = [&](auto change) { return check_event(changed(good, change)); };
+  const auto verdict = [&](auto change) { return check_event(changed(good, change), limits()); };
   EXPECT_TRUE(verdict([](auto&) {}));
   EXPECT_TRUE(refused(verdict([](auto& m) { m.schema_version = 1; }), RefusalReason::kSchema));
   EXPECT_TRUE(refused(verdict([](auto& m) { m.code.assign(65, 'a'); }), RefusalReason::kOversized));
@@ -219,6 +221,17 @@ TEST(EventCheck, RefusesLongTextsAndControlCharacters) {
   EXPECT_TRUE(refused(verdict([](auto& m) { m.text = "\x1b[2J"; }), RefusalReason::kOutOfRange));
   EXPECT_TRUE(refused(verdict([](auto& m) { m.severity = static_cast<Severity>(3); }),
                       RefusalReason::kOutOfRange));
+}
+
+TEST(EventCheck, RefusesSourcesThatAreNoneOfTheMission) {
+  const auto from = [](std::uint32_t source) {
+    return check_event({.source = source, .code = "exit"}, limits());
+  };
+  for (const std::uint32_t source : {0U, 99U, kPlannerSource, kLauncherSource}) {
+    EXPECT_TRUE(from(source)) << source;
+  }
+  EXPECT_TRUE(refused(from(100), RefusalReason::kOutOfRange));
+  EXPECT_TRUE(refused(from(kLauncherSource - 1), RefusalReason::kOutOfRange));
 }
 
 TEST(BatchCheck, RefusesSchemaAndSize) {
@@ -257,50 +270,6 @@ TEST(StateCheck, RefusesStampsFarFromOurClockEitherWay) {
        {now_ns + refuse_ns + 1, now_ns - refuse_ns - 1, std::int64_t{0},
         std::numeric_limits<std::int64_t>::min(), std::numeric_limits<std::int64_t>::max()}) {
     EXPECT_TRUE(refused(verdict(stamp), RefusalReason::kClockSkew));
-  }
-}
-
-TEST(RefusalCounters, CountByReason) {
-  RefusalCounters counters;
-  counters.count(RefusalReason::kStale);
-  counters.count(RefusalReason::kForged, 3);
-  EXPECT_EQ(counters[RefusalReason::kStale], 1U);
-  EXPECT_EQ(counters[RefusalReason::kForged], 3U);
-  EXPECT_EQ(counters[RefusalReason::kSchema], 0U);
-  EXPECT_EQ(counters.total(), 4U);
-}
-
-TEST(RefusalReason, HasANameOfItsOwn) {
-  std::set<std::string_view> names;
-  for (std::size_t i = 0; i < kRefusalReasons; ++i) {
-    names.insert(to_string(static_cast<RefusalReason>(i)));
-  }
-  EXPECT_EQ(names.size(), kRefusalReasons);
-  EXPECT_FALSE(names.contains("unknown"));
-  EXPECT_LE(kRefusalReasons, kMaxRefusalReasons);
-}
-
-TEST(PlanSequence, AcceptsOnlyWhatIsNewer) {
-  PlanSequence sequence;
-  EXPECT_FALSE(sequence.accept(0, 0));
-  EXPECT_TRUE(sequence.accept(5, 1));
-  EXPECT_FALSE(sequence.accept(5, 1));  // repeated
-  EXPECT_TRUE(sequence.accept(5, 4));
-  EXPECT_FALSE(sequence.accept(5, 3));   // reordered
-  EXPECT_FALSE(sequence.accept(4, 99));  // a planner of the past
-  EXPECT_TRUE(sequence.accept(6, 1));    // a new planner begins again
-  EXPECT_FALSE(sequence.accept(5, 100));
-}
-
-TEST(PlanSequence, RisesOverAnyStream) {
-  Rng rng(5);
-  PlanSequence sequence;
-  std::pair<std::uint64_t, std::uint32_t> newest{0, 0};
-  for (int i = 0; i < 10'000; ++i) {
-    const std::pair<std::uint64_t, std::uint32_t> next{rng() % 50,
-                                                       static_cast<std::uint32_t>(rng() % 50)};
-    EXPECT_EQ(sequence.accept(next.first, next.second), next > newest);
-    newest = std::max(newest, next);
   }
 }
 

@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "swarm_core/base/time.hpp"
+#include "swarm_core/mission/phase.hpp"
+#include "swarm_core/mission/scene.hpp"
+#include "swarm_link/gate/gate.hpp"
+#include "swarm_link/port.hpp"
+
+namespace swarm::planner {
+
+struct Readers {
+  link::ReaderPtr<link::CommandMessage> command;
+  link::ReaderPtr<link::SceneMessage> scene;
+  link::ReaderPtr<link::StatusMessage> status;
+};
+
+/// What the planner receives: takes everything that arrived, has the gate check it, and hands on
+/// what passed. Not thread-safe.
+class PlannerInbox {
+ public:
+  PlannerInbox(Readers readers, const link::WireLimits& limits);
+
+  void receive(UtcTime now);
+
+  /// Moved by the commands received so far.
+  MissionPhase phase() const { return phase_; }
+  /// Stamp of the command that started the mission, 0 before. The launcher keeps its commands for
+  /// late joiners, so a restarted planner finds it again.
+  std::int64_t t0_utc_ns() const { return t0_utc_ns_; }
+  /// Of the last receive(), each newer than the one before.
+  std::span<Scene> scenes() { return new_scenes_; }
+  /// Of the last receive(); robot ids are those of the mission.
+  std::span<const link::StatusMessage> statuses() const { return statuses_; }
+
+  const link::RefusalCounters& refused() const { return gate_.refused(); }
+
+ private:
+  void obey(const link::CommandMessage& command);
+
+  Readers readers_;
+  link::Gate gate_;
+  MissionPhase phase_ = MissionPhase::kReady;
+  std::int64_t t0_utc_ns_ = 0;
+  std::vector<Scene> new_scenes_;
+  std::vector<link::CommandMessage> commands_;
+  std::vector<link::SceneMessage> scenes_;
+  std::vector<link::StatusMessage> statuses_;
+};
+
+}  // namespace swarm::planner

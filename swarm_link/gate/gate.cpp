@@ -1,0 +1,131 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "swarm_link/gate/gate.hpp"
+
+#include <algorithm>
+
+namespace swarm::link {
+namespace {
+
+// Plans and heartbeats are numbered from 1 in each epoch, which is the UTC time [ns] at which its
+// planner began. A planner publishes either at most every few milliseconds, so a larger number was
+// not counted up to: it would outrank all real ones to come.
+constexpr std::uint64_t kNumbersPerSecond = 1'000;
+
+bool is_reached(std::uint64_t number, std::uint64_t epoch, std::uint64_t latest_ns) {
+  const std::uint64_t age_s = (latest_ns - epoch) / 1'000'000'000;
+  return number / kNumbersPerSecond <= age_s + 1;
+}
+
+std::uint64_t to_ns(UtcTime time) {
+  return static_cast<std::uint64_t>(std::max<std::int64_t>(time.time_since_epoch().count(), 0));
+}
+
+bool is_after(std::int64_t stamp_utc_ns, std::uint64_t latest_ns) {
+  return stamp_utc_ns > 0 && static_cast<std::uint64_t>(stamp_utc_ns) > latest_ns;
+}
+
+}  // namespace
+
+Gate::Gate(const GateOptions& options) : options_(options) {}
+
+std::uint64_t Gate::latest_ns(UtcTime now) const {
+  return to_ns(now + options_.limits.clock_skew_refuse);
+}
+
+Checked<FlowPlan> Gate::plan(const PlanMessage& message, UtcTime now) {
+  auto checked = check_plan(message, options_.limits);
+  if (checked) {
+    if (const auto ordered = order(message, now); !ordered) checked = refuse(ordered.error());
+  }
+  return counted(std::move(checked));
+}
+
+Checked<void> Gate::order(const PlanMessage& message, UtcTime now) {
+  const std::uint64_t latest = latest_ns(now);
+  if (message.epoch > latest || message.scene_version > latest ||
+      !is_reached(message.version, message.epoch, latest)) {
+    return refuse(RefusalReason::kForged);
+  }
+  return plan_.accept({message.epoch, message.version});
+}
+
+Checked<Scene> Gate::scene(const SceneMessage& message, UtcTime now) {
+  auto checked = check_scene(message, options_.limits);
+  if (checked) {
+    if (const auto ordered = order(message, now); !ordered) checked = refuse(ordered.error());
+  }
+  return counted(std::move(checked));
+}
+
+Checked<void> Gate::order(const SceneMessage& message, UtcTime now) {
+  if (message.version > latest_ns(now)) return refuse(RefusalReason::kForged);
+  return scene_.accept(message.version);
+}
+
+Checked<void> Gate::heartbeat(const HeartbeatMessage& message, UtcTime now) {
+  auto checked = check_heartbeat(message);
+  if (checked) checked = order(message, now);
+  return counted(checked);
+}
+
+Checked<void> Gate::order(const HeartbeatMessage& message, UtcTime now) {
+  const std::uint64_t latest = latest_ns(now);
+  if (message.epoch > latest || is_after(message.stamp_utc_ns, latest) ||
+      !is_reached(message.sequence_number, message.epoch, latest)) {
+    return refuse(RefusalReason::kForged);
+  }
+  return heartbeat_.accept({message.epoch, message.sequence_number});
+}
+
+Checked<void> Gate::command(const CommandMessage& message, UtcTime now) {
+  auto checked = check_command(message);
+  if (checked) checked = order(message, now);
+  return counted(checked);
+}
+
+Checked<void> Gate::order(const CommandMessage& message, UtcTime now) {
+  const std::uint64_t latest = latest_ns(now);
+  if (message.command_id > latest || is_after(message.stamp_utc_ns, latest)) {
+    return refuse(RefusalReason::kForged);
+  }
+  if (message.kind == CommandKind::kStop) return {};
+  return command_.accept(message.command_id);
+}
+
+Checked<void> Gate::status(const StatusMessage& message, UtcTime now) {
+  auto checked = check_status(message, options_.limits);
+  if (checked) checked = order(message, now);
+  return counted(checked);
+}
+
+Checked<void> Gate::order(const StatusMessage& message, UtcTime now) const {
+  const std::uint64_t latest = latest_ns(now);
+  if (message.plan_epoch > latest || message.plan_scene_version > latest) {
+    return refuse(RefusalReason::kForged);
+  }
+  if (is_after(message.stamp_utc_ns, latest)) return refuse(RefusalReason::kClockSkew);
+  return {};
+}
+
+Checked<void> Gate::event(const EventMessage& message) {
+  auto checked = check_event(message, options_.limits);
+  if (checked && options_.own_source == message.source) checked = refuse(RefusalReason::kForged);
+  return counted(checked);
+}
+
+Checked<void> Gate::newer_state(const RobotStateMessage& state, UtcTime now) {
+  auto checked = check_state(state, options_.limits, clock_for(state, now));
+  if (checked) {
+    newest_state_.resize(options_.limits.robots);
+    checked = newest_state_[state.robot_id].accept(state.stamp_utc_ns);
+  }
+  return counted(checked);
+}
+
+void Gate::set_undecodable(std::uint64_t so_far) {
+  refused_.count(RefusalReason::kUndecodable, static_cast<std::uint32_t>(so_far - undecodable_));
+  undecodable_ = so_far;
+}
+
+}  // namespace swarm::link

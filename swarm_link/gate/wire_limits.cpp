@@ -1,0 +1,15 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "swarm_link/gate/wire_limits.hpp"
+
+namespace swarm::link {
+
+WireLimits wire_limits(const Mission& mission) {
+  return {.robots = mission.robots.count,
+          .bounds_m = mission.world.bounds_m(),
+          .speed_max_mps = mission.robots.speed_max_mps,
+          .clock_skew_warn = from_seconds(mission.timing.clock_skew_warn_s),
+          .clock_skew_refuse = from_seconds(mission.timing.clock_skew_refuse_s)};
+}
+
+}  // namespace swarm::link

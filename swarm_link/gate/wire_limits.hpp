@@ -1,0 +1,25 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+#include "swarm_core/base/time.hpp"
+#include "swarm_core/mission/mission.hpp"
+#include "swarm_core/world/box.hpp"
+
+namespace swarm::link {
+
+/// The ranges of a mission that its messages must keep.
+struct WireLimits {
+  std::uint32_t robots = 0;  ///< ids are below this
+  Box bounds_m;              ///< positions lie inside, plus `bounds_slack_m`
+  double bounds_slack_m = 5.0;
+  double speed_max_mps = 1.5;    ///< speeds are at most twice this
+  Duration clock_skew_warn{};    ///< a stamp further from our clock is used and reported
+  Duration clock_skew_refuse{};  ///< a stamp further from our clock is refused
+};
+
+WireLimits wire_limits(const Mission& mission);
+
+}  // namespace swarm::link

@@ -1,0 +1,33 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "swarm_core/base/time.hpp"
+#include "swarm_link/gate/gate.hpp"
+
+namespace swarm::link {
+
+/// What a gateway receives from both channels: each state is passed on once. The gateway receives
+/// what it publishes itself as well, so it refuses many states as duplicate or stale: those are
+/// echoes. Not thread-safe.
+class GatewayInbox {
+ public:
+  explicit GatewayInbox(const WireLimits& limits) : gate_({.limits = limits}) {}
+
+  /// Appends to `fresh` the states of the batches that are newer than all before.
+  void take_fresh(std::span<const CellStatesMessage> batches, UtcTime now,
+                  std::vector<RobotStateMessage>& fresh);
+
+  /// `so_far`: batches that did not decode, of all readers together, since the start.
+  void set_undecodable(std::uint64_t so_far) { gate_.set_undecodable(so_far); }
+
+  const RefusalCounters& refused() const { return gate_.refused(); }
+
+ private:
+  Gate gate_;
+};
+
+}  // namespace swarm::link
