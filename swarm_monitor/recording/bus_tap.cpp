@@ -147,7 +147,7 @@ std::uint32_t states_index() { return static_cast<std::uint32_t>(recorded_topics
 
 Result<std::unique_ptr<BusTap>> tap_bus(const std::filesystem::path& run_dir,
                                         std::uint32_t number) {
-  const auto mission = load_mission(run_dir / shell::kMissionFile);
+  const auto mission = load_mission(run_dir / shell::kMissionFile, open_catalogue());
   if (!mission) return tl::unexpected(mission.error());
   const auto run = shell::read_run_info(run_dir);
   if (!run) return tl::unexpected(run.error());

@@ -35,7 +35,7 @@ class Metrics {
 
 Result<std::unique_ptr<LiveSource>> look_at_run(const std::filesystem::path& run_dir,
                                                 std::uint32_t number, bool control) {
-  auto mission = load_mission(run_dir / shell::kMissionFile);
+  auto mission = load_mission(run_dir / shell::kMissionFile, open_catalogue());
   if (!mission) return tl::unexpected(mission.error());
   const auto run = shell::read_run_info(run_dir);
   if (!run) return tl::unexpected(run.error());

@@ -12,22 +12,21 @@
 #include "swarm_core/mission/mission.hpp"
 #include "swarm_core/mission/scene.hpp"
 #include "swarm_core/plan/flow_plan.hpp"
-#include "swarm_link/cdr/codec.hpp"
-#include "swarm_link/gate/gate.hpp"
 #include "swarm_link/stream_meter.hpp"
+#include "swarm_monitor/observe/bus_reader.hpp"
 #include "swarm_monitor/recorded_run.hpp"
 #include "swarm_monitor/recording/bus_tap.hpp"
 
 namespace swarm::monitor {
 
-/// What is known of a swarm in flight, from its bus alone. Every sample passes the gate or is
-/// counted; only the age of states is not judged, for the flight may be a replay. Pure: gets
-/// samples and the time.
-class SwarmState {
+/// What is known of a swarm in flight, from its bus alone. Pure: gets samples and the time.
+class SwarmState final : private Observer {
  public:
   explicit SwarmState(const Mission& mission);
+  SwarmState(const SwarmState&) = delete;
+  SwarmState& operator=(const SwarmState&) = delete;
 
-  void take(const TappedSample& sample);
+  void take(const TappedSample& sample) { reader_.take(sample); }
 
   struct Robot {
     bool heard_of = false;
@@ -69,20 +68,17 @@ class SwarmState {
   std::optional<UtcTime> begin() const { return begin_; }          ///< first state heard
   const link::StreamMeter& meter() const { return meter_; }
   link::StreamMeter& meter() { return meter_; }
-  const link::RefusalCounters& refused() const { return gate_.refused(); }
+  const link::RefusalCounters& refused() const { return reader_.refused(); }
 
  private:
-  template <class M>
-  bool decode(link::Codec<M>& codec, const TappedSample& sample, M& out);
-  void take_states(const TappedSample& sample);
-  void take_status(const TappedSample& sample);
-  void take_plan(const TappedSample& sample);
-  void take_scene(const TappedSample& sample);
-  void take_heartbeat(const TappedSample& sample);
-  void take_command(const TappedSample& sample);
-  void take_event(const TappedSample& sample);
+  void on_state(const ObservedState& state) override;
+  void on_status(const ObservedStatus& status) override;
+  void on_plan(const ObservedPlan& plan) override;
+  void on_scene(const Scene& scene) override;
+  void on_clock(const ObservedClock& clock) override;
+  void on_event(const ObservedEvent& event) override;
 
-  link::Gate gate_;
+  BusReader reader_;
   std::vector<Robot> robots_;
   std::optional<FlowPlan> plan_;
   std::uint32_t plan_version_ = 0;
@@ -97,17 +93,6 @@ class SwarmState {
   std::vector<RunEvent> events_;
   std::optional<UtcTime> begin_;
   link::StreamMeter meter_;
-  std::uint64_t undecodable_ = 0;
-
-  link::Codec<link::CellStatesMessage> states_codec_;
-  link::Codec<link::StatusMessage> status_codec_;
-  link::Codec<link::PlanMessage> plan_codec_;
-  link::Codec<link::SceneMessage> scene_codec_;
-  link::Codec<link::HeartbeatMessage> heartbeat_codec_;
-  link::Codec<link::CommandMessage> command_codec_;
-  link::Codec<link::EventMessage> event_codec_;
-  link::CellStatesMessage states_;
-  link::StatusMessage status_;
 };
 
 }  // namespace swarm::monitor

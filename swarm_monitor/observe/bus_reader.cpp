@@ -1,0 +1,129 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "swarm_monitor/observe/bus_reader.hpp"
+
+#include <limits>
+#include <string>
+#include <utility>
+
+#include "swarm_link/event_words.hpp"
+
+namespace swarm::monitor {
+namespace {
+
+/// A robot without a neighbour reports a gap larger than any map.
+constexpr double kNoNeighbour_m = 1e8;
+
+}  // namespace
+
+BusReader::BusReader(const Mission& mission, Observer& observer)
+    : gate_({.limits = link::wire_limits(mission), .stamps = link::Stamps::kRecorded}),
+      observer_(observer) {}
+
+void BusReader::take(const TappedSample& sample) {
+  const std::string& topic = recorded_topics()[sample.topic].name;
+  if (sample.topic == states_index()) {
+    take_states(sample);
+  } else if (topic == "swarm/status") {
+    take_status(sample);
+  } else if (topic == "swarm/plan") {
+    take_plan(sample);
+  } else if (topic == "swarm/scene") {
+    take_scene(sample);
+  } else if (topic == "swarm/heartbeat") {
+    take_heartbeat(sample);
+  } else if (topic == "swarm/command") {
+    take_command(sample);
+  } else if (topic == "swarm/event") {
+    take_event(sample);
+  }
+}
+
+template <class M>
+bool BusReader::decode(link::Codec<M>& codec, const TappedSample& sample, M& out) {
+  auto* bytes = reinterpret_cast<std::byte*>(const_cast<unsigned char*>(sample.bytes.data()));
+  const bool decoded = codec.decode({bytes, sample.bytes.size()}, out);
+  if (!decoded) gate_.set_undecodable(++undecodable_);
+  return decoded;
+}
+
+void BusReader::take_states(const TappedSample& sample) {
+  if (!decode(states_codec_, sample, states_) || !gate_.batch(states_)) return;
+  for (const link::RobotStateMessage& state : states_.states) {
+    if (!gate_.state(state, sample.heard)) continue;
+    observer_.on_state({.robot = RobotId(state.robot_id),
+                        .sequence = state.sequence_number,
+                        .stamp = UtcTime(Duration(state.stamp_utc_ns)),
+                        .received = sample.heard,
+                        .position_m = {state.x_m, state.y_m},
+                        .velocity_mps = {state.vx_mps, state.vy_mps},
+                        .mode = state.mode});
+  }
+}
+
+void BusReader::take_status(const TappedSample& sample) {
+  if (!decode(status_codec_, sample, status_) || !gate_.status(status_, sample.heard)) return;
+  for (const link::RobotStatusMessage& status : status_.robots) {
+    observer_.on_status({.robot = RobotId(status.robot_id),
+                         .received = sample.heard,
+                         .position_m = {status.x_m, status.y_m},
+                         .mode = status.mode,
+                         .arrived = status.arrived,
+                         .remaining_m = status.remaining_m,
+                         .lag_s = status.lag_s,
+                         .nearest_gap_m = status.nearest_gap_m < kNoNeighbour_m
+                                              ? status.nearest_gap_m
+                                              : std::numeric_limits<double>::infinity(),
+                         .neighbours = status.neighbours_heard,
+                         .ticks = status.ticks,
+                         .late_ticks = status.late_ticks});
+  }
+}
+
+void BusReader::take_plan(const TappedSample& sample) {
+  link::PlanMessage message;
+  if (!decode(plan_codec_, sample, message)) return;
+  auto plan = gate_.plan(message, sample.heard);
+  if (!plan) return;
+  plan_ = std::move(*plan);
+  observer_.on_plan({.flow = plan_,
+                     .version = message.version,
+                     .excess_m = message.excess_m,
+                     .received = sample.heard});
+}
+
+void BusReader::take_scene(const TappedSample& sample) {
+  link::SceneMessage message;
+  if (!decode(scene_codec_, sample, message)) return;
+  const auto scene = gate_.scene(message, sample.heard);
+  // Version 0 is the mission file's, which observers know from the beginning.
+  if (scene && scene->version != 0) observer_.on_scene(*scene);
+}
+
+void BusReader::take_heartbeat(const TappedSample& sample) {
+  link::HeartbeatMessage message;
+  if (!decode(heartbeat_codec_, sample, message) || !gate_.heartbeat(message, sample.heard)) return;
+  observer_.on_clock({.phase = message.phase,
+                      .mission_time_s = message.mission_time_s,
+                      .plan_time_s = message.plan_time_s,
+                      .plan_rate = message.plan_rate,
+                      .received = sample.heard});
+}
+
+void BusReader::take_command(const TappedSample& sample) {
+  // Nothing of a command is reported but that it was refused; what it does, heartbeats report.
+  link::CommandMessage message;
+  if (decode(command_codec_, sample, message)) (void)gate_.command(message, sample.heard);
+}
+
+void BusReader::take_event(const TappedSample& sample) {
+  link::EventMessage message;
+  if (!decode(event_codec_, sample, message) || !gate_.event(message)) return;
+  observer_.on_event({.received = sample.heard,
+                      .source = link::source_name(message.source),
+                      .severity = std::string(link::to_string(message.severity)),
+                      .code = message.code,
+                      .text = message.text});
+}
+
+}  // namespace swarm::monitor

@@ -1,0 +1,53 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+#include "swarm_core/mission/mission.hpp"
+#include "swarm_link/cdr/codec.hpp"
+#include "swarm_link/gate/gate.hpp"
+#include "swarm_monitor/observe/observer.hpp"
+#include "swarm_monitor/recording/bus_tap.hpp"
+
+namespace swarm::monitor {
+
+/// Decodes samples of the bus, passes them through the gate and reports what passed. Only the age
+/// of states is not judged, for the flight may be a replay. Pure: gets samples and the time.
+class BusReader {
+ public:
+  /// The observer outlives it.
+  BusReader(const Mission& mission, Observer& observer);
+
+  void take(const TappedSample& sample);
+
+  const link::RefusalCounters& refused() const { return gate_.refused(); }
+
+ private:
+  template <class M>
+  bool decode(link::Codec<M>& codec, const TappedSample& sample, M& out);
+  void take_states(const TappedSample& sample);
+  void take_status(const TappedSample& sample);
+  void take_plan(const TappedSample& sample);
+  void take_scene(const TappedSample& sample);
+  void take_heartbeat(const TappedSample& sample);
+  void take_command(const TappedSample& sample);
+  void take_event(const TappedSample& sample);
+
+  link::Gate gate_;
+  Observer& observer_;
+  FlowPlan plan_;
+  std::uint64_t undecodable_ = 0;
+
+  link::Codec<link::CellStatesMessage> states_codec_;
+  link::Codec<link::StatusMessage> status_codec_;
+  link::Codec<link::PlanMessage> plan_codec_;
+  link::Codec<link::SceneMessage> scene_codec_;
+  link::Codec<link::HeartbeatMessage> heartbeat_codec_;
+  link::Codec<link::CommandMessage> command_codec_;
+  link::Codec<link::EventMessage> event_codec_;
+  link::CellStatesMessage states_;  // kept for their memory
+  link::StatusMessage status_;
+};
+
+}  // namespace swarm::monitor

@@ -1,0 +1,30 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include <utility>
+
+#include "swarm_core/mission/mission_file.hpp"
+#include "swarm_core/shell/run_directory.hpp"
+#include "swarm_monitor/observe/bus_reader.hpp"
+
+namespace swarm::monitor {
+namespace {
+
+constexpr Duration kPoll = std::chrono::milliseconds(20);
+
+}  // namespace
+
+Result<void> observe_run(const std::filesystem::path& run_dir, Observer& observer,
+                         const std::function<bool()>& go_on) {
+  const auto mission = load_mission(run_dir / shell::kMissionFile, open_catalogue());
+  if (!mission) return tl::unexpected(mission.error());
+  const auto tap = tap_bus(run_dir);
+  if (!tap) return tl::unexpected(tap.error());
+  observer.on_mission(*mission);
+  BusReader reader(*mission, observer);
+  while (go_on()) {
+    (*tap)->take(kPoll, [&](const TappedSample& sample) { reader.take(sample); });
+  }
+  return {};
+}
+
+}  // namespace swarm::monitor
