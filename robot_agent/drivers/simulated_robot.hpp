@@ -51,6 +51,13 @@ class SimulatedRobot final : public Driver {
   std::unique_ptr<Rng> rng_;  // none without noise: it is large
 };
 
+/// What a robot's simulated body draws from: in a process and in a lock-step simulation the same,
+/// and apart from what its agent draws.
+constexpr std::uint64_t body_seed(RobotId robot, std::uint64_t run_seed) {
+  constexpr std::uint64_t kBodySeed = 0xB0D7;
+  return mix_seed(mix_seed(run_seed, robot.value()), kBodySeed);
+}
+
 /// The body a mission asks for, at rest; a unicycle has a random heading.
 SimulatedRobot make_simulated_body(const BodySpec& body, SteadyTime now, const Vec2& position_m,
                                    std::uint64_t seed);

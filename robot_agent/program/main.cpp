@@ -5,7 +5,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "robot_agent/agent_process.hpp"
+#include "robot_agent/program/agent_process.hpp"
 #include "swarm_core/shell/program.hpp"
 #include "swarm_core/shell/stop_signal.hpp"
 

@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+#include "robot_agent/control/density_attraction.hpp"
+#include "robot_agent/control/planned_density.hpp"
+#include "swarm_core/mission/mission.hpp"
+#include "swarm_core/plan/flow_plan.hpp"
+
+namespace swarm::agent {
+
+/// The swarm's planned density at the plan's time, for missions whose control method asks for it;
+/// one for all robots of a process. No allocation once warm.
+class DensityForecast {
+ public:
+  explicit DensityForecast(const Mission& mission)
+      : is_asked_for_(mission.control.density_push_mps > 0.0), robots_(mission.robots.count) {}
+
+  bool is_asked_for() const { return is_asked_for_; }
+
+  /// Brings it to this time [s] of this plan. \pre is_asked_for() and the plan is not empty
+  void update(const FlowPlan& plan, double plan_time_s) {
+    agent::update(density_, plan, plan_time_s, robots_,
+                  DensityAttractionOptions{}.kernel_sigma_m());
+  }
+
+  /// As of the last update(); null before the first.
+  const PlannedDensity* density() const { return density_.parts.empty() ? nullptr : &density_; }
+
+ private:
+  bool is_asked_for_;
+  std::uint32_t robots_;
+  PlannedDensity density_;
+};
+
+}  // namespace swarm::agent

@@ -1,0 +1,129 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "robot_agent/loop/robot_loop.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace swarm::agent {
+namespace {
+
+constexpr Duration kLate = std::chrono::milliseconds(20);
+/// Of each robot, one estimate of a neighbour is recorded every so many ticks.
+constexpr std::uint32_t kTicksPerEstimate = 5;
+
+std::int32_t to_us(Duration d) {
+  return static_cast<std::int32_t>(
+      std::min<std::int64_t>(d / std::chrono::microseconds(1), INT32_MAX));
+}
+
+}  // namespace
+
+/// Index of the goal as recorded.
+std::uint8_t RobotLoop::goal() const {
+  if (!agent_.has_route()) return blackbox::Step::kNoGoal;
+  return static_cast<std::uint8_t>(
+      std::min(agent_.goal(position_m_), blackbox::Step::kNoGoal - 1U));
+}
+
+/// Measures where the body is; a new plan is entered from there.
+Measurement RobotLoop::measure(const RobotTick& tick, const RobotParts& parts) {
+  const Measurement body = parts.driver.measure(tick.now);
+  position_m_ = body.position_m;
+  if (body.command_expired) {  // the body stopped between two ticks: the path has a point there
+    parts.log.append(blackbox::Step{.stamp = tick.utc_now - (tick.now - body.expired_at),
+                                    .position_m = body.expired_position_m,
+                                    .mode = static_cast<std::uint8_t>(output_.mode),
+                                    .goal = goal()});
+  }
+  if (tick.new_plan != nullptr) {
+    std::optional<double> plan_time_s;
+    if (tick.plan_time) plan_time_s = tick.plan_time->plan_time_s;
+    agent_.accept_plan(tick.new_plan->flow, position_m_, tick.new_plan->entry, plan_time_s);
+    parts.log.append(
+        blackbox::Note{.stamp = tick.utc_now,
+                       .code = "plan",
+                       .text = "took plan version " + std::to_string(tick.plan_version)});
+  }
+  return body;
+}
+
+void RobotLoop::decide(const RobotTick& tick, const RobotParts& parts, const Measurement& body) {
+  const RobotMode mode_before = output_.mode;
+  const bool was_settled = output_.settled;
+  output_ = agent_.tick({.now = tick.now,
+                         .position_m = position_m_,
+                         .phase = tick.phase,
+                         .planner_alive = tick.planner_alive,
+                         .velocity_mps = body.velocity_mps,
+                         .plan_time = tick.plan_time,
+                         .planned_density = tick.planned_density},
+                        parts.rng);
+  // Valid for two periods: a tick may be late, a dead process must not drive on.
+  parts.driver.command(tick.now, output_.velocity_mps, 2 * tick.period);
+  const bool mode_changed = output_.mode != mode_before;
+  has_news_ = mode_changed || (output_.settled && !was_settled);
+
+  const bool is_first = ticks_++ == 0;
+  if (tick.lateness > kLate) ++late_ticks_;
+  log_step(tick, parts.log, body.true_position_m.value_or(body.position_m));
+  if (!mode_changed && !is_first) return;
+  parts.log.append(
+      blackbox::Note{.stamp = tick.utc_now,
+                     .caused = output_.mode == RobotMode::kStopped ? tick.stop_sent : UtcTime{},
+                     .code = "mode",
+                     .text = std::string(to_string(output_.mode))});
+}
+
+void RobotLoop::log_step(const RobotTick& tick, RobotLog& log, const Vec2& true_position_m) const {
+  const TimeTracking tracking = output_.tracking.value_or(TimeTracking{});
+  log.append(blackbox::Step{.stamp = tick.utc_now,
+                            .position_m = true_position_m,
+                            .velocity_mps = output_.velocity_mps,
+                            .lateness_us = to_us(tick.lateness),
+                            .mode = static_cast<std::uint8_t>(output_.mode),
+                            .goal = goal(),
+                            .neighbours = output_.neighbours,
+                            .plan_version = output_.tracking ? tick.plan_version : 0,
+                            .plan_time_s = static_cast<float>(tracking.plan_time_s),
+                            .reference_x_m = static_cast<float>(tracking.reference_m.x()),
+                            .reference_y_m = static_cast<float>(tracking.reference_m.y())});
+  if (ticks_ % kTicksPerEstimate != 0 || output_.believed.empty()) return;
+  // Each of the neighbours in its turn.
+  const Neighbour& one = output_.believed[ticks_ / kTicksPerEstimate % output_.believed.size()];
+  log.append(blackbox::Belief{
+      .stamp = tick.utc_now, .neighbour = one.robot, .position_m = one.position_m});
+}
+
+link::RobotStateMessage RobotLoop::next_state(UtcTime utc_now) {
+  return {.robot_id = id_.value(),
+          .sequence_number = ++states_sent_,
+          .stamp_utc_ns = utc_now.time_since_epoch().count(),
+          .x_m = position_m_.x(),
+          .y_m = position_m_.y(),
+          .vx_mps = output_.told_mps.x(),
+          .vy_mps = output_.told_mps.y(),
+          .mode = output_.mode};
+}
+
+link::RobotStatusMessage RobotLoop::status() const {
+  constexpr double kNobodyNear_m = 1e9;  // finite, as everything on the bus
+  return {
+      .robot_id = id_.value(),
+      .mode = output_.mode,
+      .arrived = output_.mode == RobotMode::kArrived,
+      .settled = output_.settled,
+      .x_m = position_m_.x(),
+      .y_m = position_m_.y(),
+      .remaining_m = output_.remaining_m,
+      .lag_s = agent_.lag_s(),
+      .nearest_gap_m = std::isfinite(output_.nearest_gap_m) ? output_.nearest_gap_m : kNobodyNear_m,
+      .neighbours_heard = output_.neighbours,
+      .ticks = ticks_,
+      .late_ticks = late_ticks_,
+      .states_sent = states_sent_,
+      .states_received = states_received_};
+}
+
+}  // namespace swarm::agent

@@ -1,0 +1,121 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <optional>
+
+#include "robot_agent/agent.hpp"
+#include "robot_agent/drivers/driver.hpp"
+#include "robot_agent/loop/robot_log.hpp"
+#include "swarm_core/base/prefetch.hpp"
+#include "swarm_core/metrics/histogram.hpp"
+#include "swarm_link/messages.hpp"
+
+namespace swarm::agent {
+
+/// A plan that a robot is to follow from this tick on.
+struct OfferedPlan {
+  const FlowPlan& flow;
+  std::optional<PlanEntry> entry{};  ///< where the planner has this robot enter; empty: anywhere
+};
+
+/// The time of a tick and what the mission is at it.
+struct RobotTick {
+  SteadyTime now;
+  UtcTime utc_now;
+  Duration lateness{};  ///< actual minus scheduled start of this tick
+  Duration period{};    ///< of control
+  MissionPhase phase = MissionPhase::kReady;
+  bool planner_alive = false;
+  UtcTime stop_sent{};             ///< stamp of the stop command obeyed; 0: there was none
+  std::uint32_t plan_version = 0;  ///< of the newest plan, with new_plan if that is given
+  const OfferedPlan* new_plan = nullptr;
+  std::optional<PlanTime> plan_time{};              ///< of the plan's clock, if it is known
+  const PlannedDensity* planned_density = nullptr;  ///< at that time, if it is asked for
+};
+
+/// What a robot's loop works with. All outlive the step.
+struct RobotParts {
+  Driver& driver;
+  Rng& rng;
+  RobotLog& log;
+  Histogram* state_ages = nullptr;  ///< of the states used, in µs; null: not measured at this tick
+};
+
+/// The control loop of one robot: measure → receive → decide → command → log → publish. The same in
+/// a process and in a lock-step simulation, which differ in the clock, the bus and the log that
+/// they pass in. Cannot fail: without a plan, a planner or an order to go it holds. Does not
+/// allocate once warm, but for notes at changes of mode or plan. One thread at a time.
+class RobotLoop {
+ public:
+  /// \pre the world outlives the loop
+  RobotLoop(const World& world, Shared<AgentOptions> options, const AgentIdentity& self)
+      : agent_(world, std::move(options), self), id_(self.robot) {}
+
+  /// One tick. The bus is any class with
+  ///
+  ///   receive(position_m, take)   calls take(const NeighbourReport&, Duration age) for each
+  ///   checked
+  ///                               state of other robots near this place that has arrived
+  ///   publish(state)              sends a link::RobotStateMessage; not called at every tick
+  template <class Bus>
+  void step(const RobotTick& tick, const RobotParts& parts, Bus& bus) {
+    const Measurement body = measure(tick, parts);
+    bus.receive(position_m_, [&](const NeighbourReport& report, Duration age) {
+      if (agent_.hear(report, position_m_, age) != NeighbourTable::Outcome::kTaken) return;
+      ++states_received_;
+      if (parts.state_ages != nullptr) {
+        parts.state_ages->add(age / std::chrono::microseconds(1));
+      }
+    });
+    decide(tick, parts, body);
+    if (output_.say) bus.publish(next_state(tick.utc_now));
+  }
+
+  /// What the robot tells of itself to planner and launcher.
+  link::RobotStatusMessage status() const;
+
+  /// Whether the last step has something that is reported at once: another mode, or coming to rest
+  /// at the goal.
+  bool has_news() const { return has_news_; }
+
+  RobotId id() const { return id_; }
+  RobotMode mode() const { return output_.mode; }
+  bool settled() const { return output_.settled; }
+  bool has_route() const { return agent_.has_route(); }
+  double lag_s() const { return agent_.lag_s(); }  ///< see Agent
+  /// As measured last, or where place_at() said before.
+  const Vec2& position_m() const { return position_m_; }
+  void place_at(const Vec2& position_m) { position_m_ = position_m; }
+  std::uint32_t states_sent() const { return states_sent_; }
+  std::uint32_t states_received() const { return states_received_; }
+
+  /// For whoever steps many robots in turn: bring what a step looks at into the cache, first the
+  /// loop itself, then what it points to.
+  void prefetch() const {
+    agent_.prefetch();
+    swarm::prefetch(&id_, sizeof(*this) - sizeof(agent_));
+  }
+  void prefetch_neighbours() const { agent_.prefetch_neighbours(); }
+
+ private:
+  Measurement measure(const RobotTick& tick, const RobotParts& parts);
+  void decide(const RobotTick& tick, const RobotParts& parts, const Measurement& body);
+  void log_step(const RobotTick& tick, RobotLog& log, const Vec2& true_position_m) const;
+  std::uint8_t goal() const;
+  link::RobotStateMessage next_state(UtcTime utc_now);
+
+  Agent agent_;
+  RobotId id_;
+  std::uint32_t ticks_ = 0;
+  std::uint32_t late_ticks_ = 0;
+  std::uint32_t states_sent_ = 0;  // the sequence number of the last
+  std::uint32_t states_received_ = 0;
+  bool has_news_ = false;
+  Vec2 position_m_ = Vec2::Zero();
+  AgentOutput output_;
+};
+
+}  // namespace swarm::agent

@@ -1,0 +1,94 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "robot_agent/program/agent_process.hpp"
+
+#include <cerrno>
+#include <chrono>
+#include <ctime>
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "robot_agent/loop/tick_phase.hpp"
+#include "robot_agent/program/process_loop.hpp"
+#include "swarm_core/base/clock.hpp"
+#include "swarm_core/mission/mission_file.hpp"
+#include "swarm_core/shell/run_directory.hpp"
+#include "swarm_core/shell/stop_signal.hpp"
+
+namespace swarm::agent {
+namespace {
+
+/// Sleeps until `at`; false when a signal woke us early.
+bool sleep_until(SteadyTime at) {
+  const auto ns = at.time_since_epoch().count();
+  const timespec when{.tv_sec = static_cast<time_t>(ns / 1'000'000'000),
+                      .tv_nsec = static_cast<long>(ns % 1'000'000'000)};
+  return ::clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &when, nullptr) != EINTR;
+}
+
+bool parent_is_gone(std::uint32_t parent_pid) {
+  return parent_pid != 0 && static_cast<std::uint32_t>(::getppid()) != parent_pid;
+}
+
+}  // namespace
+
+struct AgentProcess::Impl {
+  ProcessOptions options;
+  Mission mission;
+  std::optional<ProcessLoop> loop;
+};
+
+AgentProcess::AgentProcess(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+AgentProcess::~AgentProcess() = default;
+
+Result<std::unique_ptr<AgentProcess>> AgentProcess::make(const ProcessOptions& options) {
+  const auto run = shell::read_run_info(options.run_dir);
+  if (!run) return tl::unexpected(run.error());
+  auto mission = load_mission(options.run_dir / shell::kMissionFile);
+  if (!mission) return tl::unexpected(mission.error());
+  auto impl = std::make_unique<Impl>();
+  impl->options = options;
+  impl->mission = std::move(*mission);
+  if (options.first.value() + options.count > impl->mission.robots.count || options.count == 0) {
+    return fail(ErrorCode::kBadInput, fmt::format("--ids: the mission has robots 0 to {}",
+                                                  impl->mission.robots.count - 1));
+  }
+  auto world = std::make_unique<World>(impl->mission.world);
+  auto robots = make_local_robots(impl->mission, *world,
+                                  {.run_dir = options.run_dir,
+                                   .first = options.first,
+                                   .count = options.count,
+                                   .seed = run->seed,
+                                   .now = std::chrono::steady_clock::now(),
+                                   .utc_now = utc_now()});
+  if (!robots) return tl::unexpected(robots.error());
+  auto bus = join_bus(options, *run, impl->mission);
+  if (!bus) return tl::unexpected(bus.error());
+  impl->loop.emplace(impl->mission, std::move(world), std::move(*robots), std::move(*bus));
+  return std::unique_ptr<AgentProcess>(new AgentProcess(std::move(impl)));
+}
+
+Result<void> AgentProcess::run() {
+  Impl& p = *impl_;
+  const Duration period = from_seconds(1.0 / p.mission.control.rate_hz);
+  const Duration phase = from_seconds(to_seconds(period) * tick_phase(p.options.first.value()));
+  const auto now = std::chrono::steady_clock::now();
+  SteadyTime next = now - now.time_since_epoch() % period + period + phase;
+  while (shell::stop_requests() == 0) {
+    if (!sleep_until(next)) continue;
+    const SteadyTime started = std::chrono::steady_clock::now();
+    p.loop->tick({.now = started, .utc_now = utc_now(), .lateness = started - next});
+    next += period;
+    // After an overrun of whole periods the missed ticks are skipped, not replayed in a burst.
+    const SteadyTime finished = std::chrono::steady_clock::now();
+    if (finished > next) next += (finished - next) / period * period;
+    if (parent_is_gone(p.options.parent_pid)) break;
+  }
+  p.loop->end({.now = std::chrono::steady_clock::now(), .utc_now = utc_now()});
+  return {};
+}
+
+}  // namespace swarm::agent

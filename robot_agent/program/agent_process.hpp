@@ -1,0 +1,28 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+
+#include "robot_agent/program/process_options.hpp"
+#include "swarm_core/base/result.hpp"
+
+namespace swarm::agent {
+
+/// The program: reads the run directory, joins the bus and ticks its robots by the machine's clock.
+class AgentProcess {
+ public:
+  /// Fails when the run directory or the mission is bad, or the bus refuses.
+  static Result<std::unique_ptr<AgentProcess>> make(const ProcessOptions& options);
+  ~AgentProcess();
+
+  /// Runs until a stop signal or the end of the parent.
+  Result<void> run();
+
+ private:
+  struct Impl;
+  explicit AgentProcess(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace swarm::agent

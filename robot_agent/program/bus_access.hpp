@@ -1,0 +1,36 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+
+#include "robot_agent/inbox.hpp"
+#include "robot_agent/program/process_options.hpp"
+#include "swarm_core/base/result.hpp"
+#include "swarm_core/mission/mission.hpp"
+#include "swarm_core/shell/run_directory.hpp"
+#include "swarm_link/port.hpp"
+#include "swarm_link/state_channel.hpp"
+
+namespace swarm::agent {
+
+/// The endpoints of an agent process on the bus.
+struct BusAccess {
+  std::unique_ptr<link::Participant> participant;  // first: it outlives its endpoints
+  std::unique_ptr<link::StateChannel> states;
+  Readers readers;
+  link::WriterPtr<link::StatusMessage> status;
+  link::WriterPtr<link::EventMessage> event;
+};
+
+/// Joins the run's bus as the process that the options describe. Fails when the bus refuses.
+Result<BusAccess> join_bus(const ProcessOptions& options, const shell::RunInfo& run,
+                           const Mission& mission);
+
+/// Makes all endpoints of a participant but those for states, which are left empty.
+Result<BusAccess> open_endpoints(std::unique_ptr<link::Participant> participant);
+
+/// Robot states by cell topics of the participant that is in the access already.
+void open_topic_channel(BusAccess& access, const LinkSpec& spec);
+
+}  // namespace swarm::agent

@@ -1,0 +1,70 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "robot_agent/program/local_robot.hpp"
+
+#include <utility>
+
+#include <unistd.h>
+
+#include "robot_agent/drivers/simulated_robot.hpp"
+#include "swarm_core/mission/placement.hpp"
+
+namespace swarm::agent {
+namespace {
+
+/// A log is written at every step, so that nothing is lost with a process that is killed. In one of
+/// many robots that would be most of its time: each of their logs is written once a second.
+constexpr std::uint32_t kManyRobots = 20;
+constexpr std::uint32_t kRecordsAtOnce = 10;
+
+/// A respawned robot's body is where its log last saw it; a new one at its place in the mission.
+Result<Vec2> first_position(const std::filesystem::path& log_file, const Vec2& placed_m) {
+  const auto last = blackbox::last_steps(log_file);
+  if (!last) return tl::unexpected(last.error());
+  return last->empty() ? placed_m : last->back().position_m;
+}
+
+Result<LogFile> open_log(const Mission& mission, const LocalRobotsSpec& spec, RobotId robot) {
+  const auto file = blackbox::file_of(spec.run_dir, robot);
+  auto writer = spec.count < kManyRobots
+                    ? blackbox::Writer::open(file)
+                    : blackbox::Writer::open(file, kRecordsAtOnce, robot.value() % kRecordsAtOnce);
+  if (!writer) return tl::unexpected(writer.error());
+  writer->append(blackbox::Header{.robot = robot,
+                                  .robots = mission.robots.count,
+                                  .process_id = static_cast<std::uint32_t>(::getpid()),
+                                  .radius_m = body_of(mission.robots, robot).radius_m,
+                                  .stamp = spec.utc_now});
+  return LogFile(std::move(*writer));
+}
+
+}  // namespace
+
+Result<LocalRobots> make_local_robots(const Mission& mission, const World& world,
+                                      const LocalRobotsSpec& spec) {
+  const auto places = place_robots(mission, spec.seed);
+  if (!places) return tl::unexpected(places.error());
+  LocalRobots made;
+  made.robots.reserve(spec.count);
+  AgentOptionsOf options_of(mission);
+  for (std::uint32_t i = 0; i < spec.count; ++i) {
+    const RobotId id(spec.first.value() + i);
+    const Vec2& placed_m = (*places)[id.value()];
+    const auto position_m = first_position(blackbox::file_of(spec.run_dir, id), placed_m);
+    if (!position_m) return tl::unexpected(position_m.error());
+    auto log = open_log(mission, spec, id);
+    if (!log) return tl::unexpected(log.error());
+    AgentIdentity self = agent_identity(mission, id);
+    self.underway = *position_m != placed_m;
+    made.any_is_underway = made.any_is_underway || self.underway;
+    made.robots.push_back(
+        {.loop = RobotLoop(world, options_of(id), self),
+         .driver = std::make_unique<SimulatedRobot>(make_simulated_body(
+             body_of(mission.robots, id), spec.now, *position_m, body_seed(id, spec.seed))),
+         .rng = agent_rng(id, spec.seed),
+         .log = std::move(*log)});
+  }
+  return made;
+}
+
+}  // namespace swarm::agent

@@ -1,0 +1,48 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <vector>
+
+#include "robot_agent/drivers/driver.hpp"
+#include "robot_agent/inbox.hpp"
+#include "robot_agent/loop/robot_loop.hpp"
+#include "robot_agent/program/log_file.hpp"
+#include "swarm_core/base/result.hpp"
+
+namespace swarm::agent {
+
+/// One robot of a process: its control loop and what the loop works with.
+struct LocalRobot {
+  RobotLoop loop;
+  std::unique_ptr<Driver> driver;
+  Rng rng;
+  LogFile log;
+  EchoGuard echo{};  ///< of the states it published
+};
+
+/// Which robots a process flies, and where their logs are.
+struct LocalRobotsSpec {
+  std::filesystem::path run_dir;
+  RobotId first;
+  std::uint32_t count = 1;
+  std::uint64_t seed = 1;  ///< of the run
+  SteadyTime now;
+  UtcTime utc_now;
+};
+
+struct LocalRobots {
+  std::vector<LocalRobot> robots;
+  bool any_is_underway = false;  ///< some were restarted in mid-flight
+};
+
+/// Makes simulated robots at their places in the mission, or where their logs saw them last, and
+/// begins their logs. Fails where a log cannot be opened or robots have no place. \pre the world
+/// outlives them
+Result<LocalRobots> make_local_robots(const Mission& mission, const World& world,
+                                      const LocalRobotsSpec& spec);
+
+}  // namespace swarm::agent

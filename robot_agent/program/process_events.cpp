@@ -1,0 +1,84 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "robot_agent/program/process_events.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+namespace swarm::agent {
+namespace {
+
+constexpr Duration kStatsEvery = std::chrono::seconds(1);
+
+}  // namespace
+
+void ProcessEvents::on_tick(SteadyTime now, UtcTime utc_now, Inbox& inbox,
+                            const Histogram& state_age) {
+  announce_planner(now, utc_now, inbox);
+  if (now - stats_at_ < kStatsEvery) return;
+  stats_at_ = now;
+  record_link_stats(utc_now, inbox, state_age);
+  announce_refusals(utc_now, inbox);
+}
+
+void ProcessEvents::record_link_stats(UtcTime utc_now, Inbox& inbox, const Histogram& state_age) {
+  for (LocalRobot& robot : robots_) {
+    blackbox::LinkStats stats{.stamp = utc_now,
+                              .states_sent = robot.loop.states_sent(),
+                              .states_received = robot.loop.states_received()};
+    if (&robot == &robots_.front()) {
+      stats.state_age = state_age;
+      stats.refused.assign(inbox.refused().all().begin(), inbox.refused().all().end());
+    }
+    robot.log.append(stats);
+  }
+  announce_dropped_records(utc_now);
+}
+
+void ProcessEvents::announce(UtcTime utc_now, link::Severity severity, const std::string& code,
+                             const std::string& text) {
+  writer_.write({.severity = severity,
+                 .source = robots_.front().loop.id().value(),
+                 .stamp_utc_ns = utc_now.time_since_epoch().count(),
+                 .code = code,
+                 .text = text});
+  robots_.front().log.append(blackbox::Note{.stamp = utc_now, .code = code, .text = text});
+}
+
+void ProcessEvents::announce_planner(SteadyTime now, UtcTime utc_now, const Inbox& inbox) {
+  const bool alive = inbox.mission().planner_alive(now);
+  if (alive == planner_was_alive_) return;
+  planner_was_alive_ = alive;
+  announce(utc_now, alive ? link::Severity::kInfo : link::Severity::kWarning,
+           alive ? "planner-heard" : "planner-silent",
+           alive ? "hears the planner" : "planner silent: holds with avoidance on");
+}
+
+void ProcessEvents::announce_refusals(UtcTime utc_now, Inbox& inbox) {
+  if (const std::uint32_t fresh = inbox.skewed() - skewed_reported_; fresh > 0) {
+    skewed_reported_ += fresh;
+    announce(utc_now, link::Severity::kWarning, "clock-skew",
+             fmt::format("{} state(s) from a clock that differs from ours", fresh));
+  }
+  for (std::size_t i = 0; i < link::kRefusalReasons; ++i) {
+    const auto reason = static_cast<link::RefusalReason>(i);
+    const std::uint32_t fresh = inbox.refused()[reason] - reported_[reason];
+    if (fresh == 0) continue;
+    reported_.count(reason, fresh);
+    announce(utc_now, link::Severity::kWarning, "refused",
+             fmt::format("{} message(s): {}", fresh, link::to_string(reason)));
+  }
+}
+
+void ProcessEvents::announce_dropped_records(UtcTime utc_now) {
+  const bool dropped = std::any_of(robots_.begin(), robots_.end(),
+                                   [](const LocalRobot& robot) { return robot.log.dropped() > 0; });
+  if (dropped && !records_dropped_) {
+    announce(utc_now, link::Severity::kWarning, "blackbox-dropped",
+             "the disk does not take what the black box records; flies on without");
+  }
+  records_dropped_ = dropped;
+}
+
+}  // namespace swarm::agent

@@ -1,0 +1,47 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include "robot_agent/inbox.hpp"
+#include "robot_agent/program/local_robot.hpp"
+#include "swarm_core/metrics/histogram.hpp"
+#include "swarm_link/port.hpp"
+
+namespace swarm::agent {
+
+/// Tells what happens to a process as a whole (planner lost and back, messages refused, clocks
+/// apart, a full disk) as events on the bus and notes in its first robot's log, and records the
+/// link's counters in all logs once a second.
+class ProcessEvents {
+ public:
+  /// \pre robots is not empty; all outlive this
+  ProcessEvents(std::span<LocalRobot> robots, link::Writer<link::EventMessage>& writer)
+      : robots_(robots), writer_(writer) {}
+
+  /// At the end of each tick. `state_age` is that of the states all robots used.
+  void on_tick(SteadyTime now, UtcTime utc_now, Inbox& inbox, const Histogram& state_age);
+
+  /// Records the counters now.
+  void record_link_stats(UtcTime utc_now, Inbox& inbox, const Histogram& state_age);
+
+ private:
+  void announce(UtcTime utc_now, link::Severity severity, const std::string& code,
+                const std::string& text);
+  void announce_planner(SteadyTime now, UtcTime utc_now, const Inbox& inbox);
+  void announce_refusals(UtcTime utc_now, Inbox& inbox);
+  void announce_dropped_records(UtcTime utc_now);
+
+  std::span<LocalRobot> robots_;
+  link::Writer<link::EventMessage>& writer_;
+  bool planner_was_alive_ = false;
+  bool records_dropped_ = false;    // announced already
+  link::RefusalCounters reported_;  // announced already
+  std::uint32_t skewed_reported_ = 0;
+  SteadyTime stats_at_;
+};
+
+}  // namespace swarm::agent

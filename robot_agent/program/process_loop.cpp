@@ -1,0 +1,145 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "robot_agent/program/process_loop.hpp"
+
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "swarm_core/mission/scene_bodies.hpp"
+
+namespace swarm::agent {
+namespace {
+
+Inbox make_inbox(const Mission& mission, Readers readers, link::StateChannel& states) {
+  const Duration silence = from_seconds(mission.timing.planner_silence_s);
+  const double settle_s = mission.link.send_interval_max_s + 2.0 / mission.control.rate_hz;
+  return {std::move(readers),
+          states,
+          link::wire_limits(mission),
+          MissionWatch(silence, from_seconds(settle_s)),
+          silence,
+          hears_farthest_m(mission)};
+}
+
+/// The bus as one robot of the process sees it.
+struct RobotBus {
+  const HeardCells& heard;
+  RobotId self;
+  EchoGuard& echo;
+  std::vector<link::RobotStateMessage>& published;
+
+  template <class Take>
+  void receive(const Vec2& position_m, Take take) const {
+    heard.visit_near(position_m, [&](const HeardState& state) {
+      if (state.report.robot != self) take(state.report, state.age);  // else our own echo
+    });
+  }
+  void publish(const link::RobotStateMessage& state) const {
+    echo.said(state);
+    published.push_back(state);
+  }
+};
+
+}  // namespace
+
+ProcessLoop::ProcessLoop(const Mission& mission, std::unique_ptr<World> world, LocalRobots robots,
+                         BusAccess bus)
+    : mission_(mission),
+      period_(from_seconds(1.0 / mission.control.rate_hz)),
+      world_(std::move(world)),
+      local_(std::move(robots)),
+      bus_(std::move(bus)),
+      inbox_(make_inbox(mission, std::move(bus_.readers), *bus_.states)),
+      plans_(local_.any_is_underway),
+      status_(mission, *bus_.status),
+      events_(local_.robots, *bus_.event),
+      density_(mission) {}
+
+void ProcessLoop::tick(const Time& time) {
+  std::vector<LocalRobot>& robots = local_.robots;
+  bus_.participant->receive();
+  inbox_.receive(time.now, time.utc_now, [&](RobotId id) -> const EchoGuard* {
+    const std::uint32_t offset = id.value() - robots.front().loop.id().value();
+    return offset < robots.size() ? &robots[offset].echo : nullptr;
+  });
+  follow_scene(time.utc_now);
+  const std::optional<PlanTime> plan_time = inbox_.plan_time(time.now);
+  plans_.receive(inbox_.take_plan(), time.now);
+  const std::optional<NewPlan> new_plan = plans_.take(time.now, plan_time.has_value());
+
+  step_robots({.now = time.now,
+               .utc_now = time.utc_now,
+               .lateness = time.lateness,
+               .period = period_,
+               .phase = inbox_.mission().phase(),
+               .planner_alive = inbox_.mission().planner_alive(time.now),
+               .stop_sent = UtcTime(Duration(inbox_.stop_stamp_utc_ns())),
+               .plan_version = inbox_.plan_version(),
+               .plan_time = plan_time,
+               .planned_density = planned_density(new_plan, plan_time)},
+              new_plan);
+  // Cell topics come after the plan: a start-up in which all discover all at once takes the
+  // discovery server several times as long, and no robot moves without a plan.
+  if (inbox_.plan_version() > 0) {
+    bus_.states->publish(published_);
+    bus_.states->listen_around(positions_m_);
+  }
+  status_.on_tick(source(time));
+  events_.on_tick(time.now, time.utc_now, inbox_, state_age_);
+}
+
+void ProcessLoop::step_robots(RobotTick tick, const std::optional<NewPlan>& new_plan) {
+  published_.clear();
+  positions_m_.clear();
+  for (LocalRobot& robot : local_.robots) {
+    std::optional<OfferedPlan> offered;
+    if (new_plan) offered.emplace(OfferedPlan{new_plan->flow, new_plan->entry_of(robot.loop.id())});
+    tick.new_plan = offered ? &*offered : nullptr;
+    RobotBus bus{inbox_.heard(), robot.loop.id(), robot.echo, published_};
+    robot.loop.step(
+        tick,
+        {.driver = *robot.driver, .rng = robot.rng, .log = robot.log, .state_ages = &state_age_},
+        bus);
+    positions_m_.push_back(robot.loop.position_m());
+  }
+}
+
+/// The map is made anew when the scene changed, and at every tick while an obstacle moves.
+void ProcessLoop::follow_scene(UtcTime utc_now) {
+  if (auto received = inbox_.take_scene()) {
+    scene_ = std::move(*received);
+    world_moves_ = true;
+    local_.robots.front().log.append(
+        blackbox::Note{.stamp = utc_now,
+                       .caused = UtcTime(Duration(static_cast<std::int64_t>(scene_.version))),
+                       .code = "scene",
+                       .text = fmt::format("took scene version {}", scene_.version)});
+  }
+  if (!world_moves_) return;
+  // A robot that comes back is inside its own body until the launcher receives it again.
+  const auto count = static_cast<std::uint32_t>(local_.robots.size());
+  const Scene without_own = without_bodies_of(scene_, local_.robots.front().loop.id(), count);
+  *world_ = world_at(mission_.world, without_own, utc_now);
+  world_moves_ = scene_.moves(utc_now);
+}
+
+/// At the plan's time, where the control method asks for it.
+const PlannedDensity* ProcessLoop::planned_density(const std::optional<NewPlan>& new_plan,
+                                                   const std::optional<PlanTime>& plan_time) {
+  if (!density_.is_asked_for()) return nullptr;
+  if (new_plan) flow_ = new_plan->flow;
+  if (flow_.empty() || !plan_time) return nullptr;
+  density_.update(flow_, plan_time->plan_time_s);
+  return density_.density();
+}
+
+void ProcessLoop::end(const Time& time) {
+  events_.record_link_stats(time.utc_now, inbox_, state_age_);
+  status_.publish_all(source(time));
+  for (LocalRobot& robot : local_.robots) {
+    robot.log.append(blackbox::Note{.stamp = time.utc_now, .code = "exit", .text = "graceful end"});
+  }
+}
+
+}  // namespace swarm::agent

@@ -1,0 +1,72 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "robot_agent/inbox.hpp"
+#include "robot_agent/loop/density_forecast.hpp"
+#include "robot_agent/program/bus_access.hpp"
+#include "robot_agent/program/local_robot.hpp"
+#include "robot_agent/program/plan_intake.hpp"
+#include "robot_agent/program/process_events.hpp"
+#include "robot_agent/program/status_report.hpp"
+#include "swarm_core/mission/mission.hpp"
+
+namespace swarm::agent {
+
+/// The tick of an agent process: receives once for all of its robots, steps each one's loop,
+/// publishes their states and reports on them. It is told the time, and knows neither signals nor
+/// sleep.
+///
+/// Each robot decides alone, from what it receives on the bus, also of robots in the same process;
+/// they share the bus access, the map and the clock, nothing else.
+class ProcessLoop {
+ public:
+  /// The robots refer to `*world`, which this object changes as the scene changes. The mission
+  /// outlives it. \pre the access has a state channel
+  ProcessLoop(const Mission& mission, std::unique_ptr<World> world, LocalRobots robots,
+              BusAccess bus);
+  ProcessLoop(const ProcessLoop&) = delete;
+  ProcessLoop& operator=(const ProcessLoop&) = delete;
+
+  struct Time {
+    SteadyTime now;
+    UtcTime utc_now;
+    Duration lateness{};  ///< actual minus scheduled start
+  };
+  void tick(const Time& time);
+
+  /// Records and reports for the last time.
+  void end(const Time& time);
+
+ private:
+  void follow_scene(UtcTime utc_now);
+  void step_robots(RobotTick tick, const std::optional<NewPlan>& new_plan);
+  const PlannedDensity* planned_density(const std::optional<NewPlan>& new_plan,
+                                        const std::optional<PlanTime>& plan_time);
+  StatusReport::Source source(const Time& time) {
+    return {local_.robots, inbox_, state_age_, time.now, time.utc_now};
+  }
+
+  const Mission& mission_;
+  Duration period_;
+  std::unique_ptr<World> world_;  // as it is now
+  LocalRobots local_;
+  BusAccess bus_;
+  Inbox inbox_;
+  PlanIntake plans_;
+  StatusReport status_;
+  ProcessEvents events_;
+  Scene scene_;
+  bool world_moves_ = false;
+  Histogram state_age_;  // of the states that all robots used
+  FlowPlan flow_;        // in force, where its density is asked for
+  DensityForecast density_;
+  std::vector<link::RobotStateMessage> published_;
+  std::vector<Vec2> positions_m_;
+};
+
+}  // namespace swarm::agent

@@ -1,0 +1,73 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "robot_agent/program/status_report.hpp"
+
+#include <algorithm>
+
+#include <unistd.h>
+
+namespace swarm::agent {
+namespace {
+
+/// Robots whose status is one message, where a process has so many.
+constexpr std::size_t kGroup = 100;
+
+std::span<const LocalRobot> group(std::span<const LocalRobot> robots, std::size_t first) {
+  return robots.subspan(first, std::min(kGroup, robots.size() - first));
+}
+
+bool has_news(std::span<const LocalRobot> robots) {
+  return std::any_of(robots.begin(), robots.end(),
+                     [](const LocalRobot& robot) { return robot.loop.has_news(); });
+}
+
+}  // namespace
+
+void StatusReport::on_tick(const Source& source) {
+  // All wait for all to have the plan: that is reported at once, as is that we are here.
+  const std::uint32_t version = source.inbox.plan_version();
+  const bool all_have_news = ticks_ == 0 || version != plan_reported_;
+  plan_reported_ = version;
+  for (std::size_t first = 0; first < source.robots.size(); first += kGroup) {
+    if (all_have_news || cadence_.is_due(first / kGroup, ticks_) ||
+        has_news(group(source.robots, first))) {
+      publish_group(source, first);
+    }
+  }
+  ++ticks_;
+}
+
+void StatusReport::publish_all(const Source& source) {
+  for (std::size_t first = 0; first < source.robots.size(); first += kGroup) {
+    publish_group(source, first);
+  }
+}
+
+/// What the process received and refused belongs to no single robot: the first group reports it.
+void StatusReport::publish_group(const Source& source, std::size_t first) {
+  message_.first_robot_id = source.robots[first].loop.id().value();
+  message_.process_id = static_cast<std::uint32_t>(::getpid());
+  message_.plan_epoch = source.inbox.plan_epoch();
+  message_.plan_version = source.inbox.plan_version();
+  message_.plan_scene_version = source.inbox.plan_scene_version();
+  message_.stamp_utc_ns = source.utc_now.time_since_epoch().count();
+  const auto plan_time = source.inbox.plan_time(source.now);
+  message_.plan_time_s = plan_time ? plan_time->plan_time_s : 0.0;
+  message_.robots.clear();
+  for (const LocalRobot& robot : group(source.robots, first)) {
+    message_.robots.push_back(robot.loop.status());
+  }
+  message_.refused.clear();
+  message_.state_age.clear();
+  if (first == 0) {
+    const auto& refused = source.inbox.refused().all();
+    message_.refused.assign(refused.begin(), refused.end());
+    for (std::size_t i = 0; i < Histogram::kBins; ++i) {
+      const auto count = static_cast<std::uint32_t>(source.state_age.bin(i));
+      if (count > 0) message_.state_age.push_back({static_cast<std::uint16_t>(i), count});
+    }
+  }
+  writer_.write(message_);
+}
+
+}  // namespace swarm::agent

@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "robot_agent/inbox.hpp"
+#include "robot_agent/loop/status_cadence.hpp"
+#include "robot_agent/program/local_robot.hpp"
+#include "swarm_core/metrics/histogram.hpp"
+#include "swarm_link/port.hpp"
+
+namespace swarm::agent {
+
+/// Publishes the status of the robots of a process: groups of them in turn, at the mission's rate
+/// and whenever a robot has news.
+class StatusReport {
+ public:
+  StatusReport(const Mission& mission, link::Writer<link::StatusMessage>& writer)
+      : cadence_(mission.control.rate_hz, mission.link.status_hz), writer_(writer) {}
+
+  /// What a status is made of.
+  struct Source {
+    std::span<const LocalRobot> robots;
+    Inbox& inbox;
+    const Histogram& state_age;  ///< of the states that all of them used
+    SteadyTime now;
+    UtcTime utc_now;
+  };
+
+  /// At the end of each tick: publishes what is due.
+  void on_tick(const Source& source);
+
+  /// Publishes the status of all robots now.
+  void publish_all(const Source& source);
+
+ private:
+  void publish_group(const Source& source, std::size_t first);
+
+  StatusCadence cadence_;
+  link::Writer<link::StatusMessage>& writer_;
+  link::StatusMessage message_;  // kept for its memory
+  std::uint64_t ticks_ = 0;
+  std::uint32_t plan_reported_ = 0;  // version
+};
+
+}  // namespace swarm::agent

@@ -1,0 +1,26 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+#include "swarm_core/base/result.hpp"
+
+namespace swarm::test {
+
+/// One lock-step flight whose outcome must not change by accident.
+struct DigestCase {
+  std::filesystem::path mission_file;
+  std::string fault;  ///< as `--fault`; empty: a perfect network
+  std::uint64_t seed = 1;
+};
+
+/// Flies it and hashes what it left, a hash for each kind of output, so that a change shows where
+/// it is: `steps`, `estimates`, `notes` and `link` of all robot logs, the `plans`, the `clock` of
+/// the plan and the `scenes`. Texts for people, process ids and wall times are left out. The same
+/// on any number of threads. Fails as `simulate` would.
+Result<std::string> simulated_digest(const DigestCase& flight);
+
+}  // namespace swarm::test

@@ -1,0 +1,153 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "robot_agent/loop/robot_loop.hpp"
+
+#include <variant>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "robot_agent/drivers/simulated_robot.hpp"
+#include "robot_agent/loop/status_cadence.hpp"
+#include "robot_agent/loop/tick_phase.hpp"
+
+namespace swarm::agent {
+namespace {
+
+constexpr Duration kPeriod = std::chrono::milliseconds(100);
+
+struct MemoryLog final : RobotLog {
+  void append(const blackbox::Step& step) override { steps.push_back(step); }
+  void append(const blackbox::Belief& estimate) override { estimates.push_back(estimate); }
+  void append(blackbox::Note note) override { notes.push_back(std::move(note)); }
+  std::vector<blackbox::Step> steps;
+  std::vector<blackbox::Belief> estimates;
+  std::vector<blackbox::Note> notes;
+};
+
+/// Delivers what the test puts in, once, and keeps what is published.
+struct TestBus {
+  template <class Take>
+  void receive(const Vec2&, Take take) {
+    for (const NeighbourReport& report : std::exchange(arrived, {})) take(report, age);
+  }
+  void publish(const link::RobotStateMessage& state) { published.push_back(state); }
+  std::vector<NeighbourReport> arrived;
+  Duration age{};
+  std::vector<link::RobotStateMessage> published;
+};
+
+/// A robot without a plan at (5, 5) of an empty yard.
+class LoneRobot : public ::testing::Test {
+ protected:
+  LoneRobot() { mission_.robots.count = 2; }
+
+  void tick(Duration lateness = {}) {
+    now_ += kPeriod;
+    loop_.step({.now = now_,
+                .utc_now = UtcTime(now_.time_since_epoch()),
+                .lateness = lateness,
+                .period = kPeriod,
+                .planner_alive = true},
+               {.driver = body_, .rng = rng_, .log = log_, .state_ages = &ages_}, bus_);
+  }
+
+  Mission mission_;
+  World world_ = *World::make({{0, 0}, {10, 10}}, {});
+  SteadyTime now_{std::chrono::seconds(10)};
+  RobotLoop loop_{world_, agent_options(mission_, RobotId(0)),
+                  agent_identity(mission_, RobotId(0))};
+  SimulatedRobot body_{now_, Vec2(5, 5)};
+  Rng rng_{1};
+  MemoryLog log_;
+  Histogram ages_;
+  TestBus bus_;
+};
+
+TEST_F(LoneRobot, RecordsEachTickAndItsFirstMode) {
+  tick();
+  tick();
+
+  ASSERT_EQ(log_.steps.size(), 2U);
+  EXPECT_EQ(log_.steps[1].position_m, Vec2(5, 5));
+  EXPECT_EQ(log_.steps[1].goal, blackbox::Step::kNoGoal);
+  ASSERT_EQ(log_.notes.size(), 1U);
+  EXPECT_EQ(log_.notes[0].code, "mode");
+  EXPECT_FALSE(loop_.has_news());
+}
+
+TEST_F(LoneRobot, PublishesItsStateWithGrowingNumbers) {
+  for (int k = 0; k < 20; ++k) tick();
+
+  ASSERT_GE(bus_.published.size(), 2U);
+  EXPECT_EQ(bus_.published[0].sequence_number, 1U);
+  EXPECT_EQ(bus_.published[1].sequence_number, 2U);
+  EXPECT_EQ(loop_.status().states_sent, bus_.published.size());
+}
+
+TEST_F(LoneRobot, CountsTheStatesItUsesOnce) {
+  const NeighbourReport report{
+      .robot = RobotId(1), .sequence = 1, .as_of = now_, .position_m = {6, 5}};
+  bus_.age = kPeriod;
+  bus_.arrived = {report, report};  // the second is a duplicate
+  tick();
+
+  EXPECT_EQ(loop_.status().states_received, 1U);
+  EXPECT_EQ(ages_.count(), 1U);
+  EXPECT_EQ(loop_.status().neighbours_heard, 1U);
+}
+
+TEST_F(LoneRobot, RecordsWhereItTakesItsNeighbourToBe) {
+  bus_.arrived = {{.robot = RobotId(1), .sequence = 1, .as_of = now_, .position_m = {6, 5}}};
+  for (int k = 0; k < 10; ++k) tick();
+
+  ASSERT_FALSE(log_.estimates.empty());
+  EXPECT_EQ(log_.estimates[0].neighbour, RobotId(1));
+  EXPECT_EQ(log_.estimates[0].position_m, Vec2(6, 5));
+}
+
+TEST_F(LoneRobot, CountsLateTicks) {
+  tick(std::chrono::milliseconds(19));
+  tick(std::chrono::milliseconds(21));
+
+  EXPECT_EQ(loop_.status().ticks, 2U);
+  EXPECT_EQ(loop_.status().late_ticks, 1U);
+  EXPECT_EQ(log_.steps[1].lateness_us, 21'000);
+}
+
+TEST_F(LoneRobot, RecordsWhereItsBodyStoppedWhenTicksFailedToCome) {
+  body_.command(now_, {1.0, 0.0}, 2 * kPeriod);
+  now_ += 9 * kPeriod;
+  tick();
+
+  ASSERT_EQ(log_.steps.size(), 2U);  // the point where it stopped comes first
+  EXPECT_NEAR((log_.steps[0].position_m - Vec2(5.2, 5)).norm(), 0.0, 1e-12);
+  EXPECT_EQ(log_.steps[1].stamp - log_.steps[0].stamp, 8 * kPeriod);
+}
+
+TEST(TickPhase, SpreadsRobotsOverThePeriod) {
+  std::vector<int> tenths(10);
+  for (std::uint32_t robot = 0; robot < 100; ++robot) {
+    ++tenths[static_cast<std::size_t>(10.0 * tick_phase(robot))];
+  }
+  for (const int robots : tenths) EXPECT_NEAR(robots, 10, 2);
+}
+
+TEST(StatusCadence, GivesEachNumberItsTurnOncePerRound) {
+  const StatusCadence cadence(10.0, 2.0);
+  EXPECT_EQ(cadence.every(), 5U);
+  for (std::uint64_t tick = 0; tick < 10; ++tick) {
+    for (std::uint64_t number = 0; number < 10; ++number) {
+      const bool in_turn = number % 5 == cadence.first_in_turn(tick);
+      EXPECT_EQ(cadence.is_due(number, tick), in_turn) << number << " at " << tick;
+    }
+  }
+}
+
+TEST(StatusCadence, ReportsAtEveryTickWhereStatusIsAsFastAsControl) {
+  const StatusCadence cadence(10.0, 50.0);
+  EXPECT_TRUE(cadence.is_due(3, 4));
+}
+
+}  // namespace
+}  // namespace swarm::agent
