@@ -2,10 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // Somebody publishes rubbish on the bus of a flying swarm. (Samples that only a foreign writer can
 // make, too long for the contract, are in tests/conformance.)
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <map>
+#include <optional>
+#include <set>
+#include <sstream>
 
 #include "flown_run.hpp"
 #include "swarm_core/shell/run_directory.hpp"
@@ -51,17 +56,107 @@ CellStatesMessage decent_batch(std::uint32_t robot, const Cell& cell) {
                       .y_m = 10}}};
 }
 
+/// A participant on the bus of a run that nobody invited.
+Result<std::unique_ptr<Participant>> intrude(const FlownRun& run) {
+  const auto info = shell::read_run_info(run.dir());
+  if (!info) return tl::unexpected(info.error());
+  return make_fastdds_participant({.name = "hostile",
+                                   .domain = info->domain,
+                                   .index = 60,
+                                   .discovery = {info->discovery_host, info->discovery_port},
+                                   .ownership_strength = 1000});
+}
+
+/// What the bus of a run shows: the planner's phase and how many robots are in a mode.
+class Onlooker {
+ public:
+  explicit Onlooker(Participant& participant)
+      : participant_(participant),
+        heartbeats_(participant.make_reader(heartbeat_topic()).value()),
+        statuses_(participant.make_reader(status_topic()).value()) {}
+
+  void look() {
+    participant_.receive();
+    std::vector<HeartbeatMessage> beats;
+    heartbeats_->take(beats);
+    for (const HeartbeatMessage& beat : beats) phase_ = beat.phase;
+    std::vector<StatusMessage> statuses;
+    statuses_->take(statuses);
+    for (const StatusMessage& status : statuses) {
+      for (const RobotStatusMessage& robot : status.robots) modes_[robot.robot_id] = robot.mode;
+    }
+  }
+  std::optional<MissionPhase> phase() const { return phase_; }
+  long robots_in(RobotMode mode) const {
+    return std::count_if(modes_.begin(), modes_.end(),
+                         [&](const auto& robot) { return robot.second == mode; });
+  }
+
+ private:
+  Participant& participant_;
+  ReaderPtr<HeartbeatMessage> heartbeats_;
+  ReaderPtr<StatusMessage> statuses_;
+  std::optional<MissionPhase> phase_;
+  std::map<std::uint32_t, RobotMode> modes_;
+};
+
+/// Who has reported an event with this text.
+std::set<std::string> reporters_of(const FlownRun& run, const std::string& text) {
+  std::set<std::string> reporters;
+  std::istringstream lines(read_text(run.dir() / "events.jsonl"));
+  for (std::string line; std::getline(lines, line);) {
+    const auto event = nlohmann::json::parse(line, nullptr, false);
+    if (event.is_object() && event["text"] == text) reporters.insert(event["source"]);
+  }
+  return reporters;
+}
+
+// Ids of commands are UTC stamps. One near 2^64, believed, would outrank all commands to come.
+TEST(HostileBus, ACommandWithAHugeIdLocksNobodyOut) {
+  constexpr std::size_t kRobots = 12;
+  FlownRun run;
+  ASSERT_TRUE(run.mission_started());
+  auto participant = intrude(run);
+  ASSERT_TRUE(participant.has_value()) << participant.error().message;
+  Onlooker onlooker(**participant);
+  const auto is_running = [&] {
+    onlooker.look();
+    return onlooker.phase() == MissionPhase::kRunning && onlooker.robots_in(RobotMode::kMoving) > 0;
+  };
+  const auto is_paused = [&] {
+    onlooker.look();
+    return onlooker.phase() == MissionPhase::kPaused &&
+           onlooker.robots_in(RobotMode::kMoving) == 0 &&
+           onlooker.robots_in(RobotMode::kHolding) > 0;
+  };
+  const auto commands = (*participant)->make_writer(command_topic()).value();
+  ASSERT_TRUE(eventually(
+      [&] { return is_running() && commands->matched() >= static_cast<int>(kRobots) + 1; }));
+
+  commands->write(
+      {.kind = CommandKind::kPause, .command_id = std::numeric_limits<std::uint64_t>::max()});
+
+  ASSERT_TRUE(eventually([&] {
+    return reporters_of(run, "1 message(s): forged").size() == kRobots + 1;
+  })) << read_text(run.dir() / "events.jsonl");
+  EXPECT_TRUE(is_running()) << "the forged pause was obeyed";
+
+  Program pause("swarm_launcher", {"command", run.dir().string(), "pause"});
+  EXPECT_EQ(pause.wait(), 0) << pause.err();
+  EXPECT_TRUE(eventually(is_paused));
+
+  Program resume("swarm_launcher", {"command", run.dir().string(), "resume"});
+  EXPECT_EQ(resume.wait(), 0) << resume.err();
+  EXPECT_TRUE(eventually(is_running));
+
+  EXPECT_EQ(run.launcher().wait(), 0) << run.launcher().err();
+  EXPECT_EQ(run.summary()["arrived"], 12);
+}
+
 TEST(HostileBus, RubbishIsRefusedCountedAndHarmless) {
   FlownRun run;
   ASSERT_TRUE(run.mission_started());
-  const auto info = shell::read_run_info(run.dir());
-  ASSERT_TRUE(info.has_value());
-  auto participant =
-      make_fastdds_participant({.name = "hostile",
-                                .domain = info->domain,
-                                .index = 60,
-                                .discovery = {info->discovery_host, info->discovery_port},
-                                .ownership_strength = 1000});
+  auto participant = intrude(run);
   ASSERT_TRUE(participant.has_value()) << participant.error().message;
   auto plans = (*participant)->make_writer(plan_topic());
   auto heartbeats = (*participant)->make_writer(heartbeat_topic());
