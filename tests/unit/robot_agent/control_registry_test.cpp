@@ -118,9 +118,9 @@ TEST(ControlRegistry, ChecksTheKeysOfItsMethodsWithLineAndColumn) {
   const auto error = [&](const std::string& more) { return mission(more, registry).error().message; };
 
   EXPECT_EQ(error(", drift_fault: sometimes"),
-            "m.yaml:6:55: control.drift_fault is the text \"sometimes\"; must be one of: none, throw, nan");
+            "m.yaml:6:56: control.drift_fault is \"sometimes\"; must be one of: none, throw, nan");
   EXPECT_EQ(error(", drift_fualt: nan"),
-            "m.yaml:6:42: unknown key control.drift_fualt; did you mean control.drift_fault?");
+            "m.yaml:6:43: unknown key control.drift_fualt; did you mean control.drift_fault?");
 }
 
 TEST(ControlRegistry, WritesTheKeysOfItsMethods) {

@@ -1,0 +1,37 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "tests/conformance/receivers/receiver.hpp"
+
+/// Messages that nobody may use, and good ones to compare with.
+namespace swarm::link::conformance {
+
+inline constexpr UtcTime kNow{std::chrono::seconds(1'800'000'000)};
+inline constexpr auto kHuge = std::numeric_limits<std::uint64_t>::max();
+
+/// Stamps and ids of that many seconds after kNow.
+std::int64_t ns_after(int seconds);
+std::uint64_t id_after(int seconds);
+
+/// A good message of a topic (an index of AnyMessage) of the small mission. Of each topic, message
+/// 2 is newer than message 1.
+AnyMessage good(std::size_t topic, int n);
+
+struct Case {
+  std::string name;
+  AnyMessage bad;
+  RefusalReason reason;
+  std::string only{};    ///< the one receiver that refuses it; empty: all that read the topic
+  std::string except{};  ///< the one that does not
+};
+
+std::vector<Case> all_cases();
+
+}  // namespace swarm::link::conformance
