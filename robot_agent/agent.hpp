@@ -99,7 +99,8 @@ class Agent {
   const Vec2& way_begin_m() const { return way_.begin_m; }
   /// Plan time by which it is behind its reference position; negative if ahead; 0 once arrived.
   double lag_s() const { return has_route_ && !arrived_ ? method_.lag_s() : 0.0; }
-  /// Why the control method is not called any more; empty while it works. A robot without one stops.
+  /// Why the control method is not called any more; empty while it works. A robot without one
+  /// stops.
   const std::string& control_fault() const { return method_.fault(); }
   /// How often it freed itself from a deadlock.
   std::uint32_t escapes() const { return method_.escapes(); }

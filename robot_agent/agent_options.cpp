@@ -11,7 +11,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "robot_agent/drivers/lag.hpp"
 #include "robot_agent/margins.hpp"
 #include "swarm_core/base/assert.hpp"
 
@@ -28,13 +27,13 @@ double fastest_mps(const RobotsSpec& robots) {
 
 /// Distance beyond which a robot matters neither to the safety filter, nor to forces of contact,
 /// nor to when a state is published [m].
-double close_m(const Mission& mission, const BodySpec& body) {
+double close_m(const Mission& mission, const BodySpec& body, double lag_s) {
   const double period_s = 1.0 / mission.control.rate_hz;
   const double margin_m = mission.safety.neighbour_margin_m;
-  const double braking_s = period_s / mission.safety.gap_share + lag_s(body);
+  const double braking_s = period_s / mission.safety.gap_share + lag_s;
   const double brake_m = margin_m + 2.0 * body.speed_max_mps * braking_s;
   // A robot that follows, or one that stopped unnoticed and was left behind, moves on for so long.
-  const double unnoticed_s = 2.0 * period_s + lag_s(body) + mission.link.send_interval_max_s;
+  const double unnoticed_s = 2.0 * period_s + lag_s + mission.link.send_interval_max_s;
   const double follows_m = margin_m + fastest_mps(mission.robots) * unnoticed_s;
   const double pressing_m = std::max(mission.control.neighbour_gap_m, room_gap_m(mission));
   return body.radius_m + largest_radius_m(mission.robots) +
@@ -50,7 +49,7 @@ std::vector<std::string_view> names_of(const ControlRegistry& registry) {
 }  // namespace
 
 Result<Shared<AgentOptions>> agent_options(const Mission& mission, RobotId robot,
-                                           const ControlRegistry& registry) {
+                                           const ControlRegistry& registry, double lag_s) {
   const BodySpec& body = body_of(mission.robots, robot);
   const ControlSpec& c = mission.control;
   const LinkSpec& l = mission.link;
@@ -58,13 +57,12 @@ Result<Shared<AgentOptions>> agent_options(const Mission& mission, RobotId robot
   const double hear_m = body.hear_radius_m > 0.0 ? body.hear_radius_m : l.hear_radius_m;
   const ControlEntry* entry = registry.find(c.method);
   if (entry == nullptr) {
-    return fail(ErrorCode::kBadInput,
-                fmt::format("control.method is {}; this program has {}", c.method,
-                            fmt::join(names_of(registry), ", ")));
+    return fail(ErrorCode::kBadInput, fmt::format("control.method is {}; this program has {}",
+                                                  c.method, fmt::join(names_of(registry), ", ")));
   }
   auto control = entry->prepare({.mission = mission, .body = body});
   if (!control) return tl::unexpected(control.error());
-  const double near_m = close_m(mission, body);
+  const double near_m = close_m(mission, body, lag_s);
   const double matters_m =
       std::isinf(control->reach_m) ? hear_m : std::max(near_m, control->reach_m);
   return Shared<AgentOptions>(AgentOptions{
@@ -73,7 +71,7 @@ Result<Shared<AgentOptions>> agent_options(const Mission& mission, RobotId robot
       .safety = {.radius_m = body.radius_m,
                  .speed_max_mps = body.speed_max_mps,
                  .period = period,
-                 .lag_s = lag_s(body),
+                 .lag_s = lag_s,
                  .gap_share = mission.safety.gap_share,
                  .stale_gain = mission.safety.stale_gain,
                  .neighbour_margin_m = mission.safety.neighbour_margin_m,
@@ -98,18 +96,19 @@ Result<Shared<AgentOptions>> agent_options(const Mission& mission, RobotId robot
 }
 
 Shared<AgentOptions> agent_options(const Mission& mission, RobotId robot) {
-  auto options = agent_options(mission, robot, builtin_control());
+  auto options =
+      agent_options(mission, robot, builtin_control(), body_lag_s(body_of(mission.robots, robot)));
   SWARM_ASSERT(options.has_value());
   return *std::move(options);
 }
 
-Result<AgentOptionsOf> AgentOptionsOf::make(const Mission& mission,
-                                            const ControlRegistry& registry) {
+Result<AgentOptionsOf> AgentOptionsOf::make(const Mission& mission, const ControlRegistry& registry,
+                                            const LagOf& lag_of) {
   std::map<const BodySpec*, Shared<AgentOptions>> by_body;
   for (std::uint32_t id = 0; id < mission.robots.count; ++id) {
     const auto [found, is_new] = by_body.try_emplace(&body_of(mission.robots, RobotId(id)));
     if (!is_new) continue;
-    auto options = agent_options(mission, RobotId(id), registry);
+    auto options = agent_options(mission, RobotId(id), registry, lag_of(*found->first));
     if (!options) return tl::unexpected(options.error());
     found->second = *std::move(options);
   }

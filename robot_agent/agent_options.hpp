@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <map>
 
 #include "robot_agent/control/route.hpp"
@@ -11,6 +12,7 @@
 #include "robot_agent/say_policy.hpp"
 #include "swarm_core/base/result.hpp"
 #include "swarm_core/base/shared.hpp"
+#include "swarm_core/mission/body_limits.hpp"
 #include "swarm_core/mission/mission.hpp"
 
 namespace swarm::agent {
@@ -24,17 +26,21 @@ struct AgentOptions {
   SayOptions say;
 };
 
-/// The options of a robot of a mission, and of any other with its body. kBadInput if the registry
-/// has no such control method, or what the method says of the mission.
+/// How long a body may take until it moves at the velocity it was commanded [s].
+using LagOf = std::function<double(const BodySpec&)>;
+
+/// The options of a robot of a mission, and of any other with its body, which lags by `lag_s`.
+/// kBadInput if the registry has no such control method, or what the method says of the mission.
 Result<Shared<AgentOptions>> agent_options(const Mission& mission, RobotId robot,
-                                           const ControlRegistry& registry);
+                                           const ControlRegistry& registry, double lag_s);
 /// The same with a built-in method. \pre mission.control.method is one
 Shared<AgentOptions> agent_options(const Mission& mission, RobotId robot);
 
 /// The options of all robots of a mission, made once for each body. The mission outlives it.
 class AgentOptionsOf {
  public:
-  static Result<AgentOptionsOf> make(const Mission& mission, const ControlRegistry& registry);
+  static Result<AgentOptionsOf> make(const Mission& mission, const ControlRegistry& registry,
+                                     const LagOf& lag_of = body_lag_s);
   /// With a built-in method.
   explicit AgentOptionsOf(const Mission& mission);
 

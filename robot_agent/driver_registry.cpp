@@ -15,8 +15,8 @@ namespace {
 DriverEntry simulated(std::string name, std::string doc) {
   return {.spec = {.name = std::move(name), .doc = std::move(doc), .options = {}},
           .make = [](const DriverContext& context) -> Result<std::unique_ptr<Driver>> {
-            return std::make_unique<SimulatedRobot>(make_simulated_body(
-                context.body(), context.now, context.position_m, context.seed));
+            return std::make_unique<SimulatedRobot>(
+                make_simulated_body(context.body(), context.now, context.position_m, context.seed));
           },
           .lag_s = lag_s};
 }

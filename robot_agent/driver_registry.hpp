@@ -19,7 +19,8 @@ namespace swarm::agent {
 struct DriverContext {
   const Mission& mission;
   RobotId robot;
-  Vec2 position_m = Vec2::Zero();  ///< its place at the start, or where it was last of a respawned one
+  Vec2 position_m =
+      Vec2::Zero();  ///< its place at the start, or where it was last of a respawned one
   SteadyTime now;
   std::uint64_t seed = 0;  ///< of its own noise
 

@@ -17,8 +17,6 @@ inline double obstacle_margin_m(const Mission& mission, const BodySpec& body) {
 
 /// Gap above which a robot has room [m]. In a dense region gaps are as small as the filter's
 /// margin, so that what presses begins well above.
-inline double room_gap_m(const Mission& mission) {
-  return mission.safety.neighbour_margin_m + 0.5;
-}
+inline double room_gap_m(const Mission& mission) { return mission.safety.neighbour_margin_m + 0.5; }
 
 }  // namespace swarm::agent

@@ -12,24 +12,24 @@ ApfOptions apf_options(const Mission& mission, const BodySpec& body) {
   const ControlSpec& c = mission.control;
   const double cruise_mps = std::min(c.cruise_mps, body.speed_max_mps);
   return {.keeps_time = c.tracking == "plan",
-        .pursuit = {.look_ahead_m = c.look_ahead_s * cruise_mps,
-                    .radius_m = body.radius_m,
-                    .keep_clearance_m = c.keep_clearance_m},
-        .pace = {.look_ahead_s = c.look_ahead_s,
-                 .gain_hz = c.pace_gain_hz,
-                 .approach_gain_hz = c.approach_gain_hz,
-                 .cruise_mps = cruise_mps},
-        .density = {.push_mps = c.density_push_mps},
-        .neighbour_repulsion = {.radius_m = body.radius_m,
-                                .gap_m = c.neighbour_gap_m,
-                                .push_mps = c.neighbour_push_mps},
-        .obstacle_repulsion = {.radius_m = body.radius_m,
-                               .gap_m = c.obstacle_gap_m,
-                               .push_mps = c.obstacle_push_mps},
-        .escape = {.stuck_after = from_seconds(c.stuck_after_s),
-                   .duration = from_seconds(c.escape_s),
-                   .spread_m = c.escape_spread_m,
-                   .radius_m = body.radius_m}};
+          .pursuit = {.look_ahead_m = c.look_ahead_s * cruise_mps,
+                      .radius_m = body.radius_m,
+                      .keep_clearance_m = c.keep_clearance_m},
+          .pace = {.look_ahead_s = c.look_ahead_s,
+                   .gain_hz = c.pace_gain_hz,
+                   .approach_gain_hz = c.approach_gain_hz,
+                   .cruise_mps = cruise_mps},
+          .density = {.push_mps = c.density_push_mps},
+          .neighbour_repulsion = {.radius_m = body.radius_m,
+                                  .gap_m = c.neighbour_gap_m,
+                                  .push_mps = c.neighbour_push_mps},
+          .obstacle_repulsion = {.radius_m = body.radius_m,
+                                 .gap_m = c.obstacle_gap_m,
+                                 .push_mps = c.obstacle_push_mps},
+          .escape = {.stuck_after = from_seconds(c.stuck_after_s),
+                     .duration = from_seconds(c.escape_s),
+                     .spread_m = c.escape_spread_m,
+                     .radius_m = body.radius_m}};
 }
 
 Result<PreparedControl> prepare(const ControlContext& context) {

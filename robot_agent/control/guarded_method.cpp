@@ -38,8 +38,8 @@ bool GuardedMethod::has_arrived(const ControlView& view) {
 }
 
 Vec2 GuardedMethod::wish(const ControlView& view, bool arrived, Rng& rng) {
-  return checked(guarded<Vec2>(
-      Vec2::Zero(), [&](ControlMethod& m) { return m.wish(view, arrived, rng); }));
+  return checked(
+      guarded<Vec2>(Vec2::Zero(), [&](ControlMethod& m) { return m.wish(view, arrived, rng); }));
 }
 
 Vec2 GuardedMethod::hold(const ControlView& view) {
@@ -51,7 +51,8 @@ std::uint32_t GuardedMethod::goal(const Vec2& position_m) const {
 }
 
 std::optional<TimeTracking> GuardedMethod::tracking() const {
-  return guarded(std::optional<TimeTracking>{}, [](const ControlMethod& m) { return m.tracking(); });
+  return guarded(std::optional<TimeTracking>{},
+                 [](const ControlMethod& m) { return m.tracking(); });
 }
 
 double GuardedMethod::lag_s() const {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 
 namespace swarm::agent {
@@ -12,6 +13,9 @@ namespace {
 constexpr Duration kLate = std::chrono::milliseconds(20);
 /// Of each robot, one estimate of a neighbour is recorded every so many ticks.
 constexpr std::uint32_t kTicksPerEstimate = 5;
+
+constexpr std::uint32_t kTicksPerHealth = 10;
+constexpr const char* kNoPosition = "the driver has no position; the robot holds";
 
 std::int32_t to_us(Duration d) {
   return static_cast<std::int32_t>(
@@ -52,16 +56,22 @@ Measurement RobotLoop::measure(const RobotTick& tick, const RobotParts& parts) {
 void RobotLoop::decide(const RobotTick& tick, const RobotParts& parts, const Measurement& body) {
   const RobotMode mode_before = output_.mode;
   const bool was_settled = output_.settled;
-  output_ = agent_.tick({.now = tick.now,
-                         .position_m = position_m_,
-                         .phase = tick.phase,
-                         .planner_alive = tick.planner_alive,
-                         .velocity_mps = body.velocity_mps,
-                         .plan_time = tick.plan_time,
-                         .planned_density = tick.planned_density},
-                        parts.rng);
-  // Valid for two periods: a tick may be late, a dead process must not drive on.
-  parts.driver.command(tick.now, output_.velocity_mps, 2 * tick.period);
+  output_ = body.is_valid ? agent_.tick({.now = tick.now,
+                                         .position_m = position_m_,
+                                         .phase = tick.phase,
+                                         .planner_alive = tick.planner_alive,
+                                         .velocity_mps = body.velocity_mps,
+                                         .plan_time = tick.plan_time,
+                                         .planned_density = tick.planned_density},
+                                        parts.rng)
+                          : without_position();
+  if (output_.mode == RobotMode::kStopped) {
+    parts.driver.stop(tick.now, StopKind::kHold);
+  } else {
+    // Valid for two periods: a tick may be late, a dead process must not drive on.
+    parts.driver.command(tick.now, output_.velocity_mps, 2 * tick.period);
+  }
+  update_fault(body.is_valid, parts.driver);
   const bool mode_changed = output_.mode != mode_before;
   has_news_ = mode_changed || (output_.settled && !was_settled);
 
@@ -74,6 +84,29 @@ void RobotLoop::decide(const RobotTick& tick, const RobotParts& parts, const Mea
                      .caused = output_.mode == RobotMode::kStopped ? tick.stop_sent : UtcTime{},
                      .code = "mode",
                      .text = std::string(to_string(output_.mode))});
+}
+
+/// A robot that does not know where it is brakes, and does not publish a position.
+AgentOutput RobotLoop::without_position() const {
+  AgentOutput out;
+  out.mode = output_.mode == RobotMode::kStopped || output_.mode == RobotMode::kWaiting
+                 ? output_.mode
+                 : RobotMode::kHolding;
+  out.nearest_gap_m = std::numeric_limits<double>::infinity();
+  return out;
+}
+
+void RobotLoop::update_fault(bool has_position, const Driver& driver) {
+  if (!agent_.control_fault().empty()) {
+    if (fault_.empty()) fault_ = agent_.control_fault();
+  } else if (!has_position) {
+    if (fault_ != kNoPosition) fault_ = kNoPosition;
+  } else if (fault_ == kNoPosition) {
+    fault_.clear();
+  } else if (ticks_ % kTicksPerHealth == 0) {
+    const DriverHealth health = driver.health();
+    fault_ = health.level == DriverHealth::Level::kGood ? std::string() : health.text;
+  }
 }
 
 void RobotLoop::log_step(const RobotTick& tick, RobotLog& log, const Vec2& true_position_m) const {

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstdint>
 #include <optional>
+#include <string>
 
 #include "robot_agent/agent.hpp"
 #include "robot_agent/drivers/driver.hpp"
@@ -81,6 +82,10 @@ class RobotLoop {
   /// at the goal.
   bool has_news() const { return has_news_; }
 
+  /// What is wrong with the robot: its control method, its position, its driver's health. Empty
+  /// while all is well.
+  const std::string& fault() const { return fault_; }
+
   RobotId id() const { return id_; }
   RobotMode mode() const { return output_.mode; }
   bool settled() const { return output_.settled; }
@@ -103,6 +108,8 @@ class RobotLoop {
  private:
   Measurement measure(const RobotTick& tick, const RobotParts& parts);
   void decide(const RobotTick& tick, const RobotParts& parts, const Measurement& body);
+  AgentOutput without_position() const;
+  void update_fault(bool has_position, const Driver& driver);
   void log_step(const RobotTick& tick, RobotLog& log, const Vec2& true_position_m) const;
   std::uint8_t goal() const;
   link::RobotStateMessage next_state(UtcTime utc_now);
@@ -116,6 +123,7 @@ class RobotLoop {
   bool has_news_ = false;
   Vec2 position_m_ = Vec2::Zero();
   AgentOutput output_;
+  std::string fault_;
 };
 
 }  // namespace swarm::agent

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "robot_agent/program/agent_process.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <ctime>
@@ -20,6 +21,9 @@
 
 namespace swarm::agent {
 namespace {
+
+/// A shorter tick is not worth an event, however fast the control loop is.
+constexpr Duration kLongTick = std::chrono::milliseconds(500);
 
 /// Sleeps until `at`; false when a signal woke us early.
 bool sleep_until(SteadyTime at) {
@@ -44,10 +48,18 @@ struct AgentProcess::Impl {
 AgentProcess::AgentProcess(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 AgentProcess::~AgentProcess() = default;
 
-Result<std::unique_ptr<AgentProcess>> AgentProcess::make(const ProcessOptions& options) {
+Catalogue catalogue_of(const RobotRegistry& registry) {
+  return {.planning_methods = {},
+          .control_methods = registry.control.specs(),
+          .drivers = registry.drivers.specs(),
+          .planning_is_open = true};
+}
+
+Result<std::unique_ptr<AgentProcess>> AgentProcess::make(const ProcessOptions& options,
+                                                         const RobotRegistry& registry) {
   const auto run = shell::read_run_info(options.run_dir);
   if (!run) return tl::unexpected(run.error());
-  auto mission = load_mission(options.run_dir / shell::kMissionFile);
+  auto mission = load_mission(options.run_dir / shell::kMissionFile, catalogue_of(registry));
   if (!mission) return tl::unexpected(mission.error());
   auto impl = std::make_unique<Impl>();
   impl->options = options;
@@ -57,7 +69,7 @@ Result<std::unique_ptr<AgentProcess>> AgentProcess::make(const ProcessOptions& o
                                                   impl->mission.robots.count - 1));
   }
   auto world = std::make_unique<World>(impl->mission.world);
-  auto robots = make_local_robots(impl->mission, *world,
+  auto robots = make_local_robots(impl->mission, *world, registry,
                                   {.run_dir = options.run_dir,
                                    .first = options.first,
                                    .count = options.count,
@@ -76,6 +88,8 @@ Result<void> AgentProcess::run() {
   const Duration period = from_seconds(1.0 / p.mission.control.rate_hz);
   const Duration phase = from_seconds(to_seconds(period) * tick_phase(p.options.first.value()));
   const auto now = std::chrono::steady_clock::now();
+  // So much later the bodies' watchdogs have stopped them: a command is valid for two periods.
+  const Duration overrun = std::max(2 * period, kLongTick);
   SteadyTime next = now - now.time_since_epoch() % period + period + phase;
   while (shell::stop_requests() == 0) {
     if (!sleep_until(next)) continue;
@@ -84,6 +98,7 @@ Result<void> AgentProcess::run() {
     next += period;
     // After an overrun of whole periods the missed ticks are skipped, not replayed in a burst.
     const SteadyTime finished = std::chrono::steady_clock::now();
+    if (finished - started > overrun) p.loop->on_overrun(utc_now(), finished - started);
     if (finished > next) next += (finished - next) / period * period;
     if (parent_is_gone(p.options.parent_pid)) break;
   }

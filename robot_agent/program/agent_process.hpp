@@ -5,15 +5,21 @@
 #include <memory>
 
 #include "robot_agent/program/process_options.hpp"
+#include "robot_agent/run_robot.hpp"
 #include "swarm_core/base/result.hpp"
 
 namespace swarm::agent {
 
+/// The names and keys of a mission that a robot program knows; the planner's section is open.
+Catalogue catalogue_of(const RobotRegistry& registry);
+
 /// The program: reads the run directory, joins the bus and ticks its robots by the machine's clock.
 class AgentProcess {
  public:
-  /// Fails when the run directory or the mission is bad, or the bus refuses.
-  static Result<std::unique_ptr<AgentProcess>> make(const ProcessOptions& options);
+  /// Fails when the run directory or the mission is bad, a driver does not start, or the bus
+  /// refuses.
+  static Result<std::unique_ptr<AgentProcess>> make(const ProcessOptions& options,
+                                                    const RobotRegistry& registry);
   ~AgentProcess();
 
   /// Runs until a stop signal or the end of the parent.

@@ -4,6 +4,7 @@
 
 #include <utility>
 
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include "robot_agent/drivers/simulated_robot.hpp"
@@ -38,15 +39,45 @@ Result<LogFile> open_log(const Mission& mission, const LocalRobotsSpec& spec, Ro
   return LogFile(std::move(*writer));
 }
 
+/// What bodies lag behind their commands, as their drivers say.
+std::function<double(const BodySpec&)> lag_by(const DriverRegistry& drivers) {
+  return [&drivers](const BodySpec& body) {
+    const DriverEntry* entry = drivers.find(body.model);
+    return entry != nullptr && entry->lag_s ? entry->lag_s(body) : 0.0;
+  };
+}
+
+Result<std::unique_ptr<Driver>> start_driver(const DriverRegistry& drivers,
+                                             const DriverContext& context) {
+  const std::string& name = context.body().model;
+  const DriverEntry* entry = drivers.find(name);
+  if (entry == nullptr) {
+    return fail(ErrorCode::kBadInput,
+                fmt::format("robots.model is {}, which this program does not have", name));
+  }
+  const auto refuse = [&](const Error& error) {
+    return fail(error.code,
+                fmt::format("robot {}: driver {}: {}", context.robot.value(), name, error.message));
+  };
+  auto driver = entry->make(context);
+  if (!driver) return refuse(driver.error());
+  if (const auto started = (*driver)->start(); !started) {
+    (*driver)->shutdown();
+    return refuse(started.error());
+  }
+  return driver;
+}
+
 }  // namespace
 
 Result<LocalRobots> make_local_robots(const Mission& mission, const World& world,
-                                      const LocalRobotsSpec& spec) {
+                                      const RobotRegistry& registry, const LocalRobotsSpec& spec) {
   const auto places = place_robots(mission, spec.seed);
   if (!places) return tl::unexpected(places.error());
   LocalRobots made;
   made.robots.reserve(spec.count);
-  AgentOptionsOf options_of(mission);
+  const auto options_of = AgentOptionsOf::make(mission, registry.control, lag_by(registry.drivers));
+  if (!options_of) return tl::unexpected(options_of.error());
   for (std::uint32_t i = 0; i < spec.count; ++i) {
     const RobotId id(spec.first.value() + i);
     const Vec2& placed_m = (*places)[id.value()];
@@ -57,12 +88,16 @@ Result<LocalRobots> make_local_robots(const Mission& mission, const World& world
     AgentIdentity self = agent_identity(mission, id);
     self.underway = *position_m != placed_m;
     made.any_is_underway = made.any_is_underway || self.underway;
-    made.robots.push_back(
-        {.loop = RobotLoop(world, options_of(id), self),
-         .driver = std::make_unique<SimulatedRobot>(make_simulated_body(
-             body_of(mission.robots, id), spec.now, *position_m, body_seed(id, spec.seed))),
-         .rng = agent_rng(id, spec.seed),
-         .log = std::move(*log)});
+    auto driver = start_driver(registry.drivers, {.mission = mission,
+                                                  .robot = id,
+                                                  .position_m = *position_m,
+                                                  .now = spec.now,
+                                                  .seed = body_seed(id, spec.seed)});
+    if (!driver) return tl::unexpected(driver.error());
+    made.robots.push_back({.loop = RobotLoop(world, (*options_of)(id), self),
+                           .driver = *std::move(driver),
+                           .rng = agent_rng(id, spec.seed),
+                           .log = std::move(*log)});
   }
   return made;
 }

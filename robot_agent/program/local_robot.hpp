@@ -11,6 +11,7 @@
 #include "robot_agent/inbox.hpp"
 #include "robot_agent/loop/robot_loop.hpp"
 #include "robot_agent/program/log_file.hpp"
+#include "robot_agent/run_robot.hpp"
 #include "swarm_core/base/result.hpp"
 
 namespace swarm::agent {
@@ -39,10 +40,11 @@ struct LocalRobots {
   bool any_is_underway = false;  ///< some were restarted in mid-flight
 };
 
-/// Makes simulated robots at their places in the mission, or where their logs saw them last, and
-/// begins their logs. Fails where a log cannot be opened or robots have no place. \pre the world
-/// outlives them
+/// Makes robots at their places in the mission, or where their logs saw them last, with the control
+/// method and the drivers that the mission names, begins their logs and starts their drivers. Fails
+/// where a log cannot be opened, robots have no place, the registry lacks a name, or a driver does
+/// not start. \pre the world outlives them
 Result<LocalRobots> make_local_robots(const Mission& mission, const World& world,
-                                      const LocalRobotsSpec& spec);
+                                      const RobotRegistry& registry, const LocalRobotsSpec& spec);
 
 }  // namespace swarm::agent

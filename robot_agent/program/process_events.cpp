@@ -16,6 +16,7 @@ constexpr Duration kStatsEvery = std::chrono::seconds(1);
 void ProcessEvents::on_tick(SteadyTime now, UtcTime utc_now, Inbox& inbox,
                             const Histogram& state_age) {
   announce_planner(now, utc_now, inbox);
+  announce_faults(utc_now);
   if (now - stats_at_ < kStatsEvery) return;
   stats_at_ = now;
   record_link_stats(utc_now, inbox, state_age);
@@ -53,6 +54,28 @@ void ProcessEvents::announce_planner(SteadyTime now, UtcTime utc_now, const Inbo
   announce(utc_now, alive ? link::Severity::kInfo : link::Severity::kWarning,
            alive ? "planner-heard" : "planner-silent",
            alive ? "hears the planner" : "planner silent: holds with avoidance on");
+}
+
+void ProcessEvents::on_overrun(UtcTime utc_now, Duration took) {
+  const std::uint32_t first = robots_.front().loop.id().value();
+  announce(utc_now, link::Severity::kError, "tick-overrun",
+           fmt::format("robots {} to {}: a tick took {:.1f} s; their commands ran out, so their "
+                       "bodies stopped meanwhile",
+                       first, first + robots_.size() - 1, to_seconds(took)));
+}
+
+/// What is wrong with a robot is announced once, and again when it is something else.
+void ProcessEvents::announce_faults(UtcTime utc_now) {
+  faults_.resize(robots_.size());
+  for (std::size_t i = 0; i < robots_.size(); ++i) {
+    const std::string& fault = robots_[i].loop.fault();
+    if (fault == faults_[i]) continue;
+    faults_[i] = fault;
+    const std::uint32_t id = robots_[i].loop.id().value();
+    announce(utc_now, fault.empty() ? link::Severity::kInfo : link::Severity::kError, "robot-fault",
+             fault.empty() ? fmt::format("robot {}: works again", id)
+                           : fmt::format("robot {}: {}", id, fault));
+  }
 }
 
 void ProcessEvents::announce_refusals(UtcTime utc_now, Inbox& inbox) {

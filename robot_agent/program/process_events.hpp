@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "robot_agent/inbox.hpp"
 #include "robot_agent/program/local_robot.hpp"
@@ -25,6 +26,9 @@ class ProcessEvents {
   /// At the end of each tick. `state_age` is that of the states all robots used.
   void on_tick(SteadyTime now, UtcTime utc_now, Inbox& inbox, const Histogram& state_age);
 
+  /// A tick took so long that the bodies' commands ran out.
+  void on_overrun(UtcTime utc_now, Duration took);
+
   /// Records the counters now.
   void record_link_stats(UtcTime utc_now, Inbox& inbox, const Histogram& state_age);
 
@@ -32,6 +36,7 @@ class ProcessEvents {
   void announce(UtcTime utc_now, link::Severity severity, const std::string& code,
                 const std::string& text);
   void announce_planner(SteadyTime now, UtcTime utc_now, const Inbox& inbox);
+  void announce_faults(UtcTime utc_now);
   void announce_refusals(UtcTime utc_now, Inbox& inbox);
   void announce_dropped_records(UtcTime utc_now);
 
@@ -42,6 +47,7 @@ class ProcessEvents {
   link::RefusalCounters reported_;  // announced already
   std::uint32_t skewed_reported_ = 0;
   SteadyTime stats_at_;
+  std::vector<std::string> faults_;  // announced already, by robot
 };
 
 }  // namespace swarm::agent

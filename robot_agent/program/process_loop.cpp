@@ -138,6 +138,7 @@ void ProcessLoop::end(const Time& time) {
   events_.record_link_stats(time.utc_now, inbox_, state_age_);
   status_.publish_all(source(time));
   for (LocalRobot& robot : local_.robots) {
+    robot.driver->shutdown();
     robot.log.append(blackbox::Note{.stamp = time.utc_now, .code = "exit", .text = "graceful end"});
   }
 }

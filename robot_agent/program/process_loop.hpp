@@ -39,7 +39,10 @@ class ProcessLoop {
   };
   void tick(const Time& time);
 
-  /// Records and reports for the last time.
+  /// Reports that a tick took so long that the bodies' commands ran out.
+  void on_overrun(UtcTime utc_now, Duration took) { events_.on_overrun(utc_now, took); }
+
+  /// Records and reports for the last time, and shuts the drivers down.
   void end(const Time& time);
 
  private:

@@ -89,7 +89,8 @@ const ComponentSpec* find_component(const Components& components, std::string_vi
 
 Catalogue open_catalogue() {
   Catalogue catalogue;
-  catalogue.is_open = true;
+  catalogue.planning_is_open = true;
+  catalogue.robots_are_open = true;
   return catalogue;
 }
 

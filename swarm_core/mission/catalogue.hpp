@@ -27,16 +27,18 @@ const ComponentSpec* find_component(const Components& components, std::string_vi
 /// What the programs of a run can do: the names and keys that a mission file may use. A program
 /// describes itself by `--describe`; the launcher checks a mission against what the programs that
 /// it is going to start describe.
+///
+/// In an open section names and keys that are not known are accepted as they are: a robot program
+/// does not know the planner's keys, and a recording's programs may not be at hand.
 struct Catalogue {
   Components planning_methods;  ///< planner.method and keys beside it
   Components control_methods;   ///< control.method and keys beside it
   Components drivers;           ///< robots.model and keys beside it
-  /// Names and keys that are not known are accepted as they are: for recordings of missions whose
-  /// programs are not at hand.
-  bool is_open = false;
+  bool planning_is_open = false;
+  bool robots_are_open = false;  ///< control methods and drivers
 };
 
-/// A catalogue that accepts any name and any scalar key.
+/// A catalogue that accepts any name and any scalar key in all these sections.
 Catalogue open_catalogue();
 
 /// As JSON, for `--describe`; `describe` reads back to an equal catalogue.

@@ -92,13 +92,11 @@ class MissionReader {
     if (node == nullptr) return;
     MapReader keys(*node, std::string(key), violations_);
     if constexpr (std::is_same_v<Section, ControlSpec>) {
-      read_component(keys, "method", mission_fields::kControlMethods, catalogue_.control_methods,
-                     section.method);
+      read_component(keys, "method", control_section(), section.method);
       read_choice(keys, "tracking", mission_fields::kTracking, section.tracking);
     }
     if constexpr (std::is_same_v<Section, PlannerSpec>) {
-      read_component(keys, "method", mission_fields::kPlannerMethods, catalogue_.planning_methods,
-                     section.method);
+      read_component(keys, "method", planner_section(), section.method);
       read_choice(keys, "sampler", mission_fields::kPlannerSamplers, section.sampler);
       read_choice(keys, "density_cap", mission_fields::kDensityCaps, section.density_cap);
       read_automatic(keys, "density_cap_per_m2", mission_fields::kDensityCap_per_m2,
@@ -106,10 +104,10 @@ class MissionReader {
     }
     read_fields(keys, section, fields);
     if constexpr (std::is_same_v<Section, ControlSpec>) {
-      read_options(keys, catalogue_.control_methods, section.options);
+      read_options(keys, control_section(), section.options);
     }
     if constexpr (std::is_same_v<Section, PlannerSpec>) {
-      read_options(keys, catalogue_.planning_methods, section.options);
+      read_options(keys, planner_section(), section.options);
     }
     keys.finish();
   }
@@ -122,9 +120,9 @@ class MissionReader {
   }
 
   void read_body(MapReader& keys, BodySpec& body) {
-    read_component(keys, "model", mission_fields::kRobotModels, catalogue_.drivers, body.model);
+    read_component(keys, "model", drivers_section(), body.model);
     read_fields(keys, body, mission_fields::kBody);
-    read_options(keys, catalogue_.drivers, body.options);
+    read_options(keys, drivers_section(), body.options);
   }
 
   void read_robots(const Node& node) {
@@ -205,33 +203,49 @@ class MissionReader {
     if (chosen) choice = *std::move(chosen);
   }
 
-  /// The name of a built-in component, or of one in the catalogue.
-  void read_component(MapReader& keys, std::string_view key,
-                      std::span<const std::string_view> built_in, const Components& others,
+  /// The components that a section of the file may name.
+  struct ComponentSection {
+    std::span<const std::string_view> built_in;
+    const Components& others;
+    bool is_open = false;
+  };
+  ComponentSection control_section() const {
+    return {mission_fields::kControlMethods, catalogue_.control_methods,
+            catalogue_.robots_are_open};
+  }
+  ComponentSection planner_section() const {
+    return {mission_fields::kPlannerMethods, catalogue_.planning_methods,
+            catalogue_.planning_is_open};
+  }
+  ComponentSection drivers_section() const {
+    return {mission_fields::kRobotModels, catalogue_.drivers, catalogue_.robots_are_open};
+  }
+
+  void read_component(MapReader& keys, std::string_view key, const ComponentSection& section,
                       std::string& name) {
-    std::vector<std::string_view> known(built_in.begin(), built_in.end());
-    for (const ComponentSpec& component : others) {
-      if (std::find(known.begin(), known.end(), component.name) == known.end()) {
-        known.emplace_back(component.name);
+    if (!section.is_open) {
+      std::vector<std::string_view> known(section.built_in.begin(), section.built_in.end());
+      for (const ComponentSpec& component : section.others) {
+        if (std::find(known.begin(), known.end(), component.name) == known.end()) {
+          known.emplace_back(component.name);
+        }
       }
+      return read_choice(keys, key, known, name);
     }
-    if (!catalogue_.is_open) return read_choice(keys, key, known, name);
     const Node* node = keys.take(key);
     if (node == nullptr) return;
     if (auto text = yaml::read_text(*node, keys.path_of(key), violations_)) name = *text;
   }
 
   /// The options that components of a section declare, whichever of them the mission names.
-  void read_options(MapReader& keys, const Components& components, OptionValues& values) {
-    if (catalogue_.is_open) {
-      for (const auto& [key, node] : keys.take_scalars()) values.set(key, node->text);
-      return;
-    }
-    for (const ComponentSpec& component : components) {
+  void read_options(MapReader& keys, const ComponentSection& section, OptionValues& values) {
+    for (const ComponentSpec& component : section.others) {
       for (const OptionSpec& option : component.options) {
         if (const Node* node = keys.take(option.key)) read_option(*node, keys, option, values);
       }
     }
+    if (!section.is_open) return;
+    for (const auto& [key, node] : keys.take_scalars()) values.set(key, node->text);
   }
 
   void read_option(const Node& node, const MapReader& keys, const OptionSpec& option,

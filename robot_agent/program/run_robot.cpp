@@ -1,0 +1,87 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "robot_agent/run_robot.hpp"
+
+#include <cstdio>
+#include <map>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include "robot_agent/program/agent_process.hpp"
+#include "swarm_core/shell/program.hpp"
+#include "swarm_core/shell/stop_signal.hpp"
+
+namespace swarm::agent {
+namespace {
+
+struct CommandLine {
+  ProcessOptions options;
+  std::uint32_t first = 0;
+  std::string fault;
+  bool describe = false;
+};
+
+void add_options(CLI::App& app, CommandLine& line) {
+  static const std::map<std::string, link::Vendor> kVendors = {
+      {"fastdds", link::Vendor::kFastDds}, {"cyclonedds", link::Vendor::kCycloneDds}};
+  app.add_option("--run", line.options.run_dir, "Run directory made by the launcher");
+  app.add_option("--ids", line.first, "First robot of this process");
+  app.add_option("--count", line.options.count, "Number of robots in this process");
+  app.add_option("--number", line.options.number, "Of this agent process in the run, from 0");
+  app.add_option("--parent", line.options.parent_pid,
+                 "End when this process is no longer our parent");
+  app.add_option("--dds", line.options.vendor, "Whose DDS it speaks")
+      ->transform(CLI::CheckedTransformer(kVendors));
+  app.add_flag("--by-gateway", line.options.by_gateway,
+               "Its states go by topics through the gateway, where the others' go by groups");
+  app.add_option("--fault", line.fault, "A bad network for what this process receives");
+  app.add_flag("--describe", line.describe,
+               "Print its control methods and drivers with their options as JSON, and exit");
+  shell::add_common_options(app);
+}
+
+Result<ExitCode> run(int argc, char** argv, const RobotRegistry& registry) {
+  CLI::App app(
+      "Moves one robot (or several) of a run, knowing only the plan, the map and the neighbours "
+      "that it receives.\nThe launcher starts it; to start one by hand: "
+      "robot_agent --run RUN_DIR --ids 7",
+      "robot_agent");
+  CommandLine line;
+  add_options(app, line);
+  const auto done = shell::parse(app, argc, argv);
+  if (!done) return tl::unexpected(done.error());
+  if (*done) return **done;
+  if (line.describe) {
+    std::puts(to_json(catalogue_of(registry)).c_str());
+    return ExitCode::kOk;
+  }
+  if (app.count("--run") == 0 || app.count("--ids") == 0) {
+    return fail(ErrorCode::kBadInput, "--run and --ids are required; the launcher gives both");
+  }
+  const auto faults = parse_link_faults(line.fault);
+  if (!faults) return tl::unexpected(faults.error());
+  line.options.faults = *faults;
+  line.options.first = RobotId(line.first);
+
+  shell::catch_stop_signals();
+  const auto process = AgentProcess::make(line.options, registry);
+  if (!process) return tl::unexpected(process.error());
+  if (const auto ran = (*process)->run(); !ran) return tl::unexpected(ran.error());
+  return ExitCode::kOk;
+}
+
+}  // namespace
+
+RobotRegistry builtin_robots() {
+  RobotRegistry registry;
+  register_builtin_control(registry.control);
+  register_builtin_drivers(registry.drivers);
+  return registry;
+}
+
+int run_robot(int argc, char** argv, const RobotRegistry& registry) {
+  return shell::run_main("robot_agent", [&] { return run(argc, argv, registry); });
+}
+
+}  // namespace swarm::agent
