@@ -206,7 +206,9 @@ Result<std::unique_ptr<PlannerProcess>> PlannerProcess::make(const ProcessOption
   impl->options = options;
   const auto run = shell::read_run_info(options.run_dir);
   if (!run) return tl::unexpected(run.error());
-  auto mission = load_mission(options.run_dir / shell::kMissionFile);
+  Catalogue known;
+  known.robots_are_open = true;  // what the robots' program has is not the planner's business
+  auto mission = load_mission(options.run_dir / shell::kMissionFile, known);
   if (!mission) return tl::unexpected(mission.error());
   impl->mission = std::move(*mission);
   impl->keeper.emplace(impl->mission, run->seed, &std::chrono::steady_clock::now);

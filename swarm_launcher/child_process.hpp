@@ -44,4 +44,10 @@ std::optional<ExitedChild> reap_child();
 /// Path of a program that lies beside the running one, e.g. "robot_agent".
 std::filesystem::path sibling_program(const std::string& name);
 
+/// `chosen`, or the program of this name that lies beside the running one if that is empty.
+inline std::filesystem::path program_or(const std::filesystem::path& chosen,
+                                        const std::string& name) {
+  return chosen.empty() ? sibling_program(name) : chosen;
+}
+
 }  // namespace swarm::launcher

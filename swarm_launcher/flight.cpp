@@ -203,7 +203,7 @@ Result<void> Flight::start(ProcessIndex process) {
     log = "planner.log";
   } else {
     const auto [first, count] = supervisor_->robots_of(process);
-    command_line = {sibling_program("robot_agent"),
+    command_line = {program_or(options_.how.agent_program, "robot_agent"),
                     "--run",
                     dir_.string(),
                     "--ids",

@@ -25,7 +25,7 @@ constexpr int kMostRestarts = 10;
 }  // namespace
 
 Result<ExitCode> run_gateway(const GatewayCommandOptions& options) {
-  const auto mission = load_mission(options.run_dir / shell::kMissionFile);
+  const auto mission = load_mission(options.run_dir / shell::kMissionFile, open_catalogue());
   if (!mission) return tl::unexpected(mission.error());
   const auto run = shell::read_run_info(options.run_dir);
   if (!run) return tl::unexpected(run.error());

@@ -11,6 +11,7 @@
 
 #include "swarm_core/mission/mission_file.hpp"
 #include "swarm_launcher/child_process.hpp"
+#include "swarm_launcher/described_program.hpp"
 #include "swarm_launcher/flight.hpp"
 #include "swarm_launcher/packing.hpp"
 
@@ -27,7 +28,9 @@ Machine this_machine() {
 
 Result<ExitCode> run_mission(const RunOptions& options) {
   become_urgent();
-  auto mission = load_mission(options.mission_file);
+  const auto catalogue = catalogue_of(options.how.agent_program);
+  if (!catalogue) return tl::unexpected(catalogue.error());
+  auto mission = load_mission(options.mission_file, *catalogue);
   if (!mission) return tl::unexpected(mission.error());
   if (options.robots) mission->robots.count = *options.robots;
   const std::uint32_t robots = mission->robots.count;

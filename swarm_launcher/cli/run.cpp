@@ -47,6 +47,9 @@ Command add_run(CLI::App& program) {
       ->excludes(per_process);
   run->add_option("--seed", o->how.seed, "Seed of placement, plan and robots");
   run->add_option("--out", o->how.out, "Run directory (default: runs/<mission>-<time>)");
+  run->add_option("--agent-program", o->how.agent_program,
+                  "Robot program with drivers or control methods of your own (run_robot)")
+      ->check(CLI::ExistingFile);
   add_domain(*run, o->how.domain);
   add_channel(*run, o->how.channel);
   const std::map<std::string, AgentDds> agent_dds = {{"fastdds", AgentDds::kFastDds},

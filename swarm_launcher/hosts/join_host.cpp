@@ -198,7 +198,7 @@ Result<ExitCode> join_host(const JoinOptions& options) {
   if (auto written = shell::write_file(mission_file, offer->mission_yaml); !written) {
     return tl::unexpected(written.error());
   }
-  const auto mission = load_mission(mission_file);
+  const auto mission = load_mission(mission_file, open_catalogue());
   if (!mission) return tl::unexpected(mission.error());
   if (offer->first_robot + offer->robots > mission->robots.count) {
     return fail(ErrorCode::kBadInput, "the launcher's offer does not fit its mission");

@@ -1,0 +1,21 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+
+#include "swarm_core/base/result.hpp"
+#include "swarm_core/mission/catalogue.hpp"
+
+namespace swarm::launcher {
+
+/// What a robot program says of itself: runs `program --describe` and reads the JSON that it
+/// prints. kBadInput if it cannot be started, does not end within ten seconds, or prints something
+/// else.
+Result<Catalogue> describe_program(const std::filesystem::path& program);
+
+/// The components that a mission may name when this program is going to fly its robots; an empty
+/// path stands for our own program.
+Result<Catalogue> catalogue_of(const std::filesystem::path& agent_program);
+
+}  // namespace swarm::launcher
