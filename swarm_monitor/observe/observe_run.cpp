@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-#include <utility>
+#include <chrono>
+#include <thread>
 
 #include "swarm_core/mission/mission_file.hpp"
 #include "swarm_core/shell/run_directory.hpp"
@@ -22,7 +23,9 @@ Result<void> observe_run(const std::filesystem::path& run_dir, Observer& observe
   observer.on_mission(*mission);
   BusReader reader(*mission, observer);
   while (go_on()) {
-    (*tap)->take(kPoll, [&](const TappedSample& sample) { reader.take(sample); });
+    const auto next = std::chrono::steady_clock::now() + kPoll;
+    (*tap)->take(Duration(0), [&](const TappedSample& sample) { reader.take(sample); });
+    std::this_thread::sleep_until(next);  // take() waits for states only where they go by groups
   }
   return {};
 }
