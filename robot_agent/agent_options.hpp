@@ -30,7 +30,8 @@ struct AgentOptions {
 using LagOf = std::function<double(const BodySpec&)>;
 
 /// The options of a robot of a mission, and of any other with its body, which lags by `lag_s`.
-/// kBadInput if the registry has no such control method, or what the method says of the mission.
+/// kBadInput if the registry has no such control method, or what the method reports about the
+/// mission.
 Result<Shared<AgentOptions>> agent_options(const Mission& mission, RobotId robot,
                                            const ControlRegistry& registry, double lag_s);
 /// The same with a built-in method. \pre mission.control.method is one

@@ -9,7 +9,7 @@
 
 namespace swarm::launcher {
 
-/// What a robot program says of itself: runs `program --describe` and reads the JSON that it
+/// A robot program's description of itself: runs `program --describe` and reads the JSON that it
 /// prints. kBadInput if it cannot be started, does not end within ten seconds, or prints something
 /// else.
 Result<Catalogue> describe_program(const std::filesystem::path& program);

@@ -198,8 +198,7 @@ class TrackTable {
 };
 
 Result<RecordedRun> with_mission(const std::string& yaml, const std::filesystem::path& from) {
-  auto mission = 
-      parse_mission(yaml, std::string(shell::kMissionFile), {}, open_catalogue());
+  auto mission = parse_mission(yaml, std::string(shell::kMissionFile), {}, open_catalogue());
   if (!mission) {
     return fail(ErrorCode::kEnvironment,
                 fmt::format("{} is no recorded run:\n{}", from.string(), mission.error().message));

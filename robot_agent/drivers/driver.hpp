@@ -38,7 +38,7 @@ enum class StopKind : std::uint8_t {
   kKill,  ///< cut the motors now; may not be undone
 };
 
-/// What a driver says of its robot's state of health.
+/// A driver's report of its robot's state of health.
 struct DriverHealth {
   enum class Level : std::uint8_t { kGood, kDegraded, kFailed };
   Level level = Level::kGood;
@@ -53,7 +53,7 @@ struct DriverHealth {
 /// robot does so in a thread of its own.
 ///
 /// Life: start() once, then measure() and command() in every control period, stop() when the
-/// mission says so, shutdown() once at the end, also after a failed start().
+/// mission demands it, shutdown() once at the end, also after a failed start().
 class Driver {
  public:
   virtual ~Driver() = default;

@@ -97,7 +97,7 @@ class RobotLoop {
   std::uint32_t states_sent() const { return states_sent_; }
   std::uint32_t states_received() const { return states_received_; }
 
-  /// For whoever steps many robots in turn: bring what a step looks at into the cache, first the
+  /// For callers that step many robots in turn: brings what a step reads into the cache, first the
   /// loop itself, then what it points to.
   void prefetch() const {
     agent_.prefetch();

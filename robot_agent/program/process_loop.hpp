@@ -18,8 +18,8 @@
 namespace swarm::agent {
 
 /// The tick of an agent process: receives once for all of its robots, steps each one's loop,
-/// publishes their states and reports on them. It is told the time, and knows neither signals nor
-/// sleep.
+/// publishes their states and reports on them. It gets the time as an argument, and knows neither
+/// signals nor sleep.
 ///
 /// Each robot decides alone, from what it receives on the bus, also of robots in the same process;
 /// they share the bus access, the map and the clock, nothing else.

@@ -11,7 +11,7 @@
 
 namespace swarm::agent {
 
-/// What the command line of robot_agent says.
+/// The options of robot_agent's command line.
 struct ProcessOptions {
   std::filesystem::path run_dir;
   RobotId first;  ///< the robots first … first + count − 1 live in this process

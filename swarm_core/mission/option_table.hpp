@@ -12,7 +12,7 @@
 
 namespace swarm {
 
-/// Binds the keys of a component's options to the members of its own struct, each said once with
+/// Binds the keys of a component's options to the members of its own struct, each stated once with
 /// its range and one line of documentation. The struct's initialisers are the defaults:
 ///
 ///   struct SpiralOptions { double gain_hz = 0.5; std::uint32_t turns = 3; };

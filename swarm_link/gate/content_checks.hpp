@@ -36,7 +36,7 @@ Checked<void> check_event(const EventMessage& message, const WireLimits& limits)
 Checked<void> check_batch(const CellStatesMessage& message);
 
 /// Also that its stamp is within clock_skew_refuse of `now`: a state is of use only while it is
-/// fresh. For whoever delivers states without a bus, such as a simulated network, this is the
+/// fresh. For callers that deliver states without a bus, such as a simulated network, this is the
 /// whole check. Does not allocate.
 Checked<void> check_state(const RobotStateMessage& state, const WireLimits& limits, UtcTime now);
 

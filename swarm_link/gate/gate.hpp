@@ -57,7 +57,7 @@ class Gate {
   Checked<void> event(const EventMessage& message);
 
   Checked<void> batch(const CellStatesMessage& message) { return counted(check_batch(message)); }
-  /// `own` belongs to the robot of this process that the state is said to be of; null: of none.
+  /// `own` belongs to the robot of this process that the state claims to be of; null: of none.
   /// States are not ordered here: what a late one is worth, each robot's neighbour table decides.
   Checked<void> state(const RobotStateMessage& state, UtcTime now, const EchoGuard* own = nullptr) {
     Checked<void> checked = check_state(state, options_.limits, clock_for(state, now));

@@ -28,7 +28,7 @@ Result<RecordResult> record_bus(const RecordOptions& options) {
   const auto mission_yaml =
       shell::read_file(options.run_dir / shell::kMissionFile, kMaxMissionBytes);
   if (!mission_yaml) return tl::unexpected(mission_yaml.error());
-  const auto mission = 
+  const auto mission =
       parse_mission(*mission_yaml, std::string(shell::kMissionFile), {}, open_catalogue());
   if (!mission) return tl::unexpected(mission.error());
   auto tap = tap_bus(options.run_dir);

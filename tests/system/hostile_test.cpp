@@ -56,7 +56,7 @@ CellStatesMessage decent_batch(std::uint32_t robot, const Cell& cell) {
                       .y_m = 10}}};
 }
 
-/// A participant on the bus of a run that nobody invited.
+/// A foreign participant on the bus of a run.
 Result<std::unique_ptr<Participant>> intrude(const FlownRun& run) {
   const auto info = shell::read_run_info(run.dir());
   if (!info) return tl::unexpected(info.error());
@@ -111,7 +111,7 @@ std::set<std::string> reporters_of(const FlownRun& run, const std::string& text)
   return reporters;
 }
 
-// Ids of commands are UTC stamps. One near 2^64, believed, would outrank all commands to come.
+// Ids of commands are UTC stamps. One near 2^64, if accepted, would outrank all commands to come.
 TEST(HostileBus, ACommandWithAHugeIdLocksNobodyOut) {
   constexpr std::size_t kRobots = 12;
   FlownRun run;

@@ -10,7 +10,7 @@
 
 #include "tests/conformance/receivers/receiver.hpp"
 
-/// Messages that nobody may use, and good ones to compare with.
+/// Messages that every receiver must refuse, and good ones to compare with.
 namespace swarm::link::conformance {
 
 inline constexpr UtcTime kNow{std::chrono::seconds(1'800'000'000)};

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-// One table of messages that nobody may use, against every program that receives them: refused,
+// One table of messages that must be refused, against every program that receives them: refused,
 // counted by reason, nothing changed, and the next good message is used.
 #include <string>
 #include <vector>

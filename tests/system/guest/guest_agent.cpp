@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
 // A robot program of somebody else's: the built-in potential field, but that of robot 3 fails as
-// its mission says: it throws, returns a velocity that is not a number, or sleeps for two seconds,
+// its mission asks: it throws, returns a velocity that is not a number, or sleeps for two seconds,
 // two seconds after its start.
 #include <chrono>
 #include <cstring>

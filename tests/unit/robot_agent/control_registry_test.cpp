@@ -115,7 +115,9 @@ TEST(ControlRegistry, FliesAMethodOfSomebodyElse) {
 
 TEST(ControlRegistry, ChecksTheKeysOfItsMethodsWithLineAndColumn) {
   const ControlRegistry registry = with_drift();
-  const auto error = [&](const std::string& more) { return mission(more, registry).error().message; };
+  const auto error = [&](const std::string& more) {
+    return mission(more, registry).error().message;
+  };
 
   EXPECT_EQ(error(", drift_fault: sometimes"),
             "m.yaml:6:56: control.drift_fault is \"sometimes\"; must be one of: none, throw, nan");

@@ -1,11 +1,10 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-#include "swarm_core/mission/option_table.hpp"
-
 #include <gtest/gtest.h>
 
 #include "swarm_core/mission/catalogue.hpp"
 #include "swarm_core/mission/mission_file.hpp"
+#include "swarm_core/mission/option_table.hpp"
 
 namespace swarm {
 namespace {
@@ -79,9 +78,7 @@ TEST(OpenCatalogue, KeepsNamesAndKeysThatItDoesNotKnow) {
   EXPECT_EQ(again->robots.options, mission->robots.options);
 }
 
-TEST(ClosedCatalogue, RefusesThem) {
-  EXPECT_FALSE(parse_mission(kMission, "m.yaml"));
-}
+TEST(ClosedCatalogue, RefusesThem) { EXPECT_FALSE(parse_mission(kMission, "m.yaml")); }
 
 }  // namespace
 }  // namespace swarm
