@@ -38,18 +38,19 @@ std::string one_line(std::string text) {
 
 }  // namespace
 
-PlanKeeper::PlanKeeper(const Mission& mission, std::uint64_t seed, StageClock clock)
+PlanKeeper::PlanKeeper(const Mission& mission, Planner planner, std::uint64_t seed,
+                       StageClock clock)
     : mission_(mission),
       seed_(seed),
       clock_(std::move(clock)),
-      planner_(planner_options(mission)),
+      planner_(std::move(planner)),
       robots_(mission.robots.count, from_seconds(3.0 + 3.0 / mission.link.status_hz)),
       scene_(first_scene(mission.world.obstacles().size())),
       governor_(mission.plan_clock) {}
 
 Result<void> PlanKeeper::plan_first() {
   Rng rng(seed_);
-  auto planned = planner_.plan({mission_.world, mission_.start, mission_.goal}, rng, clock_);
+  auto planned = planner_.plan({mission_.world, mission_.start, mission_.goal}, {rng, clock_});
   if (!planned) return tl::unexpected(planned.error());
   newest_ = {*std::move(planned), {}};
   return {};
@@ -67,15 +68,15 @@ bool PlanKeeper::take_scene(Scene scene) {
 
 /// From where the robots are, once they have left their start; before, the mission's own mixture is
 /// the truth they were placed by.
-Result<Replan> PlanKeeper::plan_anew(const World& world, std::span<const HeardRobot> heard) {
+Result<Replan> PlanKeeper::plan_anew(const World& world, std::span<const ReportedRobot> robots) {
   const Mixture& goal = scene_.goal ? *scene_.goal : mission_.goal;
   planner_.set_risk({.alpha = scene_.risk_alpha.value_or(mission_.planner.risk_alpha),
                      .delta_m = mission_.planner.risk_delta_m});
   Rng rng(mix_seed(seed_, version_));
-  if (!heard.empty()) {
-    return replan(planner_, world, goal, heard, mission_.robots.count, rng, clock_);
+  if (!robots.empty()) {
+    return replan(planner_, {world, goal, robots}, mission_.robots.count, {rng, clock_});
   }
-  auto planned = planner_.plan({world, mission_.start, goal}, rng, clock_);
+  auto planned = planner_.plan({world, mission_.start, goal}, {rng, clock_});
   if (!planned) return tl::unexpected(planned.error());
   return Replan{*std::move(planned), {}};
 }
@@ -83,12 +84,12 @@ Result<Replan> PlanKeeper::plan_anew(const World& world, std::span<const HeardRo
 /// Around the bodies of fallen robots, if there is a plan that gets around them. A Gaussian is
 /// wider than a body: one under a source, a goal, or in a passage can be more than any plan gets
 /// around, but not more than a robot does.
-Result<Replan> PlanKeeper::plan_around_bodies(UtcTime utc, std::span<const HeardRobot> heard,
+Result<Replan> PlanKeeper::plan_around_bodies(UtcTime utc, std::span<const ReportedRobot> robots,
                                               Step& step) {
-  auto planned = plan_anew(world_during(mission_.world, scene_, utc, kReplanPeriod), heard);
+  auto planned = plan_anew(world_during(mission_.world, scene_, utc, kReplanPeriod), robots);
   const Scene without = without_bodies(scene_);
   if (planned || without.obstacles.size() == scene_.obstacles.size()) return planned;
-  auto through = plan_anew(world_during(mission_.world, without, utc, kReplanPeriod), heard);
+  auto through = plan_anew(world_during(mission_.world, without, utc, kReplanPeriod), robots);
   if (!through) return planned;
   if (bodies_left_out_ != scene_.version) {
     step.notices.push_back({true, "bodies-not-planned",
@@ -102,13 +103,13 @@ Result<Replan> PlanKeeper::plan_around_bodies(UtcTime utc, std::span<const Heard
 }
 
 void PlanKeeper::try_again(SteadyTime now, UtcTime utc, Step& step) {
-  std::vector<HeardRobot> heard;
+  std::vector<ReportedRobot> robots;
   if (is_in_flight(now)) {
-    heard = placed(robots_.fresh(now));
-    if (heard.empty() || is_waiting_for_robots(now)) return;
+    robots = placed(robots_.fresh(now));
+    if (robots.empty() || is_waiting_for_robots(now)) return;
   }
   tried_at_ = now;
-  auto planned = plan_around_bodies(utc, heard, step);
+  auto planned = plan_around_bodies(utc, robots, step);
   if (!planned) {
     if (failed_scene_ == scene_.version) return;
     failed_scene_ = scene_.version;
@@ -141,16 +142,16 @@ void PlanKeeper::keep_planned(SteadyTime now, UtcTime utc, Step& step) {
   }
 }
 
-/// CRoPS: where many are stuck the guide becomes dear, and may lead another way.
+/// Where many robots are stuck the method may know another route.
 void PlanKeeper::avoid_jams(SteadyTime now, UtcTime utc, Step& step) {
   if (phase_ != MissionPhase::kRunning) return;
-  const std::vector<HeardRobot> stuck = robots_.stuck(now, kStuckAfter);
+  const std::vector<ReportedRobot> stuck = robots_.stuck(now, kStuckAfter);
   if (stuck.empty() || static_cast<double>(stuck.size()) < kStuckShare * mission_.robots.count) {
     return;
   }
   robots_.forgive(now);
   const Vec2& at_m = stuck[stuck.size() / 2].position_m;
-  if (!planner_.avoid(at_m)) return;
+  if (!planner_.method().on_congestion(at_m)) return;
   step.notices.push_back(
       {false, "jam",
        fmt::format("{} robots are stuck, about ({:.1f}, {:.1f}) m: the guide leads another way",
@@ -183,7 +184,7 @@ PlanKeeper::Step PlanKeeper::step(SteadyTime now, UtcTime utc) {
 void PlanKeeper::catch_up(SteadyTime now) {
   if (version_ != 1 || !newest_.entries.empty()) return;
   std::vector<double> times_s;
-  for (const HeardRobot& robot : robots_.fresh(now)) {
+  for (const ReportedRobot& robot : robots_.fresh(now)) {
     if (robot.plan_version == version_) times_s.push_back(robot.plan_time_s);
   }
   if (times_s.empty()) return;
@@ -231,7 +232,7 @@ void PlanKeeper::keep_clock(SteadyTime now, UtcTime utc, Step& step) {
     judged_at_ = now;
     catch_up(now);
     std::vector<RobotLag> lags;
-    for (const HeardRobot& robot : robots_.fresh(now)) {
+    for (const ReportedRobot& robot : robots_.fresh(now)) {
       if (!says_lag(robot)) continue;
       lags.push_back({robot.robot, robot.lag_s, robot.arrived});
     }

@@ -18,14 +18,14 @@
 
 namespace swarm::planner {
 
-/// Sees to it that there is a plan for the scene as it is: the first one, anew when the scene
-/// changes, while obstacles move, for every step ROVER takes, and where CRoPS finds the swarm
-/// stuck. It also owns the plan's clock. Pure: what was received and the time in, plans and clock
-/// readings out; the program around it owns bus and files.
+/// Keeps a plan for the scene as it is: the first one, and a new one when the scene changes, while
+/// obstacles move, at the period of the planning method, and where robots are stuck and the method
+/// knows another route. It also owns the plan's clock. Pure: what was received and the time in,
+/// plans and clock readings out; the program around it owns bus and files. One thread.
 class PlanKeeper {
  public:
-  /// \pre the mission outlives the keeper
-  PlanKeeper(const Mission& mission, std::uint64_t seed, StageClock clock);
+  /// `planner`: for this mission. \pre the mission outlives the keeper
+  PlanKeeper(const Mission& mission, Planner planner, std::uint64_t seed, StageClock clock);
 
   /// The plan of the mission file. The same mission and seed give the same flow.
   Result<void> plan_first();
@@ -37,7 +37,7 @@ class PlanKeeper {
   /// False if it is not newer than the present one.
   bool take_scene(Scene scene);
   /// \pre the id is below the number of robots
-  void hear(const HeardRobot& robot, bool moving, SteadyTime now) {
+  void hear(const ReportedRobot& robot, bool moving, SteadyTime now) {
     // What a robot sent before it fell may come after its body became an obstacle.
     if (!has_body(scene_, robot.robot)) robots_.hear(robot, moving, now);
   }
@@ -62,6 +62,7 @@ class PlanKeeper {
   /// The plan's clock, as of the last step().
   PlanClock clock(UtcTime utc) const { return governor_.reading(utc); }
   const Scene& scene() const { return scene_; }
+  const PlanningMethod& method() const { return planner_.method(); }
   /// Version of the scene newest() was made for.
   std::uint64_t planned_scene() const { return planned_scene_; }
 
@@ -69,18 +70,17 @@ class PlanKeeper {
   void keep_planned(SteadyTime now, UtcTime utc, Step& step);
   void avoid_jams(SteadyTime now, UtcTime utc, Step& step);
   void try_again(SteadyTime now, UtcTime utc, Step& step);
-  bool takes_steps() const { return mission_.planner.method == "rover"; }
   bool is_step_due(SteadyTime now) const;
   bool is_in_flight(SteadyTime now) const;
   bool is_in_flight_elsewhere(SteadyTime now) const;
   bool is_waiting_for_robots(SteadyTime now) const;
-  std::vector<HeardRobot> placed(std::vector<HeardRobot> robots) const;
-  Result<Replan> plan_anew(const World& world, std::span<const HeardRobot> heard);
-  Result<Replan> plan_around_bodies(UtcTime utc, std::span<const HeardRobot> heard, Step& step);
+  std::vector<ReportedRobot> placed(std::vector<ReportedRobot> robots) const;
+  Result<Replan> plan_anew(const World& world, std::span<const ReportedRobot> robots);
+  Result<Replan> plan_around_bodies(UtcTime utc, std::span<const ReportedRobot> robots, Step& step);
   void publish(SteadyTime now, Step& step);
   void keep_clock(SteadyTime now, UtcTime utc, Step& step);
   void catch_up(SteadyTime now);
-  bool says_lag(const HeardRobot& robot) const;
+  bool says_lag(const ReportedRobot& robot) const;
   void report_clock(SteadyTime now, Step& step);
 
   const Mission& mission_;

@@ -3,7 +3,7 @@
 // Plans from where the robots are: when, and what the keeper knows of the robots then.
 #include <algorithm>
 
-#include "planner_service/mpc/flow_groups.hpp"
+#include "planner_service/groups/robot_groups.hpp"
 #include "planner_service/plan_keeper.hpp"
 #include "swarm_core/mission/placement.hpp"
 #include "swarm_core/plan/flow_draw.hpp"
@@ -13,17 +13,18 @@ namespace {
 
 // A planner that comes back in mid-flight waits this long for robots it does not hear.
 constexpr Duration kHearPatience = std::chrono::milliseconds(1500);
-// With a plan each second a status is a plan or two old.
+// With a plan at each period a status is a plan or two old.
 constexpr std::uint32_t kPlansBack = 3;
 
 }  // namespace
 
-/// ROVER plans anew from where the robots are, at a period, until the last one has arrived.
+/// A method with a period plans anew from where the robots are, until the last one has arrived.
 bool PlanKeeper::is_step_due(SteadyTime now) const {
-  if (!takes_steps() || phase_ != MissionPhase::kRunning) return false;
-  if (now - tried_at_ < from_seconds(mission_.planner.replan_period_s)) return false;
-  const std::vector<HeardRobot> heard = robots_.fresh(now);
-  return std::any_of(heard.begin(), heard.end(), [](const HeardRobot& r) { return !r.arrived; });
+  const std::optional<Duration> period = method().replan_period();
+  if (!period || phase_ != MissionPhase::kRunning || now - tried_at_ < *period) return false;
+  const std::vector<ReportedRobot> robots = robots_.fresh(now);
+  return std::any_of(robots.begin(), robots.end(),
+                     [](const ReportedRobot& r) { return !r.arrived; });
 }
 
 /// The robots have left their start: the mission runs, or did for a planner before this one.
@@ -34,9 +35,9 @@ bool PlanKeeper::is_in_flight(SteadyTime now) const {
 /// The robots follow a later plan than the first, which a planner before this one made.
 bool PlanKeeper::is_in_flight_elsewhere(SteadyTime now) const {
   if (version_ > 0) return false;
-  const std::vector<HeardRobot> heard = robots_.fresh(now);
+  const std::vector<ReportedRobot> heard = robots_.fresh(now);
   return std::any_of(heard.begin(), heard.end(),
-                     [](const HeardRobot& r) { return r.plan_version > 1; });
+                     [](const ReportedRobot& r) { return r.plan_version > 1; });
 }
 
 bool PlanKeeper::is_waiting_for_robots(SteadyTime now) const {
@@ -44,12 +45,12 @@ bool PlanKeeper::is_waiting_for_robots(SteadyTime now) const {
 }
 
 /// With their places in the plan in force.
-std::vector<HeardRobot> PlanKeeper::placed(std::vector<HeardRobot> robots) const {
-  if (!takes_steps() || version_ == 0) return robots;
+std::vector<ReportedRobot> PlanKeeper::placed(std::vector<ReportedRobot> robots) const {
+  if (!method().traits().uses_places || version_ == 0) return robots;
   const FlowPlan& plan = newest_.planned.plan;
   const Mixture& goal = scene_.goal ? *scene_.goal : mission_.goal;
   const MissionTime at(governor_.plan_time_s());
-  for (HeardRobot& robot : robots) {
+  for (ReportedRobot& robot : robots) {
     const std::uint32_t id = robot.robot.value();
     double share = stratified_share(id, mission_.robots.count);
     std::size_t source = 0;
@@ -58,7 +59,7 @@ std::vector<HeardRobot> PlanKeeper::placed(std::vector<HeardRobot> robots) const
     } else {
       if (newest_.entries[id].source == PlanEntry::kAnywhere) continue;
       source = newest_.entries[id].source;
-      share = newest_.entries[id].share / 65536.0;
+      share = newest_.entries[id].draw_share();
     }
     const FlowPlace place = place_in_flow(plan, source, share, at);
     robot.goal = component_at(goal, plan.nodes()[place.sink].gaussian.mean_m());
@@ -69,9 +70,9 @@ std::vector<HeardRobot> PlanKeeper::placed(std::vector<HeardRobot> robots) const
 
 /// A robot that follows an older plan says nothing of this one, unless each goes on from where the
 /// one before has led: then a status may be a few plans old.
-bool PlanKeeper::says_lag(const HeardRobot& robot) const {
+bool PlanKeeper::says_lag(const ReportedRobot& robot) const {
   if (robot.plan_version > version_) return false;
-  return version_ - robot.plan_version <= (takes_steps() ? kPlansBack : 0);
+  return version_ - robot.plan_version <= (method().replan_period() ? kPlansBack : 0);
 }
 
 }  // namespace swarm::planner

@@ -18,6 +18,7 @@
 #include "swarm_core/base/clock.hpp"
 #include "swarm_core/mission/mission_file.hpp"
 #include "swarm_core/plan/plan_json.hpp"
+#include "swarm_core/plan/planning_record.hpp"
 #include "swarm_core/shell/run_directory.hpp"
 #include "swarm_core/shell/stop_signal.hpp"
 #include "swarm_link/run_meeting.hpp"
@@ -74,6 +75,11 @@ struct PlannerProcess::Impl {
 };
 
 Result<void> PlannerProcess::Impl::plan_first() {
+  const PlanningRecord promised{mission.planner.method,
+                                keeper->method().traits().density_cap_per_m2};
+  if (auto w = shell::write_file(options.run_dir / shell::kPlanningFile, to_json(promised)); !w) {
+    return w;
+  }
   if (auto planned = keeper->plan_first(); !planned) return planned;
   const PlanResult& planned = keeper->newest().planned;
   if (auto w = shell::write_file(options.run_dir / shell::kPlanFile, to_json(planned.plan)); !w) {
@@ -201,7 +207,8 @@ void PlannerProcess::Impl::beat(UtcTime now) {
 PlannerProcess::PlannerProcess(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 PlannerProcess::~PlannerProcess() = default;
 
-Result<std::unique_ptr<PlannerProcess>> PlannerProcess::make(const ProcessOptions& options) {
+Result<std::unique_ptr<PlannerProcess>> PlannerProcess::make(const ProcessOptions& options,
+                                                             const PlanningRegistry& registry) {
   auto impl = std::make_unique<Impl>();
   impl->options = options;
   const auto run = shell::read_run_info(options.run_dir);
@@ -211,7 +218,10 @@ Result<std::unique_ptr<PlannerProcess>> PlannerProcess::make(const ProcessOption
   auto mission = load_mission(options.run_dir / shell::kMissionFile, known);
   if (!mission) return tl::unexpected(mission.error());
   impl->mission = std::move(*mission);
-  impl->keeper.emplace(impl->mission, run->seed, &std::chrono::steady_clock::now);
+  auto planner = Planner::make(registry, impl->mission);
+  if (!planner) return tl::unexpected(planner.error());
+  impl->keeper.emplace(impl->mission, *std::move(planner), run->seed,
+                       &std::chrono::steady_clock::now);
   impl->epoch = PlannerEpoch(static_cast<std::uint64_t>(utc_now().time_since_epoch().count()));
   if (auto planned = impl->plan_first(); !planned) return tl::unexpected(planned.error());
   if (auto joined = impl->join(*run); !joined) return tl::unexpected(joined.error());

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "planner_service/planning_registry.hpp"
 #include "swarm_core/base/result.hpp"
 #include "swarm_core/mission/link_faults.hpp"
 
@@ -26,7 +27,8 @@ struct ProcessOptions {
 class PlannerProcess {
  public:
   /// Plans first, joins the bus second: a mission that cannot be planned ends here, saying why.
-  static Result<std::unique_ptr<PlannerProcess>> make(const ProcessOptions& options);
+  static Result<std::unique_ptr<PlannerProcess>> make(const ProcessOptions& options,
+                                                      const PlanningRegistry& registry);
   ~PlannerProcess();
 
   /// Runs until a stop signal or the end of the parent.

@@ -4,8 +4,6 @@
 
 #include <utility>
 
-#include "planner_service/mpc/flow_groups.hpp"
-#include "swarm_core/base/assert.hpp"
 #include "swarm_core/mission/placement.hpp"
 
 namespace swarm::planner {
@@ -24,29 +22,18 @@ std::vector<PlanEntry> entries_of(std::span<const RobotGroup> groups, std::uint3
   return entries;
 }
 
-std::vector<std::size_t> led_to(const Mixture& goal, std::span<const HeardRobot> robots) {
-  std::vector<std::size_t> led(goal.components().size(), 0);
-  for (const HeardRobot& robot : robots) {
-    if (robot.goal) ++led.at(*robot.goal);
-  }
-  return led;
-}
-
 }  // namespace
 
-Result<Replan> replan(Planner& planner, const World& world, const Mixture& goal,
-                      std::span<const HeardRobot> robots, std::uint32_t robot_count, Rng& rng,
-                      const StageClock& clock) {
-  auto groups = planner.measure(world, goal, robots);
+Result<Replan> replan(Planner& planner, const MeasuredSwarm& swarm, std::uint32_t robot_count,
+                      const PlanContext& context) {
+  PlanningMethod& method = planner.method();
+  auto groups = method.measure(swarm);
   if (!groups) return tl::unexpected(groups.error());
-  const bool steps = planner.method() == Method::kRover;
-  const Mixture to =
-      steps ? goal_in_robots(goal, led_to(goal, robots), robots.size(), world, planner.risk())
-            : goal;
-  auto planned = planner.plan({world, mixture_of(*groups), to}, rng, clock);
+  const Mixture start = mixture_of(*groups);
+  const Mixture goal = method.goal_from(swarm);
+  auto planned = planner.plan({swarm.world, start, goal}, context);
   if (!planned) return tl::unexpected(planned.error());
-  SWARM_ASSERT(planned->plan.sources().size() == groups->size());
-  if (steps) order_by_flow(*groups, planned->plan, goal, robots);
+  method.order_members(*groups, planned->plan, swarm);
   return Replan{*std::move(planned), entries_of(*groups, robot_count)};
 }
 

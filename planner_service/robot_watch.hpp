@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "planner_service/robot_groups.hpp"
+#include "planner_service/measured_swarm.hpp"
 #include "swarm_core/base/time.hpp"
 
 namespace swarm::planner {
@@ -21,7 +21,7 @@ class RobotWatch {
       : heard_(robots), forget_after_(forget_after) {}
 
   /// `moving` = on its way, wants to move. \pre the id is below the number of robots
-  void hear(const HeardRobot& robot, bool moving, SteadyTime now) {
+  void hear(const ReportedRobot& robot, bool moving, SteadyTime now) {
     std::optional<Heard>& heard = heard_.at(robot.robot.value());
     const bool stands = heard && moving && heard->moving &&
                         (robot.position_m - heard->stands_m).norm() < kProgress_m;
@@ -36,8 +36,8 @@ class RobotWatch {
   void forget(RobotId robot) { heard_.at(robot.value()).reset(); }
 
   /// Robots heard lately, by id.
-  std::vector<HeardRobot> fresh(SteadyTime now) const {
-    std::vector<HeardRobot> robots;
+  std::vector<ReportedRobot> fresh(SteadyTime now) const {
+    std::vector<ReportedRobot> robots;
     for (const std::optional<Heard>& heard : heard_) {
       if (is_fresh(heard, now)) robots.push_back(heard->robot);
     }
@@ -47,8 +47,8 @@ class RobotWatch {
   bool heard_all(SteadyTime now) const { return fresh(now).size() == heard_.size(); }
 
   /// Those of them that are on their way and have not come on for so long.
-  std::vector<HeardRobot> stuck(SteadyTime now, Duration after) const {
-    std::vector<HeardRobot> robots;
+  std::vector<ReportedRobot> stuck(SteadyTime now, Duration after) const {
+    std::vector<ReportedRobot> robots;
     for (const std::optional<Heard>& heard : heard_) {
       if (is_fresh(heard, now) && heard->moving && heard->at - heard->stands_since >= after) {
         robots.push_back(heard->robot);
@@ -66,7 +66,7 @@ class RobotWatch {
 
  private:
   struct Heard {
-    HeardRobot robot;
+    ReportedRobot robot;
     SteadyTime at;
     bool moving = false;
     Vec2 stands_m = Vec2::Zero();

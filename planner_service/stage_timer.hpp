@@ -4,11 +4,11 @@
 
 #include <chrono>
 
-#include "planner_service/planner.hpp"
+#include "planner_service/plan_request.hpp"
 
 namespace swarm::planner {
 
-/// Takes the time between calls.
+/// Takes the time between calls. \pre the clock outlives it
 class StageTimer {
  public:
   explicit StageTimer(const StageClock& clock) : clock_(clock), last_(clock()) {}

@@ -12,11 +12,12 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "planner_service/flow/plan_density.hpp"
+#include "planner_service/flow/transport_lp.hpp"
+#include "planner_service/methods/builtin_methods.hpp"
 #include "planner_service/passage_times.hpp"
 #include "planner_service/plan_checks.hpp"
 #include "planner_service/planner.hpp"
-#include "planner_service/transport/plan_density.hpp"
-#include "planner_service/transport/transport_lp.hpp"
 #include "swarm_core/metrics/shortest_paths.hpp"
 #include "swarm_core/mission/mission_file.hpp"
 #include "swarm_core/plan/plan_json.hpp"
@@ -47,18 +48,12 @@ double mean(const std::vector<double>& values) {
 double mean_bound_m(const Mission& mission) {
   std::vector<Vec2> from;
   std::vector<Vec2> to;
-  std::vector<double> supplies;
-  std::vector<double> demands;
-  for (const WeightedGaussian& c : mission.start.components()) {
-    from.push_back(c.gaussian.mean_m());
-    supplies.push_back(c.weight);
-  }
-  for (const WeightedGaussian& c : mission.goal.components()) {
-    to.push_back(c.gaussian.mean_m());
-    demands.push_back(c.weight);
-  }
+  for (const WeightedGaussian& c : mission.start.components()) from.push_back(c.gaussian.mean_m());
+  for (const WeightedGaussian& c : mission.goal.components()) to.push_back(c.gaussian.mean_m());
   const auto costs = ShortestPaths(mission.world, mission.robots.radius_m).distances_m(from, to);
-  const auto shipments = planner::solve_transport(supplies, demands, costs);
+  const auto shipments =
+      planner::solve_transport(planner::weights_of(mission.start.components()),
+                               planner::weights_of(mission.goal.components()), costs);
   if (!shipments) return std::numeric_limits<double>::quiet_NaN();
   double total = 0.0;
   for (const planner::Shipment& s : *shipments) total += s.mass * costs[s.from * to.size() + s.to];
@@ -77,7 +72,8 @@ struct Sample {
   double max_cvar_m = -std::numeric_limits<double>::infinity();
   std::uint32_t tried = 0;
 
-  void add(const planner::PlanResult& result, const Mission& mission, double bound_m) {
+  void add(const planner::PlanResult& result, planner::RiskPromise promise, const Mission& mission,
+           double bound_m) {
     const planner::PlanStats& s = result.stats;
     nodes.push_back(static_cast<double>(s.nodes));
     edges.push_back(static_cast<double>(s.edges));
@@ -105,8 +101,7 @@ struct Sample {
           std::max(max_density_per_m2,
                    planner::max_density(result.plan, mission.robots.count, kDensityStep_s).per_m2);
     }
-    // ROVER promises it of the mixture as a whole, the others of every Gaussian.
-    const auto largest_cvar_m = mission.planner.method == "rover"
+    const auto largest_cvar_m = promise == planner::RiskPromise::kMixture
                                     ? planner::planned_max_mixture_cvar_m
                                     : planner::planned_max_cvar_m;
     max_cvar_m = std::max(max_cvar_m,
@@ -186,26 +181,29 @@ Result<void> write_plan(const std::filesystem::path& out, const Mission& mission
 Result<ExitCode> plan_mission(const PlanCommandOptions& options) {
   const auto mission = load_mission(options.mission_file);
   if (!mission) return tl::unexpected(mission.error());
-  const auto planner_options = planner::planner_options(*mission);
+  planner::PlanningRegistry methods;
+  planner::register_builtin_methods(methods);
   const double bound_m = mean_bound_m(*mission);
   Sample sample;
   std::optional<Error> failure;
   std::string times;
   for (std::uint32_t i = 0; i < options.repeat; ++i) {
     Rng rng(options.seed + i);
-    const auto result = planner::plan({mission->world, mission->start, mission->goal},
-                                      planner_options, rng, &std::chrono::steady_clock::now);
+    auto planner = planner::Planner::make(methods, *mission, planner::PlanningUse::kOnePlan);
+    if (!planner) return tl::unexpected(planner.error());
+    const planner::PlanningTraits traits = planner->method().traits();
+    const auto result = planner->plan({mission->world, mission->start, mission->goal},
+                                      {rng, &std::chrono::steady_clock::now});
     ++sample.tried;
     if (!result) {
       if (!failure) failure = result.error();
       continue;
     }
-    sample.add(*result, *mission, bound_m);
+    sample.add(*result, traits.risk_promise, *mission, bound_m);
     if (sample.total_ms.size() == 1 && options.times) {
       const auto passage = planner::narrowest_passage(result->plan, mission->world);
-      times =
-          planner::to_table(planner::group_times(result->plan, passage, planner_options.speed_mps),
-                            passage, mission->robots.count);
+      times = planner::to_table(planner::group_times(result->plan, passage, traits.speed_mps),
+                                passage, mission->robots.count);
     }
     if (sample.total_ms.size() == 1 && !options.out.empty()) {
       if (auto written = write_plan(options.out, *mission, *result); !written) {

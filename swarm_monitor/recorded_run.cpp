@@ -31,6 +31,7 @@ constexpr std::size_t kMaxSummaryBytes = 1U << 20U;
 constexpr std::size_t kMaxEventsBytes = 256U << 20U;
 constexpr std::size_t kMaxPlanBytes = 64U << 20U;
 constexpr std::size_t kMaxSceneBytes = 64U << 20U;
+constexpr std::size_t kMaxPlanningBytes = 64U << 10U;
 constexpr std::size_t kMaxClockBytes = 64U << 20U;
 
 std::vector<RunEvent> read_events(const std::string& text, UtcTime begin) {
@@ -213,6 +214,7 @@ Result<RecordedRun> finished(RecordedRun run, TrackTable& tracks, const Texts& t
                 fmt::format("{}: no black box holds a step; did any robot start?", from.string()));
   }
   run.plans = read_plans(texts);
+  run.planning = planning_record_from_json(text_of(texts, shell::kPlanningFile));
   run.clock = read_plan_clock(text_of(texts, shell::kPlanClockFile));
   run.scenes = replay_scene_log(text_of(texts, shell::kSceneFile), run.mission.world);
   run.events = read_events(text_of(texts, shell::kEventsFile), run.begin);
@@ -223,6 +225,7 @@ Result<RecordedRun> finished(RecordedRun run, TrackTable& tracks, const Texts& t
 Result<RecordedRun> read_directory(const std::filesystem::path& run_dir) {
   Texts texts;
   for (const auto& [name, limit] : {std::pair{shell::kMissionFile, kMaxMissionBytes},
+                                    {shell::kPlanningFile, kMaxPlanningBytes},
                                     {shell::kPlanClockFile, kMaxClockBytes},
                                     {shell::kSceneFile, kMaxSceneBytes},
                                     {shell::kEventsFile, kMaxEventsBytes},

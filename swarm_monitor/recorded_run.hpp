@@ -12,6 +12,7 @@
 #include "swarm_core/mission/phase.hpp"
 #include "swarm_core/plan/flow_plan.hpp"
 #include "swarm_core/plan/plan_clock.hpp"
+#include "swarm_core/plan/planning_record.hpp"
 
 namespace swarm::monitor {
 
@@ -80,9 +81,10 @@ struct RecordedRun {
   UtcTime begin{};                     ///< first step in any black box
   std::vector<Track> tracks{};         ///< by robot id, mission.robots.count of them
   std::vector<RunEvent> events{};
-  std::vector<Scene> scenes{};     ///< the first as in the mission file
-  std::string launcher_summary{};  ///< summary.json as it was then
-  std::vector<PlanClock> clock{};  ///< the plan's clock as published; stamps ascend
+  std::vector<Scene> scenes{};               ///< the first as in the mission file
+  std::string launcher_summary{};            ///< summary.json as it was then
+  std::vector<PlanClock> clock{};            ///< the plan's clock as published; stamps ascend
+  std::optional<PlanningRecord> planning{};  ///< what the planning method promised, if recorded
 
   /// Where the swarm was to be in the end.
   const Mixture& goal() const;

@@ -3,6 +3,7 @@
 #include "planner_service/roadmap/endpoints.hpp"
 
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -49,6 +50,16 @@ std::string describe_violations(const Mixture& mixture, std::string_view which, 
         advice(g, worst->signed_distance(g.mean_m()), risk, k));
   }
   return lines;
+}
+
+Result<void> check_endpoints(const World& world, const Mixture& start, const Mixture& goal,
+                             const RiskLimit& risk) {
+  std::string violations = describe_violations(start, "start", world, risk);
+  const std::string at_goal = describe_violations(goal, "goal", world, risk);
+  if (!violations.empty() && !at_goal.empty()) violations += '\n';
+  violations += at_goal;
+  if (violations.empty()) return {};
+  return fail(ErrorCode::kInfeasible, std::move(violations));
 }
 
 }  // namespace swarm::planner

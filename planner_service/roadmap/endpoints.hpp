@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 
+#include "swarm_core/base/result.hpp"
 #include "swarm_core/gmm/mixture.hpp"
 #include "swarm_core/risk/cvar.hpp"
 #include "swarm_core/world/world.hpp"
@@ -16,5 +17,10 @@ namespace swarm::planner {
 /// "start" or "goal".
 std::string describe_violations(const Mixture& mixture, std::string_view which, const World& world,
                                 const RiskLimit& risk);
+
+/// kInfeasible when a component of start or goal breaks the risk limit where it stands, with the
+/// lines of describe_violations() for both.
+Result<void> check_endpoints(const World& world, const Mixture& start, const Mixture& goal,
+                             const RiskLimit& risk);
 
 }  // namespace swarm::planner

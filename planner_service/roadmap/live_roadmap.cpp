@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "planner_service/roadmap/connect.hpp"
 #include "planner_service/roadmap/means.hpp"
 #include "swarm_core/gmm/wasserstein.hpp"
 

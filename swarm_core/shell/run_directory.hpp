@@ -17,6 +17,7 @@ namespace swarm::shell {
 inline constexpr std::string_view kMissionFile = "mission.resolved.yaml";
 inline constexpr std::string_view kPlanFile = "plan.json";
 inline constexpr std::string_view kPlanStatsFile = "plan_stats.json";
+inline constexpr std::string_view kPlanningFile = "planning.json";
 inline constexpr std::string_view kPlanClockFile = "plan_clock.jsonl";
 inline constexpr std::string_view kSummaryFile = "summary.json";
 inline constexpr std::string_view kEventsFile = "events.jsonl";

@@ -12,6 +12,7 @@
 #include "swarm_core/mission/mission_file.hpp"
 #include "swarm_core/mission/scene_log.hpp"
 #include "swarm_core/plan/plan_json.hpp"
+#include "swarm_core/plan/planning_record.hpp"
 #include "swarm_core/shell/run_dir.hpp"
 #include "swarm_core/shell/run_directory.hpp"
 #include "swarm_core/shell/stop_signal.hpp"
@@ -149,6 +150,13 @@ Result<ExitCode> simulate_mission(const SimulateOptions& options) {
       .kills = options.kills};
   auto simulation = Simulation::make(*mission, simulated, recording, *observer);
   if (!simulation) return tl::unexpected(simulation.error());
+  if (options.record) {
+    const PlanningRecord promised{mission->planner.method,
+                                  (*simulation)->planning_method().traits().density_cap_per_m2};
+    if (auto w = shell::write_file(dir / shell::kPlanningFile, to_json(promised)); !w) {
+      return tl::unexpected(w.error());
+    }
+  }
   fly(**simulation, mission->robots.count);
   const Simulation::Cost cost = (*simulation)->cost();
   Measurements measured{.outcome = (*simulation)->outcome(),

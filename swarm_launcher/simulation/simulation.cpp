@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include "planner_service/methods/builtin_methods.hpp"
 #include "robot_agent/control/density_attraction.hpp"
 #include "swarm_core/mission/placement.hpp"
 
@@ -50,8 +51,9 @@ std::vector<Kill> in_order_of_time(std::vector<Kill> kills) {
 
 }  // namespace
 
-Simulation::Simulation(const Mission& mission, const SimulationOptions& options,
-                       Recording& recording, SimulationObserver& observer)
+Simulation::Simulation(const Mission& mission, planner::Planner planner,
+                       const SimulationOptions& options, Recording& recording,
+                       SimulationObserver& observer)
     : mission_(mission),
       options_(options),
       recording_(recording),
@@ -59,7 +61,7 @@ Simulation::Simulation(const Mission& mission, const SimulationOptions& options,
       period_(from_seconds(1.0 / mission.control.rate_hz)),
       world_(mission.world),
       scene_(first_scene(mission.world.obstacles().size())),
-      keeper_(mission, options.seed, &std::chrono::steady_clock::now),
+      keeper_(mission, std::move(planner), options.seed, &std::chrono::steady_clock::now),
       supervisor_(supervisor_options(mission), kBegin),
       air_(mission.world.bounds_m(), hears_farthest_m(mission), options.faults,
            mix_seed(options.seed, 0xA1B), kBegin),
@@ -75,7 +77,12 @@ Result<std::unique_ptr<Simulation>> Simulation::make(const Mission& mission,
                                                      SimulationObserver& observer) {
   const auto positions_m = place_robots(mission, options.seed);
   if (!positions_m) return tl::unexpected(positions_m.error());
-  std::unique_ptr<Simulation> made(new Simulation(mission, options, recording, observer));
+  planner::PlanningRegistry methods;
+  planner::register_builtin_methods(methods);
+  auto planner = planner::Planner::make(methods, mission);
+  if (!planner) return tl::unexpected(planner.error());
+  std::unique_ptr<Simulation> made(
+      new Simulation(mission, *std::move(planner), options, recording, observer));
   if (auto planned = made->keeper_.plan_first(); !planned) return tl::unexpected(planned.error());
   made->keeper_.begin(kBegin);
   made->keeper_.take_scene(made->scene_);

@@ -66,6 +66,9 @@ class Simulation {
   /// Ends the mission early, as SIGINT would.
   void interrupt() { supervisor_.on_interrupt(); }
 
+  /// The planning method of the mission.
+  const planner::PlanningMethod& planning_method() const { return keeper_.method(); }
+
   Outcome outcome() const { return supervisor_.outcome(); }
   double mission_s() const { return supervisor_.mission_time(now_).count(); }
   Supervisor::Counts counts() const { return supervisor_.counts(); }
@@ -106,8 +109,8 @@ class Simulation {
     Histogram ages;  // of the states that robots heard
   };
 
-  Simulation(const Mission& mission, const SimulationOptions& options, Recording& recording,
-             SimulationObserver& observer);
+  Simulation(const Mission& mission, planner::Planner planner, const SimulationOptions& options,
+             Recording& recording, SimulationObserver& observer);
 
   UtcTime utc(SteadyTime t) const;
   void place(const std::vector<Vec2>& positions_m);

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "swarm_core/mission/body_limits.hpp"
 #include "swarm_monitor/tracking/quantile.hpp"
 #include "swarm_monitor/tracking/swarm_walk.hpp"
 
@@ -20,18 +19,15 @@ std::optional<double> DensityCourse::over_cap(double peak_per_m2) const {
   return peak_per_m2 / *cap_per_m2 - 1.0;
 }
 
-std::optional<double> density_cap_of(const Mission& mission) {
-  const PlannerSpec& planner = mission.planner;
-  if (planner.density_cap_per_m2) {
-    return *planner.density_cap_per_m2 > 0.0 ? planner.density_cap_per_m2 : std::nullopt;
-  }
-  if (planner.method != "swarmprm") return std::nullopt;
-  return swarm_limits(mission.robots, mission.safety, mission.control).cap_per_m2;
+std::optional<double> density_cap_of(const RecordedRun& run) {
+  if (run.planning) return run.planning->density_cap_per_m2;
+  const std::optional<double>& asked_for = run.mission.planner.density_cap_per_m2;
+  return asked_for && *asked_for > 0.0 ? asked_for : std::nullopt;
 }
 
 std::optional<DensityCourse> density_course(const RecordedRun& run,
                                             std::span<const PlanMoment> moments) {
-  DensityCourse course{.cap_per_m2 = density_cap_of(run.mission)};
+  DensityCourse course{.cap_per_m2 = density_cap_of(run)};
   std::vector<double> peaks;
   SwarmWalk walk(run.tracks);
   for (const PlanMoment& moment : moments) {

@@ -30,9 +30,9 @@ struct DensityCourse {
   std::optional<double> over_cap(double peak_per_m2) const;
 };
 
-/// The mission's cap on the density of χ(t), the automatic one of swarmprm included; empty if it
-/// has none.
-std::optional<double> density_cap_of(const Mission& mission);
+/// The cap on the density of χ(t) that the planning method of a run held its plans to, as it
+/// recorded it; of a run without that record the cap in the mission file. Empty if there is none.
+std::optional<double> density_cap_of(const RecordedRun& run);
 
 /// Empty without moments. 1 to 3 ms a moment for 500 robots and 300 legs.
 std::optional<DensityCourse> density_course(const RecordedRun& run,

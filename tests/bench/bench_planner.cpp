@@ -19,7 +19,8 @@
 #include <ompl/util/RandomNumbers.h>
 #endif
 
-#include "planner_service/planner.hpp"
+#include "planner_service/methods/swarmprm/swarmprm_method.hpp"
+#include "planner_service/roadmap/connect.hpp"
 #include "planner_service/roadmap/edge_check.hpp"
 #include "planner_service/roadmap/live_roadmap.hpp"
 #include "planner_service/roadmap/neighbours.hpp"
@@ -66,18 +67,29 @@ const Mission& demo() {
   return mission;
 }
 
-SteadyTime no_time() { return {}; }
+// Bodies are not known: neither speed nor density of a plan is limited.
+SwarmPrmOptions demo_options() {
+  SwarmPrmOptions options = swarmprm_options({.mission = demo(), .limits = {}});
+  options.cap_is_automatic = false;
+  options.speed_mps = demo().planner.speed_mps;
+  options.keeps_roadmap = false;
+  return options;
+}
 
-void plan_once(const PlannerOptions& options, std::uint64_t seed, benchmark::State& state) {
+Result<PlanResult> plan_once(const PlanRequest& request, const SwarmPrmOptions& options, Rng& rng) {
+  return SwarmPrmMethod(options).plan(request, {rng, [] { return SteadyTime{}; }});
+}
+
+void plan_once(const SwarmPrmOptions& options, std::uint64_t seed, benchmark::State& state) {
   const Mission& mission = demo();
   Rng rng(seed);
-  const auto planned = plan({mission.world, mission.start, mission.goal}, options, rng, &no_time);
+  const auto planned = plan_once({mission.world, mission.start, mission.goal}, options, rng);
   if (!planned) state.SkipWithError(planned.error().message.c_str());
 }
 
 // n = 500, r = 20 m, as in the paper.
 void BM_PlanRaw(benchmark::State& state) {
-  PlannerOptions options = planner_options(demo().planner, demo().robots.count);
+  SwarmPrmOptions options = demo_options();
   options.shortcuts = 0;
   std::uint64_t seed = 1;
   for (auto _ : state) plan_once(options, seed++, state);
@@ -85,7 +97,7 @@ void BM_PlanRaw(benchmark::State& state) {
 BENCHMARK(BM_PlanRaw)->Unit(benchmark::kMillisecond);
 
 void BM_PlanSmoothed(benchmark::State& state) {
-  const PlannerOptions options = planner_options(demo().planner, demo().robots.count);
+  const SwarmPrmOptions options = demo_options();
   std::uint64_t seed = 1;
   for (auto _ : state) plan_once(options, seed++, state);
 }
@@ -98,7 +110,7 @@ double prm_star_radius_m(double n) {
 
 void BM_PlanRawGrowth(benchmark::State& state) {
   const auto n = static_cast<double>(state.range(0));
-  PlannerOptions options = planner_options(demo().planner, demo().robots.count);
+  SwarmPrmOptions options = demo_options();
   options.shortcuts = 0;
   options.samples = static_cast<std::size_t>(state.range(0));
   options.connection_radius_m = prm_star_radius_m(n);
@@ -119,7 +131,7 @@ BENCHMARK(BM_PlanRawGrowth)
     ->Complexity();
 
 std::vector<Gaussian> some_nodes(std::size_t count) {
-  const PlannerOptions options = planner_options(demo().planner, demo().robots.count);
+  const SwarmPrmOptions options = demo_options();
   Rng rng(1);
   return sample_free(demo().world, options.risk, options.sampler, count, rng);
 }
@@ -211,19 +223,19 @@ World pebble_world(std::size_t count) {
 
 void BM_PlanAmongPebbles(benchmark::State& state) {
   const World world = pebble_world(static_cast<std::size_t>(state.range(0)));
-  PlannerOptions options = planner_options(demo().planner, demo().robots.count);
+  SwarmPrmOptions options = demo_options();
   options.shortcuts = 0;
   std::uint64_t seed = 1;
   for (auto _ : state) {
     Rng rng(seed++);
-    const auto planned = plan({world, demo().start, demo().goal}, options, rng, &no_time);
+    const auto planned = plan_once({world, demo().start, demo().goal}, options, rng);
     if (!planned) state.SkipWithError(planned.error().message.c_str());
   }
 }
 BENCHMARK(BM_PlanAmongPebbles)->Arg(100)->Arg(1000)->Arg(10'000)->Unit(benchmark::kMillisecond);
 
 LiveRoadmapOptions live_options(std::size_t samples) {
-  const PlannerOptions options = planner_options(demo().planner, demo().robots.count);
+  const SwarmPrmOptions options = demo_options();
   return {.samples = samples,
           .connection_radius_m = prm_star_radius_m(static_cast<double>(samples)),
           .risk = options.risk,
@@ -279,8 +291,7 @@ BENCHMARK(BM_RoadmapRebuilt)->Arg(500)->Arg(8000)->Unit(benchmark::kMicrosecond)
 std::vector<std::pair<Gaussian, Gaussian>> some_edges() {
   const Mission& mission = demo();
   Rng rng(1);
-  const auto planned = plan({mission.world, mission.start, mission.goal},
-                            planner_options(mission.planner, mission.robots.count), rng, &no_time);
+  const auto planned = plan_once({mission.world, mission.start, mission.goal}, demo_options(), rng);
   std::vector<std::pair<Gaussian, Gaussian>> edges;
   const Roadmap& roadmap = planned->roadmap;
   for (std::uint32_t a = 0; a < roadmap.nodes.size(); ++a) {
@@ -294,7 +305,7 @@ std::vector<std::pair<Gaussian, Gaussian>> some_edges() {
 // Proven between the samples.
 void BM_EdgeCheck(benchmark::State& state) {
   const auto edges = some_edges();
-  EdgeChecker checker(demo().world, planner_options(demo().planner, demo().robots.count).risk);
+  EdgeChecker checker(demo().world, demo_options().risk);
   std::size_t i = 0;
   for (auto _ : state) {
     const auto& [a, b] = edges[i++ % edges.size()];
@@ -306,7 +317,7 @@ BENCHMARK(BM_EdgeCheck);
 // The naive one: a fixed number of points, nothing known in between.
 void BM_EdgeCheckFixedSteps(benchmark::State& state) {
   const auto edges = some_edges();
-  const RiskLimit risk = planner_options(demo().planner, demo().robots.count).risk;
+  const RiskLimit risk = demo_options().risk;
   const double k = cvar_coefficient(risk.alpha);
   std::size_t i = 0;
   for (auto _ : state) {

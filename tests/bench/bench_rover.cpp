@@ -15,8 +15,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "planner_service/mpc/rover.hpp"
-#include "planner_service/transport/transport_lp.hpp"
+#include "planner_service/flow/transport_lp.hpp"
+#include "planner_service/methods/rover/rover.hpp"
 #include "swarm_core/metrics/shortest_paths.hpp"
 #include "swarm_core/mission/mission_file.hpp"
 

@@ -12,10 +12,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "planner_service/flow/capped_flow.hpp"
+#include "planner_service/flow/timed_network.hpp"
+#include "planner_service/flow/transport_lp.hpp"
+#include "planner_service/roadmap/connect.hpp"
 #include "planner_service/roadmap/sampler.hpp"
-#include "planner_service/transport/capped_flow.hpp"
-#include "planner_service/transport/timed_network.hpp"
-#include "planner_service/transport/transport_lp.hpp"
 #include "swarm_core/gmm/wasserstein.hpp"
 #include "swarm_core/mission/mission_file.hpp"
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Vendor headers lie on the default include path, so the compiler does not keep them where they
 // belong: this does.
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <regex>
@@ -96,6 +97,67 @@ TEST(Includes, OfTheGateKnowMessagesAndTheCoreAlone) {
             << file << " includes " << include;
       });
   EXPECT_GT(files, 5);
+}
+
+/// Headers of the planner that methods of other projects build on.
+const std::vector<std::string> kPlanningContract = {
+    "planner_service/measured_swarm.hpp",    "planner_service/plan_request.hpp",
+    "planner_service/plan_result.hpp",       "planner_service/planning_method.hpp",
+    "planner_service/planning_registry.hpp", "planner_service/flow/density_peak.hpp",
+    "planner_service/roadmap/roadmap.hpp"};
+
+bool starts_with_any(const std::string& name, const std::vector<std::string>& beginnings) {
+  return std::any_of(beginnings.begin(), beginnings.end(),
+                     [&](const std::string& beginning) { return name.starts_with(beginning); });
+}
+
+TEST(Includes, OfThePlannerLeadFromMethodsToFlowToRoadmap) {
+  const auto knows_only = [](const std::string& folder, const std::vector<std::string>& allowed) {
+    const int files =
+        for_each_include({"planner_service/" + folder}, [&](const auto& file, const auto& include) {
+          const bool is_core =
+              !starts_with_any(include, kSources) || include.starts_with("swarm_core/");
+          EXPECT_TRUE(is_core || starts_with_any(include, allowed))
+              << file << " includes " << include;
+        });
+    EXPECT_GT(files, 1) << folder;
+  };
+  const std::string root = "planner_service/";
+  knows_only("roadmap", {root + "roadmap/"});
+  knows_only("flow", {root + "flow/", root + "roadmap/"});
+  knows_only("groups", {root + "groups/", root + "roadmap/", root + "measured_swarm.hpp"});
+  std::vector<std::string> below = kPlanningContract;
+  for (const char* name : {"flow/", "groups/", "roadmap/", "stage_timer.hpp", "methods/shared/"}) {
+    below.push_back(root + name);
+  }
+  for (const std::string method : {"adoc", "crops", "rover", "shared", "swarmprm"}) {
+    std::vector<std::string> allowed = below;
+    allowed.push_back(root + "methods/" + method + "/");
+    knows_only("methods/" + method, allowed);
+  }
+}
+
+TEST(Includes, OfThePlannerDoNotNameAMethod) {
+  for_each_include({"planner_service"}, [](const auto& file, const auto& include) {
+    if (file.starts_with("planner_service/methods/") || file == "planner_service/main.cpp") return;
+    EXPECT_FALSE(include.starts_with("planner_service/methods/"))
+        << file << " includes " << include;
+  });
+}
+
+TEST(Includes, OfThePlanningContractAreCoreTypes) {
+  static const std::regex kThirdParty(R"re(^(fmt|nlohmann|yaml-cpp|CLI|coin|lemon|nanoflann))re");
+  for (const std::string& header : kPlanningContract) {
+    const std::vector<std::string> includes = includes_of(kRoot / header);
+    EXPECT_FALSE(includes.empty()) << header;
+    for (const std::string& include : includes) {
+      const bool is_ours = starts_with_any(include, kSources);
+      EXPECT_TRUE(!is_ours || include.starts_with("swarm_core/") ||
+                  starts_with_any(include, kPlanningContract))
+          << header << " includes " << include;
+      EXPECT_FALSE(std::regex_search(include, kThirdParty)) << header << " includes " << include;
+    }
+  }
 }
 
 TEST(Includes, MixNoVendorsInOneFolder) {

@@ -3,29 +3,30 @@
 // What all planning methods have in common, and what Planner keeps from one plan to the next.
 #include <gtest/gtest.h>
 
+#include "planner_service/flow/plan_density.hpp"
 #include "planner_service/plan_checks.hpp"
-#include "planner_service/planner.hpp"
 #include "planner_service/replan.hpp"
-#include "planner_service/transport/plan_density.hpp"
 #include "swarm_core/mission/mission.hpp"
 #include "swarm_core/risk/mixture_cvar.hpp"
+#include "tests/unit/planner_service/planners.hpp"
 #include "tests/unit/planner_service/standin_scene.hpp"
 
 namespace swarm::planner {
 namespace {
-
-SteadyTime no_time() { return {}; }
 
 const testing::StandinScene& scene() {
   static const testing::StandinScene s = testing::standin_scene();
   return s;
 }
 
-PlannerOptions options_of(const char* method) {
-  PlannerSpec spec;
-  spec.method = method;
-  if (spec.method == "crops") spec.connection_radius_m = 20.0;
-  return planner_options(spec, 100);
+Mission mission_of(const char* method) {
+  Mission mission;
+  mission.world = scene().world;
+  mission.start = scene().start;
+  mission.goal = scene().goal;
+  mission.planner.method = method;
+  mission.planner.connection_radius_m = 20.0;
+  return mission;
 }
 
 class Methods : public ::testing::TestWithParam<const char*> {};
@@ -35,8 +36,7 @@ INSTANTIATE_TEST_SUITE_P(All, Methods, ::testing::Values("swarmprm", "rover", "c
 
 TEST_P(Methods, EndInAFlowBetweenTheMixturesOfTheMission) {
   Rng rng(1);
-  const auto planned =
-      plan({scene().world, scene().start, scene().goal}, options_of(GetParam()), rng, &no_time);
+  const auto planned = testing::plan_mission(mission_of(GetParam()), rng);
 
   ASSERT_TRUE(planned.has_value()) << planned.error().message;
   const FlowPlan& flow = planned->plan;
@@ -63,9 +63,7 @@ TEST_P(Methods, EndInAFlowBetweenTheMixturesOfTheMission) {
 TEST(Methods, KeepWhatTheyPromiseAboutRisk) {
   const auto flow_of = [](const char* method) {
     Rng rng(2);
-    return plan({scene().world, scene().start, scene().goal}, options_of(method), rng, &no_time)
-        .value()
-        .plan;
+    return testing::plan_mission(mission_of(method), rng).value().plan;
   };
   EXPECT_LE(planned_max_cvar_m(flow_of("swarmprm"), scene().world, 0.05), -0.2 + 1e-3);
   EXPECT_LE(planned_max_cvar_m(flow_of("crops"), scene().world, 0.05), -0.2 + 1e-3);
@@ -77,14 +75,14 @@ TEST(Methods, KeepWhatTheyPromiseAboutRisk) {
 }
 
 TEST(Planner, KeepsToTheDensityCapInTime) {
-  PlannerSpec spec;
-  spec.density_cap_per_m2 = 1.5;
+  Mission mission = mission_of("swarmprm");
+  mission.robots.count = 500;
+  mission.planner.density_cap_per_m2 = 1.5;
   Rng rng(1);
-  const PlanRequest request{scene().world, scene().start, scene().goal};
 
-  const auto timed = plan(request, planner_options(spec, 500), rng, &no_time);
-  spec.density_cap = "static";
-  const auto by_node = plan(request, planner_options(spec, 500), rng, &no_time);
+  const auto timed = testing::plan_mission(mission, rng);
+  mission.planner.density_cap = "static";
+  const auto by_node = testing::plan_mission(mission, rng);
 
   ASSERT_TRUE(timed.has_value()) << timed.error().message;
   EXPECT_LE(max_density(timed->plan, 500.0, 0.5).per_m2, 1.5 + 1e-9);
@@ -98,10 +96,10 @@ INSTANTIATE_TEST_SUITE_P(All, KeptPlanners, ::testing::Values("swarmprm", "rover
                          [](const auto& method) { return std::string(method.param); });
 
 TEST_P(KeptPlanners, FollowTheMapTheGoalAndTheRisk) {
-  Planner planner(options_of(GetParam()));
+  Planner planner = testing::planner_of(mission_of(GetParam()));
   Rng rng(1);
   const auto plan_in = [&](const World& world, const Mixture& goal) {
-    const auto planned = planner.plan({world, scene().start, goal}, rng, &no_time);
+    const auto planned = planner.plan({world, scene().start, goal}, {rng, &testing::no_time});
     EXPECT_TRUE(planned.has_value()) << planned.error().message;
     return planned.has_value() ? planned->plan : FlowPlan{};
   };
@@ -129,12 +127,13 @@ TEST_P(KeptPlanners, FollowTheMapTheGoalAndTheRisk) {
 }
 
 TEST_P(KeptPlanners, PlanAnewFromWhereRobotsAre) {
-  Planner planner(options_of(GetParam()));
+  Planner planner = testing::planner_of(mission_of(GetParam()));
   Rng rng(1);
-  const auto first = planner.plan({scene().world, scene().start, scene().goal}, rng, &no_time);
+  const auto first =
+      planner.plan({scene().world, scene().start, scene().goal}, {rng, &testing::no_time});
   ASSERT_TRUE(first.has_value()) << first.error().message;
   const Mixture half_way = first->plan.mixture_at(0.4 * first->plan.duration());
-  std::vector<HeardRobot> robots;
+  std::vector<ReportedRobot> robots;
   while (robots.size() < 60) {
     const double u = (static_cast<double>(robots.size()) + 0.5) / 60.0;
     const Gaussian& g = half_way.components()[half_way.component_at(u)].gaussian;
@@ -144,7 +143,8 @@ TEST_P(KeptPlanners, PlanAnewFromWhereRobotsAre) {
     robots.push_back({RobotId(static_cast<std::uint32_t>(robots.size())), p, false});
   }
 
-  const auto anew = replan(planner, scene().world, scene().goal, robots, 60, rng, &no_time);
+  const auto anew =
+      replan(planner, {scene().world, scene().goal, robots}, 60, {rng, &testing::no_time});
 
   ASSERT_TRUE(anew.has_value()) << anew.error().message;
   for (const PlanEntry& entry : anew->entries) {

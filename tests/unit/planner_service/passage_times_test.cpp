@@ -8,8 +8,8 @@
 
 #include <gtest/gtest.h>
 
-#include "planner_service/planner.hpp"
 #include "swarm_core/mission/mission_file.hpp"
+#include "tests/unit/planner_service/planners.hpp"
 
 namespace swarm::planner {
 namespace {
@@ -69,16 +69,16 @@ TEST(PassageTimes, AreThoseOfEachGroup) {
   EXPECT_NEAR(groups[1].waits_on_average.count(), 70.0 - way_m / 1.25, 1e-9);
 }
 
+double speed_mps(const Mission& mission) {
+  return testing::planner_of(mission).method().traits().speed_mps;
+}
+
 // When half of the second group passes where no density is asked for.
 MissionTime free_half(Mission mission, std::uint64_t seed) {
   mission.planner.density_cap_per_m2 = 0.0;
-  const PlannerOptions options = planner_options(mission);
   Rng rng(seed);
-  const FlowPlan flow =
-      plan({mission.world, mission.start, mission.goal}, options, rng, [] { return SteadyTime{}; })
-          .value()
-          .plan;
-  return group_times(flow, narrowest_passage(flow, mission.world), options.speed_mps)
+  const FlowPlan flow = testing::plan_mission(mission, rng).value().plan;
+  return group_times(flow, narrowest_passage(flow, mission.world), speed_mps(mission))
       .at(1)
       .passes.value()
       .half;
@@ -90,13 +90,11 @@ TEST(PassageTimes, ShowThatTheSecondGroupWaitsAtTheDoor) {
   ASSERT_TRUE(mission.has_value()) << mission.error().message;
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     Rng rng(seed);
-    const PlannerOptions options = planner_options(*mission);
-    const auto result = plan({mission->world, mission->start, mission->goal}, options, rng,
-                             [] { return SteadyTime{}; });
+    const auto result = testing::plan_mission(*mission, rng);
     ASSERT_TRUE(result.has_value()) << result.error().message;
 
     const auto passage = narrowest_passage(result->plan, mission->world);
-    const auto groups = group_times(result->plan, passage, options.speed_mps);
+    const auto groups = group_times(result->plan, passage, speed_mps(*mission));
 
     ASSERT_TRUE(passage.has_value());
     EXPECT_NEAR(passage->width_m(), 8.0, 1e-9);

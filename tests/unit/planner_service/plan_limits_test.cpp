@@ -9,12 +9,11 @@
 #include <gtest/gtest.h>
 
 #include "planner_service/plan_checks.hpp"
+#include "tests/unit/planner_service/planners.hpp"
 #include "tests/unit/planner_service/standin_scene.hpp"
 
 namespace swarm::planner {
 namespace {
-
-SteadyTime no_time() { return {}; }
 
 Mission standin(std::uint32_t robots) {
   testing::StandinScene scene = testing::standin_scene();
@@ -28,8 +27,7 @@ Mission standin(std::uint32_t robots) {
 
 Result<PlanResult> plan_of(const Mission& mission, std::uint64_t seed = 1) {
   Rng rng(seed);
-  return plan({mission.world, mission.start, mission.goal}, planner_options(mission), rng,
-              &no_time);
+  return testing::plan_mission(mission, rng);
 }
 
 const PlanWarning* warning_of(const PlanResult& result, const std::string& code) {
@@ -132,15 +130,15 @@ TEST(PlanLimits, RaiseTheCapToTheDensityOfStartAndGoal) {
 TEST(PlanLimits, KeepTheUncappedPlanWhereNoneIsFoundUnderACap) {
   Mission mission = standin(5000);
   mission.planner.samples = 200;
-  PlannerOptions options = planner_options(mission);
+  SwarmPrmOptions options = testing::swarmprm_options_of(mission);
   options.limits.cap_per_m2 = 0.01;  // every component is denser by itself, and routes far denser
   Rng rng(1);
   const PlanRequest request{mission.world, mission.start, mission.goal};
 
-  const auto result = plan(request, options, rng, &no_time);
+  const auto result = testing::plan_once(request, options, rng);
   Rng again(1);
   options.cap_is_automatic = false;
-  const auto uncapped = plan(request, options, again, &no_time);
+  const auto uncapped = testing::plan_once(request, options, again);
 
   ASSERT_TRUE(result.has_value() && uncapped.has_value());
   EXPECT_EQ(result->plan.digest(), uncapped->plan.digest());

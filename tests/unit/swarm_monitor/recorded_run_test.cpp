@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 
 #include "swarm_core/plan/plan_json.hpp"
+#include "swarm_core/plan/planning_record.hpp"
+#include "swarm_monitor/tracking/density_course.hpp"
 #include "synthetic_run.hpp"
 
 namespace swarm::monitor {
@@ -110,6 +112,30 @@ TEST(RecordedRun, ReadsAllPlansByVersionAndTheirClock) {
   EXPECT_EQ(run->first_plan(), &run->plans[0].plan);
   ASSERT_EQ(run->clock.size(), 2U);
   EXPECT_EQ(run->clock[1].rate, 0.5);
+}
+
+TEST(RecordedRun, ReadsTheDensityCapOfThePlanningMethod) {
+  SyntheticRun files(1);
+  files.write(0, {.positions_m = straight({5, 5}, {6, 5}, 10)});
+  EXPECT_FALSE(read_run(files.dir())->planning.has_value());
+
+  files.write_file("planning.json", to_json(PlanningRecord{"mine", 2.05}));
+  const auto capped = read_run(files.dir());
+  files.write_file("planning.json", to_json(PlanningRecord{"other", std::nullopt}));
+  const auto uncapped = read_run(files.dir());
+
+  ASSERT_TRUE(capped->planning && uncapped->planning);
+  EXPECT_EQ(capped->planning->method, "mine");
+  EXPECT_EQ(density_cap_of(*capped), 2.05);
+  EXPECT_EQ(density_cap_of(*uncapped), std::nullopt);
+  for (const char* broken : {"", "{", "[]", "{\"method\": 7}", "{\"density_cap_per_m2\": 2}"}) {
+    EXPECT_FALSE(planning_record_from_json(broken).has_value()) << broken;
+  }
+  for (const char* no_cap : {"-1", "0", "\"2\"", "null", "1e999"}) {
+    const auto record = planning_record_from_json(std::string("{\"method\": \"m\", ") +
+                                                  "\"density_cap_per_m2\": " + no_cap + "}");
+    EXPECT_FALSE(record && record->density_cap_per_m2) << no_cap;
+  }
 }
 
 TEST(RecordedRun, ReadsWhatARobotTakesAsItsReference) {

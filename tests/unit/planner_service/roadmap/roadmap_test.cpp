@@ -1,12 +1,11 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-#include "planner_service/roadmap/roadmap.hpp"
-
 #include <cmath>
 #include <map>
 
 #include <gtest/gtest.h>
 
+#include "planner_service/roadmap/connect.hpp"
 #include "planner_service/roadmap/neighbours.hpp"
 #include "planner_service/roadmap/sampler.hpp"
 #include "tests/unit/planner_service/standin_scene.hpp"

@@ -1,0 +1,58 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "planner_service/flow/density_peak.hpp"
+#include "swarm_core/plan/flow_plan.hpp"
+
+namespace swarm::planner {
+
+/// What makes up a peak: the density that one leg, or one source or sink standing still (`from` =
+/// `to`), contributes.
+struct DensityShare {
+  std::uint32_t from = 0;
+  std::uint32_t to = 0;
+  double per_m2 = 0.0;
+};
+
+struct SharedPeak {
+  DensityPeak peak;
+  std::vector<DensityShare> shares;
+};
+
+/// The times at which densities of a plan are looked at: `step_s` apart, and those of all nodes.
+std::vector<MissionTime> density_times(const FlowPlan& plan, double step_s);
+
+/// The highest density of a plan over sampled times. It knows the flow alone, no solver.
+///
+/// Times are `step_s` apart, and those of all nodes. At each, the climb starts at the mean of every
+/// Gaussian and follows the mean shift x ← (Σ wₖΣₖ⁻¹)⁻¹ Σ wₖΣₖ⁻¹μₖ, wₖ the density of part k at x,
+/// which never descends. Cost: times · parts · (parts + those in sight · a dozen steps).
+DensityPeak max_density(const FlowPlan& plan, double robots, double step_s);
+
+/// The highest density of Gaussians that stand still, found the same way.
+DensityPeak max_density(std::span<const Gaussian> components, std::span<const double> masses,
+                        double robots);
+
+/// The most robots in a disc of `radius_m` by its area, over sampled times: what bodies have to
+/// find room in, where max_density() counts a Gaussian that is narrower than a robot as endless.
+///
+/// Climbs as max_density() does, on the density smoothed by the disc's own covariance (R²/4 I), and
+/// counts there, so that it may miss the densest disc by a few per cent, always from below.
+DensityPeak densest_disc(const FlowPlan& plan, double robots, double radius_m, double step_s);
+
+/// Radius of the discs in which densities are compared with what fits [m]: ten robots or more.
+inline constexpr double kDisc_m = 2.0;
+
+/// The densest disc of kDisc_m of a plan, looked for every 2 s of it.
+DensityPeak densest_disc_of(const FlowPlan& plan, double robots);
+
+/// All peaks above `limit_per_m2`, in order of time.
+std::vector<SharedPeak> peaks_above(const FlowPlan& plan, double robots, double step_s,
+                                    double limit_per_m2);
+
+}  // namespace swarm::planner

@@ -1,0 +1,33 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "planner_service/flow/route.hpp"
+#include "planner_service/methods/adoc/adoc.hpp"
+#include "planner_service/planning_method.hpp"
+#include "planner_service/planning_registry.hpp"
+
+namespace swarm::planner {
+
+/// The options of ADOC that a mission asks for.
+AdocOptions adoc_options(const Mission& mission);
+
+/// ADOC as a planning method. It promises nothing about risk and keeps nothing.
+class AdocMethod final : public PlanningMethod {
+ public:
+  AdocMethod(const AdocOptions& options, const RiskLimit& risk, const LegSpeed& speed);
+  static Result<std::unique_ptr<PlanningMethod>> make(const MethodContext& context);
+
+  Result<PlanResult> plan(const PlanRequest& request, const PlanContext& context) override;
+  const RiskLimit& risk() const override { return risk_; }
+  /// Of the groups that a plan in flight starts from; ADOC itself does not use it.
+  void set_risk(const RiskLimit& risk) override { risk_ = risk; }
+  PlanningTraits traits() const override { return {.speed_mps = speed_.means_mps}; }
+
+ private:
+  AdocOptions options_;
+  RiskLimit risk_;
+  LegSpeed speed_;
+};
+
+}  // namespace swarm::planner

@@ -1,0 +1,13 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "planner_service/planning_registry.hpp"
+
+namespace swarm::planner {
+
+/// Registers the methods of this project: swarmprm, rover, crops, adoc. \pre none of these names is
+/// registered
+void register_builtin_methods(PlanningRegistry& registry);
+
+}  // namespace swarm::planner

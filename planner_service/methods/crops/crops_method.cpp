@@ -1,0 +1,69 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "planner_service/methods/crops/crops_method.hpp"
+
+#include <utility>
+
+#include "planner_service/methods/shared/route_plan.hpp"
+#include "planner_service/stage_timer.hpp"
+
+namespace swarm::planner {
+
+CropsOptions crops_options(const Mission& mission) {
+  const PlannerSpec& spec = mission.planner;
+  return {.samples = spec.samples,
+          .connection_radius_m = spec.connection_radius_m,
+          .clearance_min_m = spec.crops_clearance_m,
+          .clearance_power = spec.crops_power,
+          .goal_radius_m = spec.crops_goal_radius_m};
+}
+
+CropsMethod::CropsMethod(const CropsOptions& options, const RiskLimit& risk, const LegSpeed& speed)
+    : options_(options), risk_(risk), speed_(speed) {}
+
+Result<std::unique_ptr<PlanningMethod>> CropsMethod::make(const MethodContext& context) {
+  const PlannerSpec& spec = context.mission.planner;
+  return std::make_unique<CropsMethod>(
+      crops_options(context.mission),
+      RiskLimit{.alpha = spec.risk_alpha, .delta_m = spec.risk_delta_m},
+      leg_speed(spec.speed_mps, context.limits));
+}
+
+/// A guide for the request: the one there is with new ends, or a new one on another map.
+Result<void> CropsMethod::prepare(const PlanRequest& request, Rng& rng) {
+  if (guide_ && world_ == request.world && guide_->move_ends(request.start, request.goal)) {
+    return {};
+  }
+  guide_.reset();
+  world_ = request.world;
+  auto made = CropsGuide::make(world_, request.start, request.goal, risk_, options_, rng);
+  if (!made) return tl::unexpected(made.error());
+  guide_.emplace(*std::move(made));
+  return {};
+}
+
+Result<PlanResult> CropsMethod::plan(const PlanRequest& request, const PlanContext& context) {
+  StageTimer stage(context.clock);
+  if (auto ready = prepare(request, context.rng); !ready) return tl::unexpected(ready.error());
+  PlanResult result;
+  result.roadmap = guide_->roadmap();
+  result.stats.roadmap_ms = stage.lap_ms();
+  auto flow = flow_of(guide_->routes(), request, speed_);
+  if (!flow) return tl::unexpected(flow.error());
+  result.plan = *std::move(flow);
+  measure_routes(result.stats, guide_->routes(), guide_->routes());
+  return result;
+}
+
+void CropsMethod::set_risk(const RiskLimit& risk) {
+  risk_ = risk;
+  guide_.reset();
+}
+
+bool CropsMethod::on_congestion(const Vec2& at_m) {
+  if (!guide_) return false;
+  const auto route = guide_->route_near(at_m);
+  return route && guide_->reweight(*route, at_m);
+}
+
+}  // namespace swarm::planner

@@ -1,0 +1,57 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "planner_service/methods/swarmprm/swarmprm_method.hpp"
+
+#include <utility>
+
+#include "planner_service/methods/shared/route_plan.hpp"
+#include "planner_service/methods/swarmprm/swarmprm.hpp"
+#include "planner_service/roadmap/endpoints.hpp"
+#include "planner_service/stage_timer.hpp"
+
+namespace swarm::planner {
+
+Result<std::unique_ptr<PlanningMethod>> SwarmPrmMethod::make(const MethodContext& context) {
+  return std::make_unique<SwarmPrmMethod>(swarmprm_options(context));
+}
+
+PlanningTraits SwarmPrmMethod::traits() const {
+  PlanningTraits traits{.risk_promise = RiskPromise::kEveryGaussian,
+                        .is_kept_in_time = true,
+                        .speed_mps = options_.speed_mps};
+  if (options_.density.max_per_m2 > 0.0) {
+    traits.density_cap_per_m2 = options_.density.max_per_m2;
+  } else if (options_.cap_is_automatic) {
+    traits.density_cap_per_m2 = options_.limits.cap_per_m2;
+  }
+  return traits;
+}
+
+Roadmap SwarmPrmMethod::roadmap_for(const PlanRequest& request, Rng& rng) {
+  if (!options_.keeps_roadmap) return make_roadmap(request, options_, rng);
+  if (live_) {
+    live_->update(request.world, terminals_of(request), rng);
+  } else {
+    const LiveRoadmapOptions wanted{.samples = options_.samples,
+                                    .connection_radius_m = options_.connection_radius_m,
+                                    .risk = options_.risk,
+                                    .sampler = options_.sampler};
+    live_.emplace(request.world, terminals_of(request), wanted, rng);
+  }
+  return live_->roadmap();
+}
+
+Result<PlanResult> SwarmPrmMethod::plan(const PlanRequest& request, const PlanContext& context) {
+  StageTimer stage(context.clock);
+  const auto checked = check_endpoints(request.world, request.start, request.goal, options_.risk);
+  if (!checked) return tl::unexpected(checked.error());
+  return plan_on_roadmap(roadmap_for(request, context.rng), request, options_,
+                         {context.rng, stage});
+}
+
+void SwarmPrmMethod::set_risk(const RiskLimit& risk) {
+  options_.risk = risk;
+  live_.reset();
+}
+
+}  // namespace swarm::planner

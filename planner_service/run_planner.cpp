@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "planner_service/run_planner.hpp"
+
+#include <optional>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include "planner_service/planner_process.hpp"
+#include "swarm_core/base/result.hpp"
+#include "swarm_core/mission/link_faults.hpp"
+#include "swarm_core/shell/program.hpp"
+#include "swarm_core/shell/stop_signal.hpp"
+
+namespace swarm::planner {
+namespace {
+
+/// The options of the command line, or the exit code where the program ends there (--help).
+Result<std::optional<ExitCode>> read_options(int argc, char** argv, ProcessOptions& options) {
+  CLI::App app(
+      "Plans how the swarm flows and publishes the plan and the heartbeat of a run.\nThe launcher "
+      "starts it; to start one by hand: planner_service --run RUN_DIR",
+      "planner_service");
+  std::string fault;
+  app.add_option("--run", options.run_dir, "Run directory made by the launcher")->required();
+  app.add_option("--parent", options.parent_pid, "End when this process is no longer our parent");
+  app.add_option("--strength", options.ownership_strength,
+                 "Ownership of the plan topic: agents follow the strongest living planner");
+  app.add_option("--fault", fault, "A bad network for what this process receives");
+  shell::add_common_options(app);
+  auto done = shell::parse(app, argc, argv);
+  if (!done || *done) return done;
+  const auto faults = parse_link_faults(fault);
+  if (!faults) return tl::unexpected(faults.error());
+  options.faults = *faults;
+  return done;
+}
+
+}  // namespace
+
+int run_planner(int argc, char** argv, const PlanningRegistry& registry) {
+  return shell::run_main("planner_service", [&]() -> Result<ExitCode> {
+    ProcessOptions options;
+    const auto done = read_options(argc, argv, options);
+    if (!done) return tl::unexpected(done.error());
+    if (*done) return **done;
+    shell::catch_stop_signals();
+    const auto process = PlannerProcess::make(options, registry);
+    if (!process) return tl::unexpected(process.error());
+    if (const auto ran = (*process)->run(); !ran) return tl::unexpected(ran.error());
+    return ExitCode::kOk;
+  });
+}
+
+}  // namespace swarm::planner
