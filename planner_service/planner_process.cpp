@@ -213,9 +213,11 @@ Result<std::unique_ptr<PlannerProcess>> PlannerProcess::make(const ProcessOption
   impl->options = options;
   const auto run = shell::read_run_info(options.run_dir);
   if (!run) return tl::unexpected(run.error());
-  Catalogue known;
-  known.robots_are_open = true;  // what the robots' program has is not the planner's business
-  auto mission = load_mission(options.run_dir / shell::kMissionFile, known);
+  auto mission = load_mission(options.run_dir / shell::kMissionFile,
+                              Catalogue{.planning_methods = registry.specs(),
+                                        .control_methods = {},
+                                        .drivers = {},
+                                        .robots_are_open = true});
   if (!mission) return tl::unexpected(mission.error());
   impl->mission = std::move(*mission);
   auto planner = Planner::make(registry, impl->mission);

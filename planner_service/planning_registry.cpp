@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "planner_service/planning_registry.hpp"
 
+#include <algorithm>
+#include <string>
 #include <utility>
 
 #include <fmt/format.h>
@@ -10,23 +12,33 @@
 
 namespace swarm::planner {
 
-void PlanningRegistry::add(std::string name, std::string summary, PlanningFactory factory) {
-  const bool is_new =
-      entries_.try_emplace(std::move(name), Entry{std::move(summary), std::move(factory)}).second;
-  SWARM_ASSERT(is_new);
+void PlanningRegistry::add(PlanningEntry entry) {
+  SWARM_ASSERT(entry.make && find_component(specs(), entry.spec.name) == nullptr);
+  entries_.push_back(std::move(entry));
+}
+
+Components PlanningRegistry::specs() const {
+  Components specs;
+  for (const PlanningEntry& entry : entries_) specs.push_back(entry.spec);
+  return specs;
 }
 
 Result<std::unique_ptr<PlanningMethod>> PlanningRegistry::make(const Mission& mission,
                                                                PlanningUse use) const {
-  const auto found = entries_.find(mission.planner.method);
+  const auto found =
+      std::find_if(entries_.begin(), entries_.end(), [&](const PlanningEntry& entry) {
+        return entry.spec.name == mission.planner.method;
+      });
   if (found == entries_.end()) {
     std::string known;
-    for (const auto& [name, entry] : entries_) known += (known.empty() ? "" : ", ") + name;
+    for (const PlanningEntry& entry : entries_) {
+      known += (known.empty() ? "" : ", ") + entry.spec.name;
+    }
     return fail(ErrorCode::kBadInput, fmt::format("planner.method: this program has no method {}; "
                                                   "it has {}",
                                                   mission.planner.method, known));
   }
-  return found->second.make(
+  return found->make(
       {.mission = mission,
        .limits = swarm_limits(mission.robots, mission.safety, mission.control),
        .use = use});

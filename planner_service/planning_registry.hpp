@@ -3,15 +3,13 @@
 #pragma once
 
 #include <functional>
-#include <map>
 #include <memory>
-#include <string>
-#include <string_view>
 #include <vector>
 
 #include "planner_service/planning_method.hpp"
 #include "swarm_core/base/result.hpp"
 #include "swarm_core/mission/body_limits.hpp"
+#include "swarm_core/mission/catalogue.hpp"
 #include "swarm_core/mission/mission.hpp"
 
 namespace swarm::planner {
@@ -30,30 +28,28 @@ struct MethodContext {
   PlanningUse use = PlanningUse::kInFlight;
 };
 
-/// Makes a method. kBadInput says which option of the mission is wrong.
-using PlanningFactory =
-    std::function<Result<std::unique_ptr<PlanningMethod>>(const MethodContext&)>;
+/// A planning method as a mission names it by planner.method.
+struct PlanningEntry {
+  ComponentSpec spec;  ///< its keys are those that it reads from mission.planner.options
+  /// kBadInput says which option of the mission is wrong.
+  std::function<Result<std::unique_ptr<PlanningMethod>>(const MethodContext&)> make;
+};
 
-/// The planning methods of a program by name. The built-in ones enter it by
-/// register_builtin_methods(), a guest's by the same add().
+/// The planning methods of a program by name: the built-in ones and a guest's register alike.
 class PlanningRegistry {
  public:
-  struct Entry {
-    std::string summary;  ///< one line of documentation
-    PlanningFactory make;
-  };
+  /// \pre no entry of this name is there
+  void add(PlanningEntry entry);
 
-  /// \pre the name is new
-  void add(std::string name, std::string summary, PlanningFactory factory);
-
-  const std::map<std::string, Entry, std::less<>>& entries() const { return entries_; }
+  const std::vector<PlanningEntry>& all() const { return entries_; }
+  Components specs() const;
 
   /// The method that the mission names. kBadInput for an unknown name lists those that are known;
   /// otherwise errors are the factory's.
   Result<std::unique_ptr<PlanningMethod>> make(const Mission& mission, PlanningUse use) const;
 
  private:
-  std::map<std::string, Entry, std::less<>> entries_;
+  std::vector<PlanningEntry> entries_;
 };
 
 }  // namespace swarm::planner

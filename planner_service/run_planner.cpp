@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "planner_service/run_planner.hpp"
 
+#include <cstdio>
 #include <optional>
 #include <string>
 
@@ -17,20 +18,34 @@ namespace swarm::planner {
 namespace {
 
 /// The options of the command line, or the exit code where the program ends there (--help).
-Result<std::optional<ExitCode>> read_options(int argc, char** argv, ProcessOptions& options) {
+Result<std::optional<ExitCode>> read_options(int argc, char** argv,
+                                             const PlanningRegistry& registry,
+                                             ProcessOptions& options) {
   CLI::App app(
       "Plans how the swarm flows and publishes the plan and the heartbeat of a run.\nThe launcher "
       "starts it; to start one by hand: planner_service --run RUN_DIR",
       "planner_service");
   std::string fault;
-  app.add_option("--run", options.run_dir, "Run directory made by the launcher")->required();
+  app.add_option("--run", options.run_dir, "Run directory made by the launcher");
   app.add_option("--parent", options.parent_pid, "End when this process is no longer our parent");
   app.add_option("--strength", options.ownership_strength,
                  "Ownership of the plan topic: agents follow the strongest living planner");
   app.add_option("--fault", fault, "A bad network for what this process receives");
+  bool describe = false;
+  app.add_flag("--describe", describe,
+               "Print its planning methods with their options as JSON, and exit");
   shell::add_common_options(app);
   auto done = shell::parse(app, argc, argv);
   if (!done || *done) return done;
+  if (describe) {
+    Catalogue catalogue;
+    catalogue.planning_methods = registry.specs();
+    std::puts(to_json(catalogue).c_str());
+    return ExitCode::kOk;
+  }
+  if (options.run_dir.empty()) {
+    return fail(ErrorCode::kBadInput, "--run is required; the launcher gives it");
+  }
   const auto faults = parse_link_faults(fault);
   if (!faults) return tl::unexpected(faults.error());
   options.faults = *faults;
@@ -42,7 +57,7 @@ Result<std::optional<ExitCode>> read_options(int argc, char** argv, ProcessOptio
 int run_planner(int argc, char** argv, const PlanningRegistry& registry) {
   return shell::run_main("planner_service", [&]() -> Result<ExitCode> {
     ProcessOptions options;
-    const auto done = read_options(argc, argv, options);
+    const auto done = read_options(argc, argv, registry, options);
     if (!done) return tl::unexpected(done.error());
     if (*done) return **done;
     shell::catch_stop_signals();

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "robot_agent/neighbour.hpp"
 #include "swarm_core/base/ids.hpp"
 #include "swarm_core/base/lanes.hpp"
 #include "swarm_core/base/linalg.hpp"
@@ -24,19 +25,6 @@ struct NeighbourReport {
   SteadyTime as_of;  ///< when it was true, on our steady clock
   Vec2 position_m = Vec2::Zero();
   Vec2 velocity_mps = Vec2::Zero();
-};
-
-/// What we believe of a neighbour now.
-struct Neighbour {
-  RobotId robot;
-  Vec2 position_m = Vec2::Zero();  ///< dead-reckoned
-  Vec2 velocity_mps = Vec2::Zero();
-  double radius_m = 0.0;  ///< its radius, grown while it is silent for longer than it should be
-  /// How old our knowledge of its motion is: the time a word takes, since it would have spoken had
-  /// it turned; on a poor link, of one that moves near us, the time since its last.
-  double stale_s = 0.0;
-  /// For how long it may have stood by now, had its process stalled after its last word.
-  double stalled_s = 0.0;
 };
 
 /// Those within reach; valid until the thread asks a table again.

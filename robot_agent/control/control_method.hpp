@@ -8,7 +8,7 @@
 
 #include "robot_agent/control/planned_density.hpp"
 #include "robot_agent/control/route.hpp"
-#include "robot_agent/neighbour_table.hpp"
+#include "robot_agent/neighbour.hpp"
 #include "swarm_core/base/random.hpp"
 #include "swarm_core/base/time.hpp"
 #include "swarm_core/plan/flow_plan.hpp"

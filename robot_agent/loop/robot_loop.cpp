@@ -12,7 +12,7 @@ namespace {
 
 constexpr Duration kLate = std::chrono::milliseconds(20);
 /// Of each robot, one estimate of a neighbour is recorded every so many ticks.
-constexpr std::uint32_t kTicksPerEstimate = 5;
+constexpr std::uint32_t kTicksPerEstimate = 10;
 
 constexpr std::uint32_t kTicksPerHealth = 10;
 constexpr const char* kNoPosition = "the driver has no position; the robot holds";

@@ -10,12 +10,17 @@
 namespace swarm::launcher {
 
 Recording::Recording(const Mission& mission, UtcTime begin, std::uint64_t keeps_every)
-    : mission_(mission), begin_(begin), keeps_every_(keeps_every), notes_(mission.robots.count) {
+    : mission_(mission),
+      begin_(begin),
+      keeps_every_(keeps_every),
+      notes_(mission.robots.count),
+      estimates_(mission.robots.count) {
   SWARM_ASSERT(keeps_every >= 1);
 }
 
-void Recording::note(RobotId robot, UtcTime at, std::string code, std::string text) {
-  notes_[robot.value()].push_back({.stamp = at, .code = std::move(code), .text = std::move(text)});
+void Recording::note(RobotId robot, blackbox::Note note) {
+  const bool follows_step = !periods_.empty() && periods_.back()[robot.value()].stamp == note.stamp;
+  notes_[robot.value()].push_back({.note = std::move(note), .follows_step = follows_step});
 }
 
 std::vector<blackbox::Step> Recording::last_steps(RobotId robot) const {
@@ -37,19 +42,27 @@ void Recording::replay(std::uint32_t robot, Take take) const {
                         .stamp = begin_});
   auto note = notes_[robot].begin();
   const auto last_note = notes_[robot].end();
+  auto estimate = estimates_[robot].begin();
+  const auto last_estimate = estimates_[robot].end();
   for (const std::vector<blackbox::Step>& period : periods_) {
     const blackbox::Step& step = period[robot];
     if (step.stamp == kNever) continue;
-    for (; note != last_note && note->stamp < step.stamp; ++note) take(*note);
+    const auto comes_first = [&](const PlacedNote& placed) {
+      return placed.note.stamp < step.stamp ||
+             (placed.note.stamp == step.stamp && !placed.follows_step);
+    };
+    for (; note != last_note && comes_first(*note); ++note) take(note->note);
     take(step);
+    for (; estimate != last_estimate && estimate->stamp <= step.stamp; ++estimate) take(*estimate);
   }
   if (robot == 0) {
     take(blackbox::LinkStats{.stamp = periods_.empty() ? begin_ : periods_.back()[robot].stamp,
                              .states_sent = static_cast<std::uint32_t>(link_.states_sent),
                              .states_received = static_cast<std::uint32_t>(link_.states_received),
+                             .refused = link_.refused,
                              .state_age = link_.state_age});
   }
-  for (; note != last_note; ++note) take(*note);
+  for (; note != last_note; ++note) take(note->note);
 }
 
 std::vector<monitor::Track> Recording::tracks() const {

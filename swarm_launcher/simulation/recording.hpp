@@ -6,8 +6,10 @@
 #include <filesystem>
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "robot_agent/loop/robot_log.hpp"
 #include "swarm_core/blackbox/record.hpp"
 #include "swarm_core/mission/mission.hpp"
 #include "swarm_monitor/recorded_run.hpp"
@@ -30,7 +32,11 @@ class Recording {
     ++begun_;
   }
   void step(RobotId robot, const blackbox::Step& step) { periods_.back()[robot.value()] = step; }
-  void note(RobotId robot, UtcTime at, std::string code, std::string text);
+  /// Where a robot took a neighbour to be; kept with the step of the period.
+  void estimate(RobotId robot, const blackbox::Belief& estimate) {
+    if ((begun_ - 1) % keeps_every_ == 0) estimates_[robot.value()].push_back(estimate);
+  }
+  void note(RobotId robot, blackbox::Note note);
   /// The last two steps of a robot that are kept, the newest last.
   std::vector<blackbox::Step> last_steps(RobotId robot) const;
 
@@ -38,6 +44,7 @@ class Recording {
   struct Link {
     std::uint64_t states_sent = 0;
     std::uint64_t states_received = 0;
+    std::vector<std::uint32_t> refused{};  ///< by link::RefusalReason; empty: none was
     Histogram state_age{};
   };
   Link& link() { return link_; }
@@ -58,8 +65,27 @@ class Recording {
   std::uint64_t keeps_every_;
   std::uint64_t begun_ = 0;
   std::vector<std::vector<blackbox::Step>> periods_;  // each of all robots
-  std::vector<std::vector<blackbox::Note>> notes_;    // of each robot
+  /// A note, and whether it comes after the step of the same moment.
+  struct PlacedNote {
+    blackbox::Note note;
+    bool follows_step;
+  };
+  std::vector<std::vector<PlacedNote>> notes_;            // of each robot
+  std::vector<std::vector<blackbox::Belief>> estimates_;  // of each robot
   Link link_;
+};
+
+/// One robot's part of a recording.
+class RobotRecording final : public agent::RobotLog {
+ public:
+  RobotRecording(Recording& recording, RobotId robot) : recording_(recording), robot_(robot) {}
+  void append(const blackbox::Step& step) override { recording_.step(robot_, step); }
+  void append(const blackbox::Belief& estimate) override { recording_.estimate(robot_, estimate); }
+  void append(blackbox::Note note) override { recording_.note(robot_, std::move(note)); }
+
+ private:
+  Recording& recording_;
+  RobotId robot_;
 };
 
 }  // namespace swarm::launcher

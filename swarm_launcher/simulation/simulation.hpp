@@ -10,8 +10,10 @@
 #include <vector>
 
 #include "planner_service/plan_keeper.hpp"
-#include "robot_agent/agent.hpp"
 #include "robot_agent/drivers/simulated_robot.hpp"
+#include "robot_agent/loop/density_forecast.hpp"
+#include "robot_agent/loop/robot_loop.hpp"
+#include "robot_agent/loop/status_cadence.hpp"
 #include "swarm_core/base/result.hpp"
 #include "swarm_core/mission/link_faults.hpp"
 #include "swarm_core/mission/mission.hpp"
@@ -20,6 +22,7 @@
 #include "swarm_launcher/simulation/kills.hpp"
 #include "swarm_launcher/simulation/recording.hpp"
 #include "swarm_launcher/supervisor.hpp"
+#include "swarm_link/gate/gate.hpp"
 
 namespace swarm::launcher {
 
@@ -49,9 +52,10 @@ class SimulationObserver {
 
 /// A mission in lock-step: the agents, planner and supervisor of a real run, each a pure function
 /// of what it hears, driven by a clock that waits for nobody. In each control period every robot
-/// measures, hears what the air brings, decides and commands; then what was said goes on the air.
-/// So results depend on mission and options alone, not on the number of threads, to the last bit.
-/// The planner answers at once: how long it thinks costs no mission time.
+/// measures, receives what the network brings, decides and commands, by the loop that a process
+/// runs; then what was published goes on the network. So results depend on mission and options
+/// alone, not on the number of threads, to the last bit. The planner answers at once: how long it
+/// thinks costs no mission time.
 class Simulation {
  public:
   /// Places the robots and plans. Mission and observer outlive the simulation.
@@ -71,6 +75,9 @@ class Simulation {
 
   Outcome outcome() const { return supervisor_.outcome(); }
   double mission_s() const { return supervisor_.mission_time(now_).count(); }
+  /// Of the last control period.
+  MissionPhase phase() const { return phase_; }
+  const PlanClock& plan_clock() const { return clock_; }
   Supervisor::Counts counts() const { return supervisor_.counts(); }
 
   struct Cost {
@@ -86,16 +93,13 @@ class Simulation {
 
  private:
   struct Robot {
-    agent::Agent agent;
-    agent::SimulatedRobot body;
-    double hears_m = 0.0;  // sensing range
+    agent::RobotLoop loop;
+    agent::SimulatedRobot body;  // by value: in the cache with the rest
+    double hears_m = 0.0;        // sensing range
     SteadyTime heard_until;
-    Vec2 position_m = Vec2::Zero();
-    std::uint32_t sequence = 0;
-    std::uint32_t received = 0;
-    RobotMode mode = RobotMode::kWaiting;
-    bool settled = false;
+    std::uint32_t plan_version = 0;  // that it follows
   };
+  struct RobotBus;
 
   /// Who is ticked after a robot; null: nobody.
   struct Upcoming {
@@ -105,8 +109,8 @@ class Simulation {
 
   /// What a thread collects.
   struct Collected {
-    std::vector<agent::NeighbourReport> said;
-    Histogram ages;  // of the states that robots heard
+    std::vector<link::RobotStateMessage> published;
+    Histogram ages;  // of the states that robots used
   };
 
   Simulation(const Mission& mission, planner::Planner planner, const SimulationOptions& options,
@@ -130,8 +134,13 @@ class Simulation {
   std::size_t slot_of(std::uint32_t robot) const;
   void report_status();
   void tick_slot(std::size_t slot);
-  void prefetch(const Robot& robot) const;
-  void tick_robot(std::uint32_t id, SteadyTime now, const Upcoming& upcoming, Collected& collected);
+  static void prefetch(const Robot& robot);
+  agent::RobotTick tick_at(SteadyTime now) const;
+  std::optional<agent::OfferedPlan> offered_plan(const Robot& robot) const;
+  void tick_robot(std::uint32_t id, const agent::RobotTick& tick, const Upcoming& upcoming,
+                  Collected& collected);
+  void deliver_published(SteadyTime now);
+  void count_states(const Robot& robot);
 
   const Mission& mission_;
   SimulationOptions options_;
@@ -143,13 +152,17 @@ class Simulation {
   bool world_moves_ = false;
   planner::PlanKeeper keeper_;
   Supervisor supervisor_;
+  agent::StatusCadence cadence_;
   MissionPhase phase_ = MissionPhase::kReady;
+  UtcTime stop_sent_{};  // 0: not yet
   Air air_;
+  link::Gate gate_;  // what receivers check, once for each published state
   Crew crew_;
   std::vector<Robot> robots_;
   std::vector<Rng> rngs_;                          // of each; large and rarely used
   std::vector<std::vector<std::uint32_t>> slots_;  // robots that tick together
   std::vector<Collected> collected_;               // one a thread
+  std::vector<agent::NeighbourReport> on_air_;     // what was published at a moment
   // Those who report their status out of turn. Apart from robots_: most are only looked at.
   std::vector<std::uint8_t> has_news_;
   std::vector<std::uint8_t> dead_;        // their processes
@@ -157,8 +170,8 @@ class Simulation {
   std::vector<std::uint32_t> respawned_;  // in this period
   std::size_t next_kill_ = 0;
   SteadyTime now_;
-  PlanClock clock_;                        // at now_
-  agent::PlannedDensity planned_density_;  // then, where it is asked for
+  PlanClock clock_;                 // at now_
+  agent::DensityForecast density_;  // then
   std::uint64_t periods_ = 0;
   double plan_ms_ = 0.0;
   std::vector<float> step_ns_;

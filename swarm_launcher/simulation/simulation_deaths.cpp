@@ -26,7 +26,7 @@ void Simulation::kill_due() {
     const Kill& due = options_.kills[next_kill_];
     std::vector<Candidate> living;
     for (std::uint32_t i = 0; i < robots_.size(); ++i) {
-      if (dead_[i] == 0) living.push_back({RobotId(i), robots_[i].position_m});
+      if (dead_[i] == 0) living.push_back({RobotId(i), robots_[i].loop.position_m()});
     }
     const std::vector<RobotId> chosen =
         choose(due, living, mix_seed(mix_seed(options_.seed, kKillSeed), next_kill_));
@@ -54,12 +54,12 @@ void Simulation::coast_fallen() {
     Robot& robot = robots_[id];
     const std::vector<blackbox::Step> last = recording_.last_steps(RobotId(id));
     const agent::Measurement body = robot.body.measure(now_);
-    robot.position_m = body.position_m;
+    robot.loop.place_at(body.position_m);
     const Vec2 position_m = body.true_position_m.value_or(body.position_m);
     if (last.empty() || position_m == last.back().position_m) return true;
     recording_.step(RobotId(id), {.stamp = utc(now_),
                                   .position_m = position_m,
-                                  .mode = static_cast<std::uint8_t>(robot.mode)});
+                                  .mode = static_cast<std::uint8_t>(robot.loop.mode())});
     return false;
   });
 }
@@ -75,19 +75,16 @@ void Simulation::admit_respawned() {
     Robot& robot = robots_[id];
     agent::AgentIdentity self = agent::agent_identity(mission_, RobotId(id));
     self.underway = true;
-    std::destroy_at(&robot.agent);  // one refers to the map and cannot be assigned
-    std::construct_at(&robot.agent, world_, agent::agent_options(mission_, RobotId(id)), self);
+    count_states(robot);
+    const Vec2 position_m = robot.loop.position_m();
+    std::destroy_at(&robot.loop);  // one refers to the map and cannot be assigned
+    std::construct_at(&robot.loop, world_, agent::agent_options(mission_, RobotId(id)), self);
+    robot.loop.place_at(position_m);
     rngs_[id] = agent::agent_rng(RobotId(id), options_.seed);
     robot.heard_until = now_;
-    robot.mode = RobotMode::kWaiting;
-    robot.settled = false;
+    robot.plan_version = 0;
     dead_[id] = 0;
     std::erase(fallen_, id);
-    if (keeper_.version() > 0) {
-      const auto time = plan_time(now_);
-      robot.agent.accept_plan(keeper_.newest().planned.plan, robot.position_m, std::nullopt,
-                              time ? std::optional(time->plan_time_s) : std::nullopt);
-    }
     std::vector<std::uint32_t>& members = slots_[slot_of(id)];
     members.insert(std::lower_bound(members.begin(), members.end(), id), id);
     has_news_[id] = 1;
@@ -97,7 +94,7 @@ void Simulation::admit_respawned() {
 void Simulation::add_bodies(std::span<const RobotId> robots) {
   std::vector<SceneChange> changes;
   for (const RobotId robot : robots) {
-    const LastKnown placed{.position_m = robots_[robot.value()].position_m, .at_rest = true};
+    const LastKnown placed{.position_m = robots_[robot.value()].loop.position_m(), .at_rest = true};
     const LastKnown known = last_known(recording_.last_steps(robot), mission_).value_or(placed);
     changes.emplace_back(AddBody{robot, circle_of_fallen(known, utc(now_), mission_, robot)});
   }

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "planner_service/flow/plan_density.hpp"
 #include "planner_service/plan_checks.hpp"
 #include "tests/unit/planner_service/planners.hpp"
 #include "tests/unit/planner_service/standin_scene.hpp"

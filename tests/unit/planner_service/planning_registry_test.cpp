@@ -67,11 +67,13 @@ TEST(PlanningRegistry, MakesTheMethodThatTheMissionNames) {
   PlanningRegistry registry;
   register_builtin_methods(registry);
   Calls calls;
-  registry.add("straight", "straight lines", [&](const MethodContext& context) {
-    EXPECT_EQ(context.mission.planner.method, "straight");
-    EXPECT_GT(context.limits.packing_per_m2, 0.0);
-    return Result<std::unique_ptr<PlanningMethod>>(std::make_unique<StraightMethod>(calls));
-  });
+  registry.add(
+      {.spec = {.name = "straight", .doc = "Straight lines", .options = {}},
+       .make = [&](const MethodContext& context) -> Result<std::unique_ptr<PlanningMethod>> {
+         EXPECT_EQ(context.mission.planner.method, "straight");
+         EXPECT_GT(context.limits.packing_per_m2, 0.0);
+         return std::make_unique<StraightMethod>(calls);
+       }});
   Mission mission = testing::KeeperBench::small_mission();
   mission.planner.method = "straight";
 
@@ -95,10 +97,10 @@ TEST(PlanningRegistry, NamesItsMethodsWhereTheMissionNamesAnother) {
   ASSERT_FALSE(planner.has_value());
   EXPECT_EQ(planner.error().code, ErrorCode::kBadInput);
   EXPECT_NE(planner.error().message.find("teleport"), std::string::npos);
-  EXPECT_NE(planner.error().message.find("adoc, crops, rover, swarmprm"), std::string::npos);
-  for (const auto& [name, entry] : registry.entries()) {
-    EXPECT_FALSE(entry.summary.empty()) << name;
-    EXPECT_EQ(entry.summary.find('\n'), std::string::npos) << name;
+  EXPECT_NE(planner.error().message.find("swarmprm, rover, crops, adoc"), std::string::npos);
+  for (const ComponentSpec& spec : registry.specs()) {
+    EXPECT_FALSE(spec.doc.empty()) << spec.name;
+    EXPECT_EQ(spec.doc.find('\n'), std::string::npos) << spec.name;
   }
 }
 
