@@ -6,7 +6,7 @@ target_compile_options(swarm_options INTERFACE
   -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wnon-virtual-dtor
   $<$<BOOL:${SWARM_WERROR}>:-Werror>)
 target_compile_definitions(swarm_options INTERFACE SWARM_VERSION="${PROJECT_VERSION}")
-target_include_directories(swarm_options INTERFACE ${PROJECT_SOURCE_DIR})
+target_include_directories(swarm_options INTERFACE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/include)
 
 if(SWARM_SANITIZE)
   add_compile_options(-fsanitize=${SWARM_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)

@@ -7,10 +7,10 @@
 #include <span>
 #include <vector>
 
-#include "swarm_core/base/ids.hpp"
-#include "swarm_core/base/time.hpp"
-#include "swarm_core/mission/mission.hpp"
-#include "swarm_core/plan/plan_clock.hpp"
+#include "swarmflow/core/ids.hpp"
+#include "swarmflow/core/time.hpp"
+#include "swarmflow/mission/mission.hpp"
+#include "swarmflow/core/plan_clock.hpp"
 
 namespace swarm::planner {
 

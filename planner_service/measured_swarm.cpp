@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-#include "planner_service/measured_swarm.hpp"
+#include "swarmflow/planning/measured_swarm.hpp"
 
 #include <utility>
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "swarm_core/plan/flow_plan.hpp"
-#include "swarm_core/world/world.hpp"
+#include "swarmflow/core/flow_plan.hpp"
+#include "swarmflow/core/world.hpp"
 
 /// When the groups of a plan pass a place: from the plan and the map alone, for reports and tests.
 namespace swarm::planner {

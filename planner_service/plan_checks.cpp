@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "swarm_core/gmm/wasserstein.hpp"
-#include "swarm_core/risk/cvar.hpp"
+#include "swarmflow/core/cvar.hpp"
 #include "swarm_core/risk/mixture_cvar.hpp"
 
 namespace swarm::planner {

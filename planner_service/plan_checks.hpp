@@ -4,9 +4,9 @@
 
 #include <cstddef>
 
-#include "swarm_core/base/random.hpp"
-#include "swarm_core/plan/flow_plan.hpp"
-#include "swarm_core/world/world.hpp"
+#include "swarmflow/core/random.hpp"
+#include "swarmflow/core/flow_plan.hpp"
+#include "swarmflow/core/world.hpp"
 
 /// What a plan keeps of its promises, from the plan alone: nothing of the planner's own checks is
 /// in it. For reports and tests.

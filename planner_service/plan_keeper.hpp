@@ -12,8 +12,8 @@
 #include "planner_service/planner.hpp"
 #include "planner_service/replan.hpp"
 #include "planner_service/robot_watch.hpp"
-#include "swarm_core/mission/mission.hpp"
-#include "swarm_core/mission/phase.hpp"
+#include "swarmflow/mission/mission.hpp"
+#include "swarmflow/mission/phase.hpp"
 #include "swarm_core/mission/scene_bodies.hpp"
 
 namespace swarm::planner {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-#include "planner_service/plan_result.hpp"
+#include "swarmflow/planning/plan_result.hpp"
 
 #include <fmt/format.h>
 

@@ -4,14 +4,14 @@
 
 #include <memory>
 
-#include "planner_service/plan_request.hpp"
-#include "planner_service/plan_result.hpp"
-#include "planner_service/planning_method.hpp"
-#include "planner_service/planning_registry.hpp"
-#include "swarm_core/base/result.hpp"
-#include "swarm_core/mission/body_limits.hpp"
-#include "swarm_core/mission/mission.hpp"
-#include "swarm_core/risk/cvar.hpp"
+#include "swarmflow/planning/plan_request.hpp"
+#include "swarmflow/planning/plan_result.hpp"
+#include "swarmflow/planning/planning_method.hpp"
+#include "swarmflow/planning/planning_registry.hpp"
+#include "swarmflow/core/result.hpp"
+#include "swarmflow/mission/body_limits.hpp"
+#include "swarmflow/mission/mission.hpp"
+#include "swarmflow/core/cvar.hpp"
 
 namespace swarm::planner {
 

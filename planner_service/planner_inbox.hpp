@@ -6,9 +6,9 @@
 #include <span>
 #include <vector>
 
-#include "swarm_core/base/time.hpp"
-#include "swarm_core/mission/phase.hpp"
-#include "swarm_core/mission/scene.hpp"
+#include "swarmflow/core/time.hpp"
+#include "swarmflow/mission/phase.hpp"
+#include "swarmflow/mission/scene.hpp"
 #include "swarm_link/gate/gate.hpp"
 #include "swarm_link/port.hpp"
 

@@ -16,7 +16,7 @@
 #include "planner_service/plan_keeper.hpp"
 #include "planner_service/planner_inbox.hpp"
 #include "swarm_core/base/clock.hpp"
-#include "swarm_core/mission/mission_file.hpp"
+#include "swarmflow/mission/mission_file.hpp"
 #include "swarm_core/plan/plan_json.hpp"
 #include "swarm_core/plan/planning_record.hpp"
 #include "swarm_core/shell/run_directory.hpp"

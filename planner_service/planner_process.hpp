@@ -6,8 +6,8 @@
 #include <filesystem>
 #include <memory>
 
-#include "planner_service/planning_registry.hpp"
-#include "swarm_core/base/result.hpp"
+#include "swarmflow/planning/planning_registry.hpp"
+#include "swarmflow/core/result.hpp"
 #include "swarm_core/mission/link_faults.hpp"
 
 namespace swarm::planner {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-#include "planner_service/planning_registry.hpp"
+#include "swarmflow/planning/planning_registry.hpp"
 
 #include <algorithm>
 #include <string>

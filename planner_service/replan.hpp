@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "planner_service/groups/plan_entry.hpp"
-#include "planner_service/measured_swarm.hpp"
-#include "planner_service/plan_request.hpp"
-#include "planner_service/plan_result.hpp"
+#include "swarmflow/planning/measured_swarm.hpp"
+#include "swarmflow/planning/plan_request.hpp"
+#include "swarmflow/planning/plan_result.hpp"
 #include "planner_service/planner.hpp"
 
 namespace swarm::planner {

@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
-#include "planner_service/measured_swarm.hpp"
-#include "swarm_core/base/time.hpp"
+#include "swarmflow/planning/measured_swarm.hpp"
+#include "swarmflow/core/time.hpp"
 
 namespace swarm::planner {
 

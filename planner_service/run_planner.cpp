@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-#include "planner_service/run_planner.hpp"
+#include "swarmflow/planning/run_planner.hpp"
 
 #include <cstdio>
 #include <optional>
@@ -9,7 +9,7 @@
 #include <CLI/CLI.hpp>
 
 #include "planner_service/planner_process.hpp"
-#include "swarm_core/base/result.hpp"
+#include "swarmflow/core/result.hpp"
 #include "swarm_core/mission/link_faults.hpp"
 #include "swarm_core/shell/program.hpp"
 #include "swarm_core/shell/stop_signal.hpp"

@@ -4,7 +4,7 @@
 
 #include <chrono>
 
-#include "planner_service/plan_request.hpp"
+#include "swarmflow/planning/plan_request.hpp"
 
 namespace swarm::planner {
 

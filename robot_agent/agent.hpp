@@ -8,14 +8,14 @@
 
 #include "robot_agent/agent_options.hpp"
 #include "robot_agent/control/guarded_method.hpp"
-#include "robot_agent/control/route.hpp"
+#include "swarmflow/robot/route.hpp"
 #include "robot_agent/control/safety_filter.hpp"
 #include "robot_agent/neighbour_table.hpp"
 #include "robot_agent/say_policy.hpp"
-#include "swarm_core/base/random.hpp"
+#include "swarmflow/core/random.hpp"
 #include "swarm_core/base/shared.hpp"
-#include "swarm_core/mission/mission.hpp"
-#include "swarm_core/mission/phase.hpp"
+#include "swarmflow/mission/mission.hpp"
+#include "swarmflow/mission/phase.hpp"
 
 namespace swarm::agent {
 

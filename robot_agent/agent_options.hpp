@@ -5,15 +5,15 @@
 #include <functional>
 #include <map>
 
-#include "robot_agent/control/route.hpp"
+#include "swarmflow/robot/route.hpp"
 #include "robot_agent/control/safety_filter.hpp"
-#include "robot_agent/control_registry.hpp"
+#include "swarmflow/robot/control_registry.hpp"
 #include "robot_agent/neighbour_table.hpp"
 #include "robot_agent/say_policy.hpp"
-#include "swarm_core/base/result.hpp"
+#include "swarmflow/core/result.hpp"
 #include "swarm_core/base/shared.hpp"
-#include "swarm_core/mission/body_limits.hpp"
-#include "swarm_core/mission/mission.hpp"
+#include "swarmflow/mission/body_limits.hpp"
+#include "swarmflow/mission/mission.hpp"
 
 namespace swarm::agent {
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-#include "robot_agent/control_registry.hpp"
+#include "swarmflow/robot/control_registry.hpp"
 
 #include <algorithm>
 #include <utility>

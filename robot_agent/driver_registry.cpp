@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-#include "robot_agent/driver_registry.hpp"
+#include "swarmflow/robot/driver_registry.hpp"
 
 #include <algorithm>
 #include <utility>

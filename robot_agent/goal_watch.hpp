@@ -5,8 +5,8 @@
 #include <chrono>
 #include <limits>
 
-#include "swarm_core/base/time.hpp"
-#include "swarm_core/gmm/gaussian.hpp"
+#include "swarmflow/core/time.hpp"
+#include "swarmflow/core/gaussian.hpp"
 
 namespace swarm::agent {
 

@@ -4,7 +4,7 @@
 
 #include <bit>
 
-#include "swarm_core/base/random.hpp"
+#include "swarmflow/core/random.hpp"
 
 namespace swarm::agent {
 

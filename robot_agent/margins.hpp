@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "swarm_core/mission/mission.hpp"
+#include "swarmflow/mission/mission.hpp"
 
 namespace swarm::agent {
 

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "swarm_core/base/time.hpp"
-#include "swarm_core/mission/phase.hpp"
+#include "swarmflow/core/time.hpp"
+#include "swarmflow/mission/phase.hpp"
 
 namespace swarm::agent {
 

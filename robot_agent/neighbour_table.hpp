@@ -7,13 +7,13 @@
 #include <span>
 #include <vector>
 
-#include "robot_agent/neighbour.hpp"
-#include "swarm_core/base/ids.hpp"
+#include "swarmflow/robot/neighbour.hpp"
+#include "swarmflow/core/ids.hpp"
 #include "swarm_core/base/lanes.hpp"
-#include "swarm_core/base/linalg.hpp"
+#include "swarmflow/core/linalg.hpp"
 #include "swarm_core/base/prefetch.hpp"
 #include "swarm_core/base/shared.hpp"
-#include "swarm_core/base/time.hpp"
+#include "swarmflow/core/time.hpp"
 #include "swarm_core/mission/fleet.hpp"
 
 namespace swarm::agent {

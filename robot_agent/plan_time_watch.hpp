@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <optional>
 
-#include "robot_agent/control/schedule.hpp"
-#include "swarm_core/base/time.hpp"
+#include "swarmflow/robot/schedule.hpp"
+#include "swarmflow/core/time.hpp"
 
 namespace swarm::agent {
 

@@ -7,9 +7,9 @@
 
 #include "robot_agent/control/safety_filter.hpp"
 #include "robot_agent/neighbour_table.hpp"
-#include "swarm_core/base/linalg.hpp"
+#include "swarmflow/core/linalg.hpp"
 #include "swarm_core/base/shared.hpp"
-#include "swarm_core/base/time.hpp"
+#include "swarmflow/core/time.hpp"
 
 namespace swarm::agent {
 

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "swarm_core/base/result.hpp"
+#include "swarmflow/core/result.hpp"
 #include "swarm_core/mission/channel.hpp"
 
 namespace swarm::launcher {

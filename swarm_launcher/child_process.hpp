@@ -9,7 +9,7 @@
 
 #include <sys/types.h>
 
-#include "swarm_core/base/result.hpp"
+#include "swarmflow/core/result.hpp"
 #include "swarm_launcher/supervisor.hpp"
 
 namespace swarm::launcher {

@@ -15,7 +15,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "swarm_core/base/time.hpp"
+#include "swarmflow/core/time.hpp"
 
 extern char** environ;
 

@@ -4,8 +4,8 @@
 
 #include <filesystem>
 
-#include "swarm_core/base/result.hpp"
-#include "swarm_core/mission/catalogue.hpp"
+#include "swarmflow/core/result.hpp"
+#include "swarmflow/mission/catalogue.hpp"
 
 namespace swarm::launcher {
 

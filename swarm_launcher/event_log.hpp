@@ -6,7 +6,7 @@
 #include <fstream>
 #include <string>
 
-#include "swarm_core/base/time.hpp"
+#include "swarmflow/core/time.hpp"
 #include "swarm_link/messages.hpp"
 
 namespace swarm::launcher {

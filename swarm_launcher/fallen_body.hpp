@@ -6,8 +6,8 @@
 #include <span>
 
 #include "swarm_core/blackbox/record.hpp"
-#include "swarm_core/mission/mission.hpp"
-#include "swarm_core/mission/scene.hpp"
+#include "swarmflow/mission/mission.hpp"
+#include "swarmflow/mission/scene.hpp"
 
 namespace swarm::launcher {
 

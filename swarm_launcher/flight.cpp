@@ -12,7 +12,7 @@
 #include <unistd.h>
 
 #include "swarm_core/base/clock.hpp"
-#include "swarm_core/mission/mission_file.hpp"
+#include "swarmflow/mission/mission_file.hpp"
 #include "swarm_core/mission/placement.hpp"
 #include "swarm_core/mission/scene_change_file.hpp"
 #include "swarm_core/shell/run_dir.hpp"

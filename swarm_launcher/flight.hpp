@@ -13,9 +13,9 @@
 
 #include <sys/types.h>
 
-#include "swarm_core/base/result.hpp"
+#include "swarmflow/core/result.hpp"
 #include "swarm_core/mission/channel.hpp"
-#include "swarm_core/mission/mission.hpp"
+#include "swarmflow/mission/mission.hpp"
 #include "swarm_core/shell/control_socket.hpp"
 #include "swarm_core/shell/run_directory.hpp"
 #include "swarm_launcher/channel_choice.hpp"

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "swarm_core/mission/mission_file.hpp"
+#include "swarmflow/mission/mission_file.hpp"
 #include "swarm_launcher/flight.hpp"
 
 namespace swarm::launcher {

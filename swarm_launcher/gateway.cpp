@@ -9,7 +9,7 @@
 #include <unistd.h>
 
 #include "swarm_core/base/clock.hpp"
-#include "swarm_core/mission/mission_file.hpp"
+#include "swarmflow/mission/mission_file.hpp"
 #include "swarm_core/shell/run_directory.hpp"
 #include "swarm_core/shell/stop_signal.hpp"
 #include "swarm_launcher/child_process.hpp"

@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 #include <sys/wait.h>
 
-#include "swarm_core/base/time.hpp"
+#include "swarmflow/core/time.hpp"
 #include "swarm_core/shell/run_directory.hpp"
 #include "swarm_launcher/child_process.hpp"
 

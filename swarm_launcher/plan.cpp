@@ -19,7 +19,7 @@
 #include "planner_service/plan_checks.hpp"
 #include "planner_service/planner.hpp"
 #include "swarm_core/metrics/shortest_paths.hpp"
-#include "swarm_core/mission/mission_file.hpp"
+#include "swarmflow/mission/mission_file.hpp"
 #include "swarm_core/plan/plan_json.hpp"
 #include "swarm_core/shell/run_directory.hpp"
 #include "swarm_monitor/svg.hpp"

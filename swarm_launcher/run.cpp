@@ -9,7 +9,7 @@
 
 #include <unistd.h>
 
-#include "swarm_core/mission/mission_file.hpp"
+#include "swarmflow/mission/mission_file.hpp"
 #include "swarm_launcher/child_process.hpp"
 #include "swarm_launcher/described_program.hpp"
 #include "swarm_launcher/flight.hpp"

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <optional>
 
-#include "swarm_core/base/result.hpp"
+#include "swarmflow/core/result.hpp"
 #include "swarm_launcher/flight_choices.hpp"
 
 namespace swarm::launcher {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "swarm_core/mission/scene.hpp"
+#include "swarmflow/mission/scene.hpp"
 #include "swarm_link/port.hpp"
 
 namespace swarm::launcher {

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <optional>
 
-#include "swarm_core/base/result.hpp"
+#include "swarmflow/core/result.hpp"
 #include "swarm_core/mission/channel.hpp"
 #include "swarm_launcher/supervisor.hpp"
 

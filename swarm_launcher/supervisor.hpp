@@ -8,11 +8,11 @@
 #include <variant>
 #include <vector>
 
-#include "swarm_core/base/ids.hpp"
-#include "swarm_core/base/strong_id.hpp"
-#include "swarm_core/base/time.hpp"
-#include "swarm_core/mission/mission.hpp"
-#include "swarm_core/mission/phase.hpp"
+#include "swarmflow/core/ids.hpp"
+#include "swarmflow/core/strong_id.hpp"
+#include "swarmflow/core/time.hpp"
+#include "swarmflow/mission/mission.hpp"
+#include "swarmflow/mission/phase.hpp"
 
 namespace swarm::launcher {
 

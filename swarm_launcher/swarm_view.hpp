@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "swarm_core/base/time.hpp"
+#include "swarmflow/core/time.hpp"
 #include "swarm_link/cell.hpp"
 #include "swarm_link/messages.hpp"
 

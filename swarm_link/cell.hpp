@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "swarm_core/base/linalg.hpp"
+#include "swarmflow/core/linalg.hpp"
 
 namespace swarm::link {
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "swarm_core/base/result.hpp"
+#include "swarmflow/core/result.hpp"
 
 namespace swarm::link {
 

@@ -9,7 +9,7 @@
 
 #include <netinet/in.h>
 
-#include "swarm_core/base/time.hpp"
+#include "swarmflow/core/time.hpp"
 #include "swarm_core/mission/link_faults.hpp"
 
 namespace swarm::link {

@@ -6,8 +6,8 @@
 #include <memory>
 #include <string>
 
-#include "swarm_core/base/result.hpp"
-#include "swarm_core/base/time.hpp"
+#include "swarmflow/core/result.hpp"
+#include "swarmflow/core/time.hpp"
 #include "swarm_link/gate/refusal.hpp"
 #include "swarm_link/gate/wire_limits.hpp"
 #include "swarm_link/port.hpp"

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "swarm_core/base/time.hpp"
+#include "swarmflow/core/time.hpp"
 #include "swarm_link/gate/gate.hpp"
 
 namespace swarm::link {

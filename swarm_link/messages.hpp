@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "swarm_core/mission/phase.hpp"
+#include "swarmflow/mission/phase.hpp"
 
 /// What travels on the bus, as plain structs without any vendor's types: field for field the
 /// structs of idl/swarm.idl, which documents them. Numbers here may be anything a peer sent; they

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "swarm_core/base/result.hpp"
+#include "swarmflow/core/result.hpp"
 #include "swarm_link/topics.hpp"
 
 /// The bus for those who look on: samples as they are on the wire, of any type, not decoded.

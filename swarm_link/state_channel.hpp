@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "swarm_core/base/linalg.hpp"
+#include "swarmflow/core/linalg.hpp"
 #include "swarm_link/port.hpp"
 
 namespace swarm::link {

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "swarm_core/base/ids.hpp"
-#include "swarm_core/base/time.hpp"
+#include "swarmflow/core/ids.hpp"
+#include "swarmflow/core/time.hpp"
 #include "swarm_core/metrics/histogram.hpp"
 #include "swarm_link/messages.hpp"
 

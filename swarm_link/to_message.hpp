@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "swarm_core/base/ids.hpp"
-#include "swarm_core/base/time.hpp"
-#include "swarm_core/mission/scene.hpp"
-#include "swarm_core/plan/flow_plan.hpp"
+#include "swarmflow/core/ids.hpp"
+#include "swarmflow/core/time.hpp"
+#include "swarmflow/mission/scene.hpp"
+#include "swarmflow/core/flow_plan.hpp"
 #include "swarm_link/messages.hpp"
 
 /// Domain objects as the messages that publish them. The way back is the Gate's.

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "swarm_core/mission/scene.hpp"
+#include "swarmflow/mission/scene.hpp"
 #include "swarm_monitor/recorded_run.hpp"
 
 /// Surface-to-surface gaps of the recorded motion, exact in continuous time: between two points a

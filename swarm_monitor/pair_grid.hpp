@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "swarm_core/world/world.hpp"
+#include "swarmflow/core/world.hpp"
 
 namespace swarm::monitor {
 

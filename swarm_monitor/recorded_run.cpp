@@ -18,7 +18,7 @@
 
 #include "swarm_core/blackbox/blackbox_file.hpp"
 #include "swarm_core/mcap/reader.hpp"
-#include "swarm_core/mission/mission_file.hpp"
+#include "swarmflow/mission/mission_file.hpp"
 #include "swarm_core/mission/scene_log.hpp"
 #include "swarm_core/plan/plan_json.hpp"
 #include "swarm_core/shell/run_directory.hpp"

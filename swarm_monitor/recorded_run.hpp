@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "swarm_core/blackbox/record.hpp"
-#include "swarm_core/mission/mission.hpp"
-#include "swarm_core/mission/phase.hpp"
-#include "swarm_core/plan/flow_plan.hpp"
-#include "swarm_core/plan/plan_clock.hpp"
+#include "swarmflow/mission/mission.hpp"
+#include "swarmflow/mission/phase.hpp"
+#include "swarmflow/core/flow_plan.hpp"
+#include "swarmflow/core/plan_clock.hpp"
 #include "swarm_core/plan/planning_record.hpp"
 
 namespace swarm::monitor {

@@ -10,9 +10,9 @@
 #include <utility>
 #include <vector>
 
-#include "swarm_core/gmm/mixture.hpp"
-#include "swarm_core/plan/flow_plan.hpp"
-#include "swarm_core/world/world.hpp"
+#include "swarmflow/core/mixture.hpp"
+#include "swarmflow/core/flow_plan.hpp"
+#include "swarmflow/core/world.hpp"
 
 namespace swarm::monitor {
 

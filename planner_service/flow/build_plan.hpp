@@ -6,7 +6,7 @@
 #include <span>
 
 #include "planner_service/flow/route.hpp"
-#include "swarm_core/plan/flow_plan.hpp"
+#include "swarmflow/core/flow_plan.hpp"
 
 namespace swarm::planner {
 

@@ -8,8 +8,8 @@
 #include "planner_service/flow/density_cap.hpp"
 #include "planner_service/flow/route.hpp"
 #include "planner_service/roadmap/edge_check.hpp"
-#include "planner_service/roadmap/roadmap.hpp"
-#include "swarm_core/base/result.hpp"
+#include "swarmflow/planning/roadmap.hpp"
+#include "swarmflow/core/result.hpp"
 
 namespace swarm::planner {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "planner_service/flow/transport_lp.hpp"
-#include "planner_service/roadmap/roadmap.hpp"
+#include "swarmflow/planning/roadmap.hpp"
 
 namespace swarm::planner {
 

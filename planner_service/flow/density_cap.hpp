@@ -6,8 +6,8 @@
 #include <numbers>
 #include <span>
 
-#include "swarm_core/base/result.hpp"
-#include "swarm_core/gmm/gaussian.hpp"
+#include "swarmflow/core/result.hpp"
+#include "swarmflow/core/gaussian.hpp"
 
 namespace swarm::planner {
 

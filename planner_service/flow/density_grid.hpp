@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "planner_service/flow/density_parts.hpp"
-#include "swarm_core/plan/flow_plan.hpp"
+#include "swarmflow/core/flow_plan.hpp"
 
 namespace swarm::planner {
 

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <vector>
 
-#include "swarm_core/gmm/gaussian.hpp"
+#include "swarmflow/core/gaussian.hpp"
 
 /// What a density is made of at one time, and the way to its local maxima.
 namespace swarm::planner {

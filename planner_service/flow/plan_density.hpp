@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "planner_service/flow/density_peak.hpp"
-#include "swarm_core/plan/flow_plan.hpp"
+#include "swarmflow/planning/density_peak.hpp"
+#include "swarmflow/core/flow_plan.hpp"
 
 namespace swarm::planner {
 

@@ -6,7 +6,7 @@
 
 #include "planner_service/flow/route.hpp"
 #include "planner_service/roadmap/edge_check.hpp"
-#include "swarm_core/base/random.hpp"
+#include "swarmflow/core/random.hpp"
 
 namespace swarm::planner {
 

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "planner_service/roadmap/roadmap.hpp"
+#include "swarmflow/planning/roadmap.hpp"
 
 namespace swarm::planner {
 

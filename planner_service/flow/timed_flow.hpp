@@ -10,9 +10,9 @@
 #include "planner_service/flow/density_cap.hpp"
 #include "planner_service/flow/route.hpp"
 #include "planner_service/roadmap/edge_check.hpp"
-#include "planner_service/roadmap/roadmap.hpp"
-#include "swarm_core/base/result.hpp"
-#include "swarm_core/plan/flow_plan.hpp"
+#include "swarmflow/planning/roadmap.hpp"
+#include "swarmflow/core/result.hpp"
+#include "swarmflow/core/flow_plan.hpp"
 
 namespace swarm::planner {
 

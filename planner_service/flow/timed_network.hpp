@@ -10,7 +10,7 @@
 
 #include "planner_service/flow/route.hpp"
 #include "planner_service/roadmap/edge_check.hpp"
-#include "planner_service/roadmap/roadmap.hpp"
+#include "swarmflow/planning/roadmap.hpp"
 
 namespace swarm::planner {
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "swarm_core/gmm/mixture.hpp"
+#include "swarmflow/core/mixture.hpp"
 
 namespace swarm::planner {
 

@@ -4,9 +4,9 @@
 
 #include <vector>
 
-#include "planner_service/measured_swarm.hpp"
-#include "swarm_core/base/ids.hpp"
-#include "swarm_core/gmm/gaussian.hpp"
+#include "swarmflow/planning/measured_swarm.hpp"
+#include "swarmflow/core/ids.hpp"
+#include "swarmflow/core/gaussian.hpp"
 
 /// A group of robots as a Gaussian.
 namespace swarm::planner {

@@ -7,10 +7,10 @@
 #include <optional>
 #include <vector>
 
-#include "planner_service/measured_swarm.hpp"
-#include "swarm_core/base/result.hpp"
-#include "swarm_core/gmm/mixture.hpp"
-#include "swarm_core/risk/cvar.hpp"
+#include "swarmflow/planning/measured_swarm.hpp"
+#include "swarmflow/core/result.hpp"
+#include "swarmflow/core/mixture.hpp"
+#include "swarmflow/core/cvar.hpp"
 
 namespace swarm::planner {
 

@@ -9,7 +9,7 @@
 #include "planner_service/methods/crops/crops_method.hpp"
 #include "planner_service/methods/rover/rover_method.hpp"
 #include "planner_service/methods/swarmprm/swarmprm_method.hpp"
-#include "planner_service/run_planner.hpp"
+#include "swarmflow/planning/run_planner.hpp"
 
 namespace swarm::planner {
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "planner_service/planning_registry.hpp"
+#include "swarmflow/planning/planning_registry.hpp"
 
 namespace swarm::planner {
 

@@ -5,9 +5,9 @@
 #include <cstddef>
 #include <vector>
 
-#include "swarm_core/base/result.hpp"
-#include "swarm_core/gmm/gaussian.hpp"
-#include "swarm_core/world/world.hpp"
+#include "swarmflow/core/result.hpp"
+#include "swarmflow/core/gaussian.hpp"
+#include "swarmflow/core/world.hpp"
 
 namespace swarm::planner {
 

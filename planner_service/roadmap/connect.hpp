@@ -8,8 +8,8 @@
 
 #include "planner_service/roadmap/edge_check.hpp"
 #include "planner_service/roadmap/neighbours.hpp"
-#include "planner_service/roadmap/roadmap.hpp"
-#include "swarm_core/gmm/gaussian.hpp"
+#include "swarmflow/planning/roadmap.hpp"
+#include "swarmflow/core/gaussian.hpp"
 
 namespace swarm::planner {
 

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "swarm_core/gmm/wasserstein.hpp"
-#include "swarm_core/risk/cvar.hpp"
-#include "swarm_core/world/world.hpp"
+#include "swarmflow/core/cvar.hpp"
+#include "swarmflow/core/world.hpp"
 
 namespace swarm::planner {
 

@@ -5,10 +5,10 @@
 #include <string>
 #include <string_view>
 
-#include "swarm_core/base/result.hpp"
-#include "swarm_core/gmm/mixture.hpp"
-#include "swarm_core/risk/cvar.hpp"
-#include "swarm_core/world/world.hpp"
+#include "swarmflow/core/result.hpp"
+#include "swarmflow/core/mixture.hpp"
+#include "swarmflow/core/cvar.hpp"
+#include "swarmflow/core/world.hpp"
 
 namespace swarm::planner {
 

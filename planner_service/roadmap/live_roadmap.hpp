@@ -9,13 +9,13 @@
 
 #include "planner_service/roadmap/edge_check.hpp"
 #include "planner_service/roadmap/neighbours.hpp"
-#include "planner_service/roadmap/roadmap.hpp"
+#include "swarmflow/planning/roadmap.hpp"
 #include "planner_service/roadmap/sampler.hpp"
 #include "planner_service/roadmap/world_change.hpp"
-#include "swarm_core/base/random.hpp"
-#include "swarm_core/gmm/gaussian.hpp"
-#include "swarm_core/world/box_index.hpp"
-#include "swarm_core/world/world.hpp"
+#include "swarmflow/core/random.hpp"
+#include "swarmflow/core/gaussian.hpp"
+#include "swarmflow/core/box_index.hpp"
+#include "swarmflow/core/world.hpp"
 
 namespace swarm::planner {
 

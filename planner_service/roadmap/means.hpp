@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <optional>
 
-#include "swarm_core/base/random.hpp"
-#include "swarm_core/world/world.hpp"
+#include "swarmflow/core/random.hpp"
+#include "swarmflow/core/world.hpp"
 
 namespace swarm::planner {
 

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "swarm_core/gmm/gaussian.hpp"
+#include "swarmflow/core/gaussian.hpp"
 
 namespace swarm::planner {
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-#include "planner_service/roadmap/roadmap.hpp"
+#include "swarmflow/planning/roadmap.hpp"
 
 #include <limits>
 #include <utility>

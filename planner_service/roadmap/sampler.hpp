@@ -6,10 +6,10 @@
 #include <optional>
 #include <vector>
 
-#include "swarm_core/base/random.hpp"
-#include "swarm_core/gmm/gaussian.hpp"
-#include "swarm_core/risk/cvar.hpp"
-#include "swarm_core/world/world.hpp"
+#include "swarmflow/core/random.hpp"
+#include "swarmflow/core/gaussian.hpp"
+#include "swarmflow/core/cvar.hpp"
+#include "swarmflow/core/world.hpp"
 
 namespace swarm::planner {
 

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "swarm_core/risk/cvar.hpp"
+#include "swarmflow/core/cvar.hpp"
 
 namespace swarm::planner {
 namespace {

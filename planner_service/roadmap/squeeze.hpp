@@ -4,8 +4,8 @@
 
 #include <optional>
 
-#include "swarm_core/gmm/gaussian.hpp"
-#include "swarm_core/world/world.hpp"
+#include "swarmflow/core/gaussian.hpp"
+#include "swarmflow/core/world.hpp"
 
 namespace swarm::planner {
 

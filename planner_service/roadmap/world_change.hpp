@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "swarm_core/world/world.hpp"
+#include "swarmflow/core/world.hpp"
 
 namespace swarm::planner {
 

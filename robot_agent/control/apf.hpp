@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "robot_agent/control/attraction.hpp"
-#include "robot_agent/control/control_method.hpp"
+#include "swarmflow/robot/control_method.hpp"
 #include "robot_agent/control/density_attraction.hpp"
 #include "robot_agent/control/diffusion_escape.hpp"
 #include "robot_agent/control/neighbour_repulsion.hpp"

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "swarm_core/base/linalg.hpp"
+#include "swarmflow/core/linalg.hpp"
 
 namespace swarm::agent {
 

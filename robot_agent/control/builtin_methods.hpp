@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "robot_agent/control_registry.hpp"
+#include "swarmflow/robot/control_registry.hpp"
 
 /// The methods of the papers, as a registry takes them.
 namespace swarm::agent {

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "robot_agent/control/control_method.hpp"
+#include "swarmflow/robot/control_method.hpp"
 #include "robot_agent/control/crops_fields/escape_walk.hpp"
 #include "robot_agent/control/crops_fields/give_way_field.hpp"
 #include "robot_agent/control/crops_fields/goal_field.hpp"

@@ -4,7 +4,7 @@
 
 #include <span>
 
-#include "robot_agent/control/planned_density.hpp"
+#include "swarmflow/robot/planned_density.hpp"
 #include "robot_agent/neighbour_table.hpp"
 
 namespace swarm::agent {

@@ -5,7 +5,7 @@
 #include <optional>
 #include <utility>
 
-#include "robot_agent/control/control_method.hpp"
+#include "swarmflow/robot/control_method.hpp"
 #include "robot_agent/control/virtual_diffusion.hpp"
 #include "swarm_core/base/shared.hpp"
 

@@ -4,9 +4,9 @@
 
 #include <limits>
 
-#include "robot_agent/control/control_method.hpp"
+#include "swarmflow/robot/control_method.hpp"
 #include "swarm_core/base/shared.hpp"
-#include "swarm_core/gmm/gaussian.hpp"
+#include "swarmflow/core/gaussian.hpp"
 
 namespace swarm::agent {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "robot_agent/control/control_slot.hpp"
+#include "swarmflow/robot/control_slot.hpp"
 
 namespace swarm::agent {
 

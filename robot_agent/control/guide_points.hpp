@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "robot_agent/control/route.hpp"
+#include "swarmflow/robot/route.hpp"
 #include "swarm_core/base/shared.hpp"
-#include "swarm_core/world/world.hpp"
+#include "swarmflow/core/world.hpp"
 
 namespace swarm::agent {
 

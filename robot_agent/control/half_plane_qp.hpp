@@ -5,7 +5,7 @@
 #include <optional>
 #include <span>
 
-#include "swarm_core/base/linalg.hpp"
+#include "swarmflow/core/linalg.hpp"
 
 namespace swarm::agent {
 

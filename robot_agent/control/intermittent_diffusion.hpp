@@ -6,14 +6,14 @@
 #include <optional>
 #include <vector>
 
-#include "robot_agent/control/control_method.hpp"
+#include "swarmflow/robot/control_method.hpp"
 #include "robot_agent/control/cotangent_repulsion.hpp"
 #include "robot_agent/control/obstacle_repulsion.hpp"
 #include "robot_agent/control/target_attraction.hpp"
 #include "robot_agent/control/virtual_diffusion.hpp"
 #include "swarm_core/base/shared.hpp"
-#include "swarm_core/gmm/mixture.hpp"
-#include "swarm_core/world/shape_field.hpp"
+#include "swarmflow/core/mixture.hpp"
+#include "swarmflow/core/shape_field.hpp"
 
 namespace swarm::agent {
 

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "swarm_core/world/world.hpp"
+#include "swarmflow/core/world.hpp"
 
 namespace swarm::agent {
 

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "robot_agent/control/attraction.hpp"
-#include "robot_agent/control/schedule.hpp"
+#include "swarmflow/robot/schedule.hpp"
 
 namespace swarm::agent {
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-#include "robot_agent/control/planned_density.hpp"
+#include "swarmflow/robot/planned_density.hpp"
 
 #include <cmath>
 #include <numbers>

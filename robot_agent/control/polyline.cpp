@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-#include "robot_agent/control/polyline.hpp"
+#include "swarmflow/robot/polyline.hpp"
 
 #include <algorithm>
 

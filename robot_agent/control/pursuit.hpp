@@ -6,9 +6,9 @@
 #include <limits>
 #include <vector>
 
-#include "robot_agent/control/polyline.hpp"
+#include "swarmflow/robot/polyline.hpp"
 #include "swarm_core/base/shared.hpp"
-#include "swarm_core/world/world.hpp"
+#include "swarmflow/core/world.hpp"
 
 namespace swarm::agent {
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-#include "robot_agent/control/route.hpp"
+#include "swarmflow/robot/route.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -9,7 +9,7 @@
 #include "robot_agent/control/half_plane_qp.hpp"
 #include "robot_agent/neighbour_table.hpp"
 #include "swarm_core/base/shared.hpp"
-#include "swarm_core/world/world.hpp"
+#include "swarmflow/core/world.hpp"
 
 namespace swarm::agent {
 

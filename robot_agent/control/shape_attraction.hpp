@@ -3,7 +3,7 @@
 #pragma once
 
 #include "robot_agent/control/potential.hpp"
-#include "swarm_core/world/shape_field.hpp"
+#include "swarmflow/core/shape_field.hpp"
 
 namespace swarm::agent {
 

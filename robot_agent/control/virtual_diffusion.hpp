@@ -5,9 +5,9 @@
 #include <span>
 
 #include "robot_agent/control/cotangent_repulsion.hpp"
-#include "swarm_core/base/random.hpp"
-#include "swarm_core/world/shape_field.hpp"
-#include "swarm_core/world/world.hpp"
+#include "swarmflow/core/random.hpp"
+#include "swarmflow/core/shape_field.hpp"
+#include "swarmflow/core/world.hpp"
 
 namespace swarm::agent {
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "swarm_core/mission/body_limits.hpp"
+#include "swarmflow/mission/body_limits.hpp"
 
 namespace swarm::agent {
 

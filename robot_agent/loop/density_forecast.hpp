@@ -5,9 +5,9 @@
 #include <cstdint>
 
 #include "robot_agent/control/density_attraction.hpp"
-#include "robot_agent/control/planned_density.hpp"
-#include "swarm_core/mission/mission.hpp"
-#include "swarm_core/plan/flow_plan.hpp"
+#include "swarmflow/robot/planned_density.hpp"
+#include "swarmflow/mission/mission.hpp"
+#include "swarmflow/core/flow_plan.hpp"
 
 namespace swarm::agent {
 

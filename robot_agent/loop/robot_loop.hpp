@@ -8,7 +8,7 @@
 #include <string>
 
 #include "robot_agent/agent.hpp"
-#include "robot_agent/drivers/driver.hpp"
+#include "swarmflow/robot/driver.hpp"
 #include "robot_agent/loop/robot_log.hpp"
 #include "swarm_core/base/prefetch.hpp"
 #include "swarm_core/metrics/histogram.hpp"

@@ -15,7 +15,7 @@
 #include "robot_agent/loop/tick_phase.hpp"
 #include "robot_agent/program/process_loop.hpp"
 #include "swarm_core/base/clock.hpp"
-#include "swarm_core/mission/mission_file.hpp"
+#include "swarmflow/mission/mission_file.hpp"
 #include "swarm_core/shell/run_directory.hpp"
 #include "swarm_core/shell/stop_signal.hpp"
 

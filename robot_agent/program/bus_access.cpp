@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "swarm_core/base/random.hpp"
+#include "swarmflow/core/random.hpp"
 #include "swarm_link/groups/group_channel.hpp"
 #include "swarm_link/run_meeting.hpp"
 #include "swarm_link/topics.hpp"

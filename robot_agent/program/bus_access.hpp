@@ -6,8 +6,8 @@
 
 #include "robot_agent/inbox.hpp"
 #include "robot_agent/program/process_options.hpp"
-#include "swarm_core/base/result.hpp"
-#include "swarm_core/mission/mission.hpp"
+#include "swarmflow/core/result.hpp"
+#include "swarmflow/mission/mission.hpp"
 #include "swarm_core/shell/run_directory.hpp"
 #include "swarm_link/port.hpp"
 #include "swarm_link/state_channel.hpp"

@@ -7,12 +7,12 @@
 #include <memory>
 #include <vector>
 
-#include "robot_agent/drivers/driver.hpp"
+#include "swarmflow/robot/driver.hpp"
 #include "robot_agent/inbox.hpp"
 #include "robot_agent/loop/robot_loop.hpp"
 #include "robot_agent/program/log_file.hpp"
-#include "robot_agent/run_robot.hpp"
-#include "swarm_core/base/result.hpp"
+#include "swarmflow/robot/run_robot.hpp"
+#include "swarmflow/core/result.hpp"
 
 namespace swarm::agent {
 

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "robot_agent/inbox.hpp"
-#include "swarm_core/base/time.hpp"
+#include "swarmflow/core/time.hpp"
 
 namespace swarm::agent {
 

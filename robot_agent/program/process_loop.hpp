@@ -13,7 +13,7 @@
 #include "robot_agent/program/plan_intake.hpp"
 #include "robot_agent/program/process_events.hpp"
 #include "robot_agent/program/status_report.hpp"
-#include "swarm_core/mission/mission.hpp"
+#include "swarmflow/mission/mission.hpp"
 
 namespace swarm::agent {
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 
-#include "swarm_core/base/ids.hpp"
+#include "swarmflow/core/ids.hpp"
 #include "swarm_core/mission/link_faults.hpp"
 #include "swarm_link/vendor.hpp"
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-#include "robot_agent/run_robot.hpp"
+#include "swarmflow/robot/run_robot.hpp"
 
 #include <cstdio>
 #include <map>

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "swarm_core/base/time.hpp"
+#include "swarmflow/core/time.hpp"
 
 namespace swarm {
 

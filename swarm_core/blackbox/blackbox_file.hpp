@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "swarm_core/base/result.hpp"
+#include "swarmflow/core/result.hpp"
 #include "swarm_core/blackbox/record.hpp"
 #include "swarm_core/blackbox/record_codec.hpp"
 #include "swarm_core/mcap/format.hpp"

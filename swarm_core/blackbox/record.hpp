@@ -8,9 +8,9 @@
 #include <variant>
 #include <vector>
 
-#include "swarm_core/base/ids.hpp"
-#include "swarm_core/base/linalg.hpp"
-#include "swarm_core/base/time.hpp"
+#include "swarmflow/core/ids.hpp"
+#include "swarmflow/core/linalg.hpp"
+#include "swarmflow/core/time.hpp"
 #include "swarm_core/metrics/histogram.hpp"
 
 /// The black box of one robot: a file of its own that it alone appends to, at control rate. Audits

@@ -6,9 +6,9 @@
 #include <span>
 #include <vector>
 
-#include "swarm_core/base/random.hpp"
-#include "swarm_core/base/result.hpp"
-#include "swarm_core/gmm/mixture.hpp"
+#include "swarmflow/core/random.hpp"
+#include "swarmflow/core/result.hpp"
+#include "swarmflow/core/mixture.hpp"
 
 namespace swarm {
 

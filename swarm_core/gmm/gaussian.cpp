@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-#include "swarm_core/gmm/gaussian.hpp"
+#include "swarmflow/core/gaussian.hpp"
 
 #include <cmath>
 #include <numbers>

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "swarm_core/gmm/shape_patches.hpp"
-#include "swarm_core/world/box.hpp"
+#include "swarmflow/core/box.hpp"
 
 namespace swarm {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "swarm_core/gmm/fit_mixture.hpp"
-#include "swarm_core/world/polygon.hpp"
+#include "swarmflow/core/polygon.hpp"
 
 namespace swarm {
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "swarm_core/gmm/gaussian.hpp"
+#include "swarmflow/core/gaussian.hpp"
 
 namespace swarm {
 

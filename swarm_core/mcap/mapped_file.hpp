@@ -6,7 +6,7 @@
 #include <span>
 #include <utility>
 
-#include "swarm_core/base/result.hpp"
+#include "swarmflow/core/result.hpp"
 
 namespace swarm::mcap {
 

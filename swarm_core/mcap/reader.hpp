@@ -7,7 +7,7 @@
 #include <functional>
 #include <limits>
 
-#include "swarm_core/base/result.hpp"
+#include "swarmflow/core/result.hpp"
 #include "swarm_core/mcap/format.hpp"
 
 namespace swarm::mcap {

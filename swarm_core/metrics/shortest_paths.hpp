@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "swarm_core/base/linalg.hpp"
-#include "swarm_core/world/world.hpp"
+#include "swarmflow/core/linalg.hpp"
+#include "swarmflow/core/world.hpp"
 
 namespace swarm {
 

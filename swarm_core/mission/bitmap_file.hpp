@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 
-#include "swarm_core/base/result.hpp"
+#include "swarmflow/core/result.hpp"
 #include "swarm_core/gmm/shape_patches.hpp"
 
 namespace swarm {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-#include "swarm_core/mission/catalogue.hpp"
+#include "swarmflow/mission/catalogue.hpp"
 
 #include <algorithm>
 #include <array>

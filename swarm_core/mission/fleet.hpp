@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "swarm_core/base/ids.hpp"
-#include "swarm_core/mission/mission.hpp"
+#include "swarmflow/core/ids.hpp"
+#include "swarmflow/mission/mission.hpp"
 
 namespace swarm {
 

@@ -7,9 +7,9 @@
 #include <optional>
 #include <string>
 
-#include "swarm_core/gmm/mixture.hpp"
+#include "swarmflow/core/mixture.hpp"
 #include "swarm_core/mission/yaml_reader.hpp"
-#include "swarm_core/world/shape_field.hpp"
+#include "swarmflow/core/shape_field.hpp"
 
 namespace swarm {
 

@@ -7,8 +7,8 @@
 #include <string>
 #include <string_view>
 
-#include "swarm_core/base/result.hpp"
-#include "swarm_core/base/time.hpp"
+#include "swarmflow/core/result.hpp"
+#include "swarmflow/core/time.hpp"
 
 namespace swarm {
 

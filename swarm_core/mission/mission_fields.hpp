@@ -7,7 +7,7 @@
 #include <string_view>
 #include <variant>
 
-#include "swarm_core/mission/mission.hpp"
+#include "swarmflow/mission/mission.hpp"
 #include "swarm_core/mission/yaml_reader.hpp"
 
 /// The scalar keys of each section with the numbers they accept: said once, used by the reader, the

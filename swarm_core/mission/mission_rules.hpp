@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "swarm_core/mission/mission.hpp"
+#include "swarmflow/mission/mission.hpp"
 
 namespace swarm {
 

@@ -9,10 +9,10 @@
 #include <utility>
 #include <vector>
 
-#include "swarm_core/gmm/mixture.hpp"
+#include "swarmflow/core/mixture.hpp"
 #include "swarm_core/mission/yaml_reader.hpp"
-#include "swarm_core/world/shape_field.hpp"
-#include "swarm_core/world/world.hpp"
+#include "swarmflow/core/shape_field.hpp"
+#include "swarmflow/core/world.hpp"
 
 namespace swarm {
 

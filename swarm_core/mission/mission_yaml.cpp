@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "swarm_core/mission/mission_fields.hpp"
-#include "swarm_core/mission/mission_file.hpp"
+#include "swarmflow/mission/mission_file.hpp"
 #include "swarm_core/mission/scene_change_file.hpp"
 
 namespace swarm {

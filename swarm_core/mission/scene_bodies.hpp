@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "swarm_core/mission/scene.hpp"
+#include "swarmflow/mission/scene.hpp"
 
 /// The bodies of robots that are not received any more: obstacles with an owner.
 namespace swarm {

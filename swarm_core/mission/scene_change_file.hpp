@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "swarm_core/mission/mission_shapes.hpp"
-#include "swarm_core/mission/scene.hpp"
+#include "swarmflow/mission/scene.hpp"
 
 namespace swarm {
 

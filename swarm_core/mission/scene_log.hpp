@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "swarm_core/mission/scene.hpp"
+#include "swarmflow/mission/scene.hpp"
 
 /// The changes of a run's scene, one line of JSON each: {"utc_ns", "action", "keys"}, the words of
 /// a script. Audits replay them.

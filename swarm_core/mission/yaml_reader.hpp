@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "swarm_core/mission/options.hpp"
+#include "swarmflow/mission/options.hpp"
 #include "swarm_core/mission/yaml_tree.hpp"
 
 namespace swarm::yaml {

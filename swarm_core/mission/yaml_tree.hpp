@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "swarm_core/base/result.hpp"
+#include "swarmflow/core/result.hpp"
 
 /// YAML as far as a mission file needs it: a tree in which every node knows where it stands.
 namespace swarm::yaml {

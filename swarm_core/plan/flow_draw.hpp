@@ -8,7 +8,7 @@
 #include <cstdint>
 
 #include "swarm_core/base/assert.hpp"
-#include "swarm_core/plan/flow_plan.hpp"
+#include "swarmflow/core/flow_plan.hpp"
 
 namespace swarm {
 

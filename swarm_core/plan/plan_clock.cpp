@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-#include "swarm_core/plan/plan_clock.hpp"
+#include "swarmflow/core/plan_clock.hpp"
 
 #include <algorithm>
 #include <cmath>

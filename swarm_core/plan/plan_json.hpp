@@ -5,8 +5,8 @@
 #include <string>
 #include <string_view>
 
-#include "swarm_core/base/result.hpp"
-#include "swarm_core/plan/flow_plan.hpp"
+#include "swarmflow/core/result.hpp"
+#include "swarmflow/core/flow_plan.hpp"
 
 namespace swarm {
 

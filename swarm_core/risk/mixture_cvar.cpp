@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "swarm_core/base/assert.hpp"
-#include "swarm_core/risk/cvar.hpp"
+#include "swarmflow/core/cvar.hpp"
 
 namespace swarm {
 namespace {

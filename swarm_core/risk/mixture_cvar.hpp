@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "swarm_core/gmm/mixture.hpp"
-#include "swarm_core/world/world.hpp"
+#include "swarmflow/core/mixture.hpp"
+#include "swarmflow/core/world.hpp"
 
 /// CVaR of a whole mixture near one obstacle: where single Gaussians that keep the limit may be
 /// more than needed, the swarm as a whole may take the risk where few of it are.

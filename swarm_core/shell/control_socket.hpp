@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "swarm_core/base/result.hpp"
+#include "swarmflow/core/result.hpp"
 
 /// `swarm_launcher command` talks to the launcher of a run through a Unix socket in the run
 /// directory: the launcher is matched with every agent already, so a stop goes out at once.

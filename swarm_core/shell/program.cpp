@@ -8,7 +8,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "swarm_core/mission/mission_file.hpp"
+#include "swarmflow/mission/mission_file.hpp"
 
 namespace swarm::shell {
 

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "swarm_core/base/result.hpp"
+#include "swarmflow/core/result.hpp"
 
 namespace CLI {
 class App;

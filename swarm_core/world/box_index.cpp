@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-#include "swarm_core/world/box_index.hpp"
+#include "swarmflow/core/box_index.hpp"
 
 #include <numeric>
 #include <utility>

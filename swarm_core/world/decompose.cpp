@@ -6,7 +6,7 @@
 #include <map>
 #include <utility>
 
-#include "swarm_core/world/polygon.hpp"
+#include "swarmflow/core/polygon.hpp"
 
 namespace swarm {
 namespace {

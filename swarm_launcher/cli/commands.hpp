@@ -7,7 +7,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "swarm_core/base/result.hpp"
+#include "swarmflow/core/result.hpp"
 #include "swarm_core/mission/channel.hpp"
 
 /// The program's subcommands: one file each, or two that belong together.

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "swarm_core/base/time.hpp"
+#include "swarmflow/core/time.hpp"
 
 namespace swarm::launcher {
 

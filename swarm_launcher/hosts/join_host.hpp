@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <string>
 
-#include "swarm_core/base/result.hpp"
+#include "swarmflow/core/result.hpp"
 
 namespace swarm::launcher {
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string>
 
-#include "swarm_core/base/result.hpp"
+#include "swarmflow/core/result.hpp"
 #include "swarm_core/shell/run_directory.hpp"
 
 namespace swarm::launcher {

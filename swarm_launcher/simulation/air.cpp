@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "swarm_core/base/random.hpp"
+#include "swarmflow/core/random.hpp"
 
 namespace swarm::launcher {
 namespace {

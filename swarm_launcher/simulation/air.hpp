@@ -11,7 +11,7 @@
 
 #include "robot_agent/neighbour_table.hpp"
 #include "swarm_core/mission/link_faults.hpp"
-#include "swarm_core/world/box.hpp"
+#include "swarmflow/core/box.hpp"
 
 namespace swarm::launcher {
 

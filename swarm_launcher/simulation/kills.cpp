@@ -9,7 +9,7 @@
 
 #include <fmt/format.h>
 
-#include "swarm_core/base/random.hpp"
+#include "swarmflow/core/random.hpp"
 
 namespace swarm::launcher {
 namespace {

@@ -8,10 +8,10 @@
 #include <string_view>
 #include <vector>
 
-#include "swarm_core/base/ids.hpp"
-#include "swarm_core/base/linalg.hpp"
-#include "swarm_core/base/result.hpp"
-#include "swarm_core/world/box.hpp"
+#include "swarmflow/core/ids.hpp"
+#include "swarmflow/core/linalg.hpp"
+#include "swarmflow/core/result.hpp"
+#include "swarmflow/core/box.hpp"
 
 namespace swarm::launcher {
 

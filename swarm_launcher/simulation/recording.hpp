@@ -11,7 +11,7 @@
 
 #include "robot_agent/loop/robot_log.hpp"
 #include "swarm_core/blackbox/record.hpp"
-#include "swarm_core/mission/mission.hpp"
+#include "swarmflow/mission/mission.hpp"
 #include "swarm_monitor/recorded_run.hpp"
 
 namespace swarm::launcher {

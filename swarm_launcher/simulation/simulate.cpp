@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "swarm_core/mission/mission_file.hpp"
+#include "swarmflow/mission/mission_file.hpp"
 #include "swarm_core/mission/scene_log.hpp"
 #include "swarm_core/plan/plan_json.hpp"
 #include "swarm_core/plan/planning_record.hpp"

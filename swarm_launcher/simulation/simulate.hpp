@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "swarm_core/base/result.hpp"
+#include "swarmflow/core/result.hpp"
 #include "swarm_core/mission/link_faults.hpp"
 #include "swarm_launcher/simulation/air.hpp"
 #include "swarm_launcher/simulation/kills.hpp"

@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "swarm_core/base/result.hpp"
+#include "swarmflow/core/result.hpp"
 #include "swarm_launcher/soak/soak_result.hpp"
 
 namespace swarm::launcher {

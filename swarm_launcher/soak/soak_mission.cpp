@@ -10,7 +10,7 @@
 
 #include <fmt/format.h>
 
-#include "swarm_core/mission/mission_file.hpp"
+#include "swarmflow/mission/mission_file.hpp"
 
 namespace swarm::launcher {
 namespace {

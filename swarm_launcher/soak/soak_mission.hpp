@@ -4,8 +4,8 @@
 
 #include <cstdint>
 
-#include "swarm_core/base/result.hpp"
-#include "swarm_core/mission/mission.hpp"
+#include "swarmflow/core/result.hpp"
+#include "swarmflow/mission/mission.hpp"
 
 namespace swarm::launcher {
 

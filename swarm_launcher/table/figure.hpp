@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "swarm_core/base/linalg.hpp"
+#include "swarmflow/core/linalg.hpp"
 
 namespace swarm::launcher {
 

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "swarm_core/base/result.hpp"
-#include "swarm_core/mission/mission.hpp"
+#include "swarmflow/core/result.hpp"
+#include "swarmflow/mission/mission.hpp"
 #include "swarm_launcher/simulation/simulation.hpp"
 
 namespace swarm::launcher {

@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "swarm_core/mission/mission_file.hpp"
+#include "swarmflow/mission/mission_file.hpp"
 #include "swarm_core/shell/run_directory.hpp"
 #include "swarm_launcher/progress.hpp"
 

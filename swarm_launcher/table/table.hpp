@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "swarm_core/base/result.hpp"
+#include "swarmflow/core/result.hpp"
 
 namespace swarm::launcher {
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "swarm_core/base/result.hpp"
+#include "swarmflow/core/result.hpp"
 #include "swarm_link/faulty_path.hpp"
 #include "swarm_link/port.hpp"
 #include "swarm_link/raw_port.hpp"

@@ -4,9 +4,9 @@
 
 #include <cstdint>
 
-#include "swarm_core/base/time.hpp"
-#include "swarm_core/mission/scene.hpp"
-#include "swarm_core/plan/flow_plan.hpp"
+#include "swarmflow/core/time.hpp"
+#include "swarmflow/mission/scene.hpp"
+#include "swarmflow/core/flow_plan.hpp"
 #include "swarm_link/gate/refusal.hpp"
 #include "swarm_link/gate/wire_limits.hpp"
 #include "swarm_link/messages.hpp"

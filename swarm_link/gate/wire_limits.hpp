@@ -4,9 +4,9 @@
 
 #include <cstdint>
 
-#include "swarm_core/base/time.hpp"
-#include "swarm_core/mission/mission.hpp"
-#include "swarm_core/world/box.hpp"
+#include "swarmflow/core/time.hpp"
+#include "swarmflow/mission/mission.hpp"
+#include "swarmflow/core/box.hpp"
 
 namespace swarm::link {
 

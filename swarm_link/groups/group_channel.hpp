@@ -6,7 +6,7 @@
 #include <memory>
 #include <string>
 
-#include "swarm_core/base/result.hpp"
+#include "swarmflow/core/result.hpp"
 #include "swarm_link/cell.hpp"
 #include "swarm_link/faulty_path.hpp"
 #include "swarm_link/state_channel.hpp"

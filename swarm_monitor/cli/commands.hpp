@@ -6,7 +6,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "swarm_core/base/result.hpp"
+#include "swarmflow/core/result.hpp"
 
 /// The program's subcommands.
 namespace swarm::monitor::cli {

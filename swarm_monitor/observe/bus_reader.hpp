@@ -4,10 +4,10 @@
 
 #include <cstdint>
 
-#include "swarm_core/mission/mission.hpp"
+#include "swarmflow/mission/mission.hpp"
 #include "swarm_link/cdr/codec.hpp"
 #include "swarm_link/gate/gate.hpp"
-#include "swarm_monitor/observe/observer.hpp"
+#include "swarmflow/observe/observer.hpp"
 #include "swarm_monitor/recording/bus_tap.hpp"
 
 namespace swarm::monitor {

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "swarm_monitor/observe/observer.hpp"
+#include "swarmflow/observe/observer.hpp"
 #include "swarm_monitor/recorded_run.hpp"
 
 namespace swarm::monitor {

@@ -3,7 +3,7 @@
 #include <chrono>
 #include <thread>
 
-#include "swarm_core/mission/mission_file.hpp"
+#include "swarmflow/mission/mission_file.hpp"
 #include "swarm_core/shell/run_directory.hpp"
 #include "swarm_monitor/observe/bus_reader.hpp"
 

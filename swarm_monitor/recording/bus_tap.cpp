@@ -10,7 +10,7 @@
 #include "swarm_core/base/clock.hpp"
 #include "swarm_core/blackbox/record_codec.hpp"
 #include "swarm_core/mcap/idl_text.hpp"
-#include "swarm_core/mission/mission_file.hpp"
+#include "swarmflow/mission/mission_file.hpp"
 #include "swarm_link/groups/group_tap.hpp"
 #include "swarm_link/monitor_topics.hpp"
 #include "swarm_link/run_meeting.hpp"

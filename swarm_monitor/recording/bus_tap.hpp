@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "swarm_core/base/result.hpp"
-#include "swarm_core/base/time.hpp"
+#include "swarmflow/core/result.hpp"
+#include "swarmflow/core/time.hpp"
 #include "swarm_core/mcap/format.hpp"
 
 namespace swarm::monitor {

@@ -6,7 +6,7 @@
 
 #include "swarm_core/base/clock.hpp"
 #include "swarm_core/mcap/writer.hpp"
-#include "swarm_core/mission/mission_file.hpp"
+#include "swarmflow/mission/mission_file.hpp"
 #include "swarm_core/shell/run_directory.hpp"
 #include "swarm_link/cdr/codec.hpp"
 #include "swarm_monitor/recording/bus_tap.hpp"

@@ -7,7 +7,7 @@
 #include <functional>
 #include <string>
 
-#include "swarm_core/base/result.hpp"
+#include "swarmflow/core/result.hpp"
 
 namespace swarm::monitor {
 

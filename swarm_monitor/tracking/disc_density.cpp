@@ -10,7 +10,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "swarm_core/world/box.hpp"
+#include "swarmflow/core/box.hpp"
 
 namespace swarm::monitor {
 namespace {

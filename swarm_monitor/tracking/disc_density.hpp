@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <span>
 
-#include "swarm_core/gmm/mixture.hpp"
+#include "swarmflow/core/mixture.hpp"
 
 /// Peak densities of a swarm and of its plan, both as means over discs of the same radius: what a
 /// disc of 2 m holds is a density of many robots, not of one.

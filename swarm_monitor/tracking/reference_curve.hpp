@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "swarm_core/base/linalg.hpp"
+#include "swarmflow/core/linalg.hpp"
 
 namespace swarm::monitor {
 

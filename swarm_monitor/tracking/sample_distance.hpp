@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "swarm_core/gmm/mixture.hpp"
+#include "swarmflow/core/mixture.hpp"
 
 /// How far a swarm is from a mixture, and how far a perfect sample of that mixture would be.
 namespace swarm::monitor {

@@ -6,7 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "swarm_core/mission/mission.hpp"
+#include "swarmflow/mission/mission.hpp"
 #include "swarm_monitor/tracking/tracking.hpp"
 
 namespace swarm::monitor {

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "swarm_core/base/time.hpp"
+#include "swarmflow/core/time.hpp"
 #include "swarm_monitor/view/foxglove_session.hpp"
 #include "swarm_monitor/view/view_source.hpp"
 

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "swarm_core/base/time.hpp"
+#include "swarmflow/core/time.hpp"
 #include "swarm_monitor/view/picture_reader.hpp"
 
 /// Foxglove's schemas as CDR.

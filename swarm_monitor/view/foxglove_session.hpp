@@ -12,8 +12,8 @@
 #include <variant>
 #include <vector>
 
-#include "swarm_core/base/result.hpp"
-#include "swarm_core/base/time.hpp"
+#include "swarmflow/core/result.hpp"
+#include "swarmflow/core/time.hpp"
 #include "swarm_monitor/view/session.hpp"
 
 namespace swarm::monitor {

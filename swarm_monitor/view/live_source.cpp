@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 
 #include "swarm_core/base/clock.hpp"
-#include "swarm_core/mission/mission_file.hpp"
+#include "swarmflow/mission/mission_file.hpp"
 #include "swarm_core/shell/run_directory.hpp"
 #include "swarm_monitor/view/picture.hpp"
 #include "swarm_monitor/view/scene_json.hpp"

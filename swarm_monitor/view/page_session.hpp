@@ -10,7 +10,7 @@
 #include <string_view>
 #include <variant>
 
-#include "swarm_core/base/result.hpp"
+#include "swarmflow/core/result.hpp"
 #include "swarm_monitor/view/session.hpp"
 #include "swarm_monitor/view/view_source.hpp"
 

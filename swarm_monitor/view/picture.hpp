@@ -7,10 +7,10 @@
 #include <optional>
 #include <vector>
 
-#include "swarm_core/base/ids.hpp"
-#include "swarm_core/base/linalg.hpp"
-#include "swarm_core/gmm/mixture.hpp"
-#include "swarm_core/mission/phase.hpp"
+#include "swarmflow/core/ids.hpp"
+#include "swarmflow/core/linalg.hpp"
+#include "swarmflow/core/mixture.hpp"
+#include "swarmflow/mission/phase.hpp"
 
 namespace swarm::monitor {
 

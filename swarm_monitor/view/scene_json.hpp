@@ -6,9 +6,9 @@
 #include <string>
 
 #include "swarm_core/mission/channel.hpp"
-#include "swarm_core/mission/mission.hpp"
-#include "swarm_core/plan/flow_plan.hpp"
-#include "swarm_core/world/world.hpp"
+#include "swarmflow/mission/mission.hpp"
+#include "swarmflow/core/flow_plan.hpp"
+#include "swarmflow/core/world.hpp"
 #include "swarm_monitor/recorded_run.hpp"
 
 /// Texts of PROTOCOL.md.

@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "swarm_core/metrics/histogram.hpp"
-#include "swarm_core/mission/mission.hpp"
-#include "swarm_core/mission/scene.hpp"
-#include "swarm_core/plan/flow_plan.hpp"
+#include "swarmflow/mission/mission.hpp"
+#include "swarmflow/mission/scene.hpp"
+#include "swarmflow/core/flow_plan.hpp"
 #include "swarm_link/stream_meter.hpp"
 #include "swarm_monitor/observe/bus_reader.hpp"
 #include "swarm_monitor/recorded_run.hpp"

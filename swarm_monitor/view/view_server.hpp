@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "swarm_core/base/result.hpp"
-#include "swarm_core/base/time.hpp"
+#include "swarmflow/core/result.hpp"
+#include "swarmflow/core/time.hpp"
 #include "swarm_monitor/view/page_session.hpp"
 #include "swarm_monitor/view/session.hpp"
 #include "swarm_monitor/view/view_source.hpp"

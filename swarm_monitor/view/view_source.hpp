@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "swarm_core/base/ids.hpp"
-#include "swarm_core/base/time.hpp"
+#include "swarmflow/core/ids.hpp"
+#include "swarmflow/core/time.hpp"
 
 namespace swarm::monitor {
 

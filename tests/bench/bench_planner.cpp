@@ -25,7 +25,7 @@
 #include "planner_service/roadmap/live_roadmap.hpp"
 #include "planner_service/roadmap/neighbours.hpp"
 #include "swarm_core/gmm/wasserstein.hpp"
-#include "swarm_core/mission/mission_file.hpp"
+#include "swarmflow/mission/mission_file.hpp"
 
 namespace {
 

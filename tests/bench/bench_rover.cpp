@@ -18,7 +18,7 @@
 #include "planner_service/flow/transport_lp.hpp"
 #include "planner_service/methods/rover/rover.hpp"
 #include "swarm_core/metrics/shortest_paths.hpp"
-#include "swarm_core/mission/mission_file.hpp"
+#include "swarmflow/mission/mission_file.hpp"
 
 namespace {
 

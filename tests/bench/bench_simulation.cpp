@@ -10,7 +10,7 @@
 
 #include <benchmark/benchmark.h>
 
-#include "swarm_core/mission/mission_file.hpp"
+#include "swarmflow/mission/mission_file.hpp"
 #include "swarm_launcher/simulation/air.hpp"
 #include "swarm_launcher/simulation/simulation.hpp"
 

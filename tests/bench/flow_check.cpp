@@ -18,7 +18,7 @@
 #include "planner_service/roadmap/connect.hpp"
 #include "planner_service/roadmap/sampler.hpp"
 #include "swarm_core/gmm/wasserstein.hpp"
-#include "swarm_core/mission/mission_file.hpp"
+#include "swarmflow/mission/mission_file.hpp"
 
 namespace swarm::planner {
 namespace {

@@ -12,9 +12,9 @@
 #include "program.hpp"
 #include "swarm_core/blackbox/blackbox_file.hpp"
 #include "swarm_core/mission/link_faults.hpp"
-#include "swarm_core/mission/mission_file.hpp"
+#include "swarmflow/mission/mission_file.hpp"
 #include "swarm_core/mission/scene_log.hpp"
-#include "swarm_core/plan/plan_clock.hpp"
+#include "swarmflow/core/plan_clock.hpp"
 #include "swarm_core/plan/plan_json.hpp"
 #include "swarm_launcher/simulation/simulation.hpp"
 

@@ -7,9 +7,9 @@
 
 #include "planner_service/flow/route.hpp"
 #include "planner_service/roadmap/collocation.hpp"
-#include "swarm_core/base/result.hpp"
-#include "swarm_core/gmm/mixture.hpp"
-#include "swarm_core/world/world.hpp"
+#include "swarmflow/core/result.hpp"
+#include "swarmflow/core/mixture.hpp"
+#include "swarmflow/core/world.hpp"
 
 /// The baseline of both papers in the style of ADOC (adaptive distributed optimal control):
 /// obstacles on a grid map, their overlap with the swarm's Gaussians penalised, no promise about

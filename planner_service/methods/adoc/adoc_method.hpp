@@ -4,8 +4,8 @@
 
 #include "planner_service/flow/route.hpp"
 #include "planner_service/methods/adoc/adoc.hpp"
-#include "planner_service/planning_method.hpp"
-#include "planner_service/planning_registry.hpp"
+#include "swarmflow/planning/planning_method.hpp"
+#include "swarmflow/planning/planning_registry.hpp"
 
 namespace swarm::planner {
 

@@ -6,9 +6,9 @@
 
 #include "planner_service/flow/route.hpp"
 #include "planner_service/methods/crops/crops_guide.hpp"
-#include "planner_service/planning_method.hpp"
-#include "planner_service/planning_registry.hpp"
-#include "swarm_core/world/world.hpp"
+#include "swarmflow/planning/planning_method.hpp"
+#include "swarmflow/planning/planning_registry.hpp"
+#include "swarmflow/core/world.hpp"
 
 namespace swarm::planner {
 

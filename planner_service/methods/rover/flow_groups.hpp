@@ -6,9 +6,9 @@
 #include <span>
 #include <vector>
 
-#include "planner_service/measured_swarm.hpp"
+#include "swarmflow/planning/measured_swarm.hpp"
 #include "planner_service/methods/rover/risk_graph.hpp"
-#include "swarm_core/plan/flow_plan.hpp"
+#include "swarmflow/core/flow_plan.hpp"
 
 namespace swarm::planner {
 

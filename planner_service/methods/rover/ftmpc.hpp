@@ -11,7 +11,7 @@
 #include "planner_service/methods/rover/horizon_network.hpp"
 #include "planner_service/methods/rover/linear_program.hpp"
 #include "planner_service/methods/rover/risk_graph.hpp"
-#include "swarm_core/base/result.hpp"
+#include "swarmflow/core/result.hpp"
 
 namespace swarm::planner {
 

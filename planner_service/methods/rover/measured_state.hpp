@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "planner_service/methods/rover/risk_graph.hpp"
-#include "swarm_core/gmm/mixture.hpp"
+#include "swarmflow/core/mixture.hpp"
 
 namespace swarm::planner {
 

@@ -4,10 +4,10 @@
 
 #include <cstddef>
 
-#include "planner_service/plan_result.hpp"
-#include "swarm_core/plan/flow_plan.hpp"
-#include "swarm_core/risk/cvar.hpp"
-#include "swarm_core/world/world.hpp"
+#include "swarmflow/planning/plan_result.hpp"
+#include "swarmflow/core/flow_plan.hpp"
+#include "swarmflow/core/cvar.hpp"
+#include "swarmflow/core/world.hpp"
 
 namespace swarm::planner {
 

@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "planner_service/roadmap/collocation.hpp"
-#include "swarm_core/gmm/mixture.hpp"
-#include "swarm_core/risk/cvar.hpp"
+#include "swarmflow/core/mixture.hpp"
+#include "swarmflow/core/cvar.hpp"
 #include "swarm_core/risk/mixture_cvar.hpp"
-#include "swarm_core/world/world.hpp"
+#include "swarmflow/core/world.hpp"
 
 namespace swarm::planner {
 

@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "planner_service/methods/rover/rover.hpp"
-#include "planner_service/planning_method.hpp"
-#include "planner_service/planning_registry.hpp"
-#include "swarm_core/gmm/mixture.hpp"
-#include "swarm_core/world/world.hpp"
+#include "swarmflow/planning/planning_method.hpp"
+#include "swarmflow/planning/planning_registry.hpp"
+#include "swarmflow/core/mixture.hpp"
+#include "swarmflow/core/world.hpp"
 
 namespace swarm::planner {
 

@@ -6,12 +6,12 @@
 #include <vector>
 
 #include "planner_service/flow/route.hpp"
-#include "planner_service/plan_request.hpp"
-#include "planner_service/plan_result.hpp"
-#include "swarm_core/base/result.hpp"
-#include "swarm_core/gmm/gaussian.hpp"
-#include "swarm_core/mission/body_limits.hpp"
-#include "swarm_core/plan/flow_plan.hpp"
+#include "swarmflow/planning/plan_request.hpp"
+#include "swarmflow/planning/plan_result.hpp"
+#include "swarmflow/core/result.hpp"
+#include "swarmflow/core/gaussian.hpp"
+#include "swarmflow/mission/body_limits.hpp"
+#include "swarmflow/core/flow_plan.hpp"
 
 /// What methods share that end in routes or a flow.
 namespace swarm::planner {

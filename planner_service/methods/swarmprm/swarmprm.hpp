@@ -3,12 +3,12 @@
 #pragma once
 
 #include "planner_service/methods/swarmprm/swarmprm_options.hpp"
-#include "planner_service/plan_request.hpp"
-#include "planner_service/plan_result.hpp"
-#include "planner_service/roadmap/roadmap.hpp"
+#include "swarmflow/planning/plan_request.hpp"
+#include "swarmflow/planning/plan_result.hpp"
+#include "swarmflow/planning/roadmap.hpp"
 #include "planner_service/stage_timer.hpp"
-#include "swarm_core/base/random.hpp"
-#include "swarm_core/base/result.hpp"
+#include "swarmflow/core/random.hpp"
+#include "swarmflow/core/result.hpp"
 
 namespace swarm::planner {
 

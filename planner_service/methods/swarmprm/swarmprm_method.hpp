@@ -5,8 +5,8 @@
 #include <optional>
 
 #include "planner_service/methods/swarmprm/swarmprm_options.hpp"
-#include "planner_service/planning_method.hpp"
-#include "planner_service/planning_registry.hpp"
+#include "swarmflow/planning/planning_method.hpp"
+#include "swarmflow/planning/planning_registry.hpp"
 #include "planner_service/roadmap/live_roadmap.hpp"
 
 namespace swarm::planner {

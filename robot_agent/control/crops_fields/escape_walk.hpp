@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "swarm_core/base/linalg.hpp"
-#include "swarm_core/base/random.hpp"
+#include "swarmflow/core/linalg.hpp"
+#include "swarmflow/core/random.hpp"
 
 namespace swarm::agent {
 

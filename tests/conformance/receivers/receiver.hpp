@@ -8,7 +8,7 @@
 #include <variant>
 #include <vector>
 
-#include "swarm_core/mission/mission.hpp"
+#include "swarmflow/mission/mission.hpp"
 #include "swarm_link/gate/refusal.hpp"
 #include "swarm_link/messages.hpp"
 

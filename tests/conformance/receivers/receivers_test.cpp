@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "swarm_core/mission/mission_file.hpp"
+#include "swarmflow/mission/mission_file.hpp"
 #include "tests/conformance/receivers/bad_messages.hpp"
 
 namespace swarm::link::conformance {

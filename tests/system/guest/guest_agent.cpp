@@ -12,8 +12,8 @@
 #include <thread>
 #include <utility>
 
-#include "robot_agent/run_robot.hpp"
-#include "swarm_core/mission/option_table.hpp"
+#include "swarmflow/mission/option_table.hpp"
+#include "swarmflow/robot/run_robot.hpp"
 
 namespace {
 

@@ -3,7 +3,7 @@
 // The bodies of fallen robots in the planner's scene.
 #include <gtest/gtest.h>
 
-#include "swarm_core/risk/cvar.hpp"
+#include "swarmflow/core/cvar.hpp"
 #include "tests/unit/planner_service/keeper_bench.hpp"
 
 namespace swarm::planner {

@@ -13,7 +13,7 @@
 #include <gtest/gtest.h>
 
 #include "planner_service/plan_keeper.hpp"
-#include "swarm_core/mission/mission_file.hpp"
+#include "swarmflow/mission/mission_file.hpp"
 #include "swarm_core/mission/placement.hpp"
 #include "tests/unit/planner_service/planners.hpp"
 

@@ -6,7 +6,7 @@
 #include "planner_service/flow/plan_density.hpp"
 #include "planner_service/plan_checks.hpp"
 #include "planner_service/replan.hpp"
-#include "swarm_core/mission/mission.hpp"
+#include "swarmflow/mission/mission.hpp"
 #include "swarm_core/risk/mixture_cvar.hpp"
 #include "tests/unit/planner_service/planners.hpp"
 #include "tests/unit/planner_service/standin_scene.hpp"

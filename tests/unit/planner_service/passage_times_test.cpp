@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "planner_service/flow/plan_density.hpp"
-#include "swarm_core/mission/mission_file.hpp"
+#include "swarmflow/mission/mission_file.hpp"
 #include "tests/unit/planner_service/planners.hpp"
 
 namespace swarm::planner {

@@ -8,7 +8,7 @@
 #include "planner_service/methods/builtin_methods.hpp"
 #include "planner_service/methods/swarmprm/swarmprm_method.hpp"
 #include "planner_service/planner.hpp"
-#include "swarm_core/mission/mission.hpp"
+#include "swarmflow/mission/mission.hpp"
 
 namespace swarm::testing {
 

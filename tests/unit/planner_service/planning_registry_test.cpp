@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
 // A method of a guest beside the built-in ones, and what the keeper asks it in flight.
-#include "planner_service/planning_registry.hpp"
+#include "swarmflow/planning/planning_registry.hpp"
 
 #include <gtest/gtest.h>
 

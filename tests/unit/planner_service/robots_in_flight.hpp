@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "planner_service/measured_swarm.hpp"
+#include "swarmflow/planning/measured_swarm.hpp"
 #include "tests/unit/planner_service/planners.hpp"
 #include "tests/unit/planner_service/standin_scene.hpp"
 

@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "swarm_core/gmm/mixture.hpp"
-#include "swarm_core/world/world.hpp"
+#include "swarmflow/core/mixture.hpp"
+#include "swarmflow/core/world.hpp"
 
 namespace swarm::testing {
 

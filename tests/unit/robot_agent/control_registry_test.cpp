@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-#include "robot_agent/control_registry.hpp"
+#include "swarmflow/robot/control_registry.hpp"
 
 #include <cmath>
 #include <limits>
@@ -9,8 +9,8 @@
 #include <gtest/gtest.h>
 
 #include "robot_agent/agent.hpp"
-#include "swarm_core/mission/mission_file.hpp"
-#include "swarm_core/mission/option_table.hpp"
+#include "swarmflow/mission/mission_file.hpp"
+#include "swarmflow/mission/option_table.hpp"
 
 namespace swarm::agent {
 namespace {

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "robot_agent/drivers/simulated_robot.hpp"
-#include "swarm_core/base/random.hpp"
+#include "swarmflow/core/random.hpp"
 
 namespace swarm::launcher {
 namespace {

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "swarm_core/mission/mission_file.hpp"
+#include "swarmflow/mission/mission_file.hpp"
 #include "swarm_core/mission/scene_bodies.hpp"
 #include "swarm_launcher/simulation/simulation.hpp"
 #include "swarm_monitor/audit.hpp"

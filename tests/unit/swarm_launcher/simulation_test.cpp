@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "swarm_core/mission/mission_file.hpp"
+#include "swarmflow/mission/mission_file.hpp"
 #include "swarm_monitor/audit.hpp"
 
 namespace swarm::launcher {

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "swarm_core/base/random.hpp"
+#include "swarmflow/core/random.hpp"
 #include "swarm_link/inproc/inproc_bus.hpp"
 #include "swarm_link/state_channel.hpp"
 

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "swarm_monitor/observe/observer.hpp"
+#include "swarmflow/observe/observer.hpp"
 #include "synthetic_run.hpp"
 
 namespace swarm::monitor {

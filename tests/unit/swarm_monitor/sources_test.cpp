@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "swarm_core/mcap/writer.hpp"
-#include "swarm_core/mission/mission_file.hpp"
+#include "swarmflow/mission/mission_file.hpp"
 #include "swarm_link/to_message.hpp"
 #include "swarm_monitor/recording/replay.hpp"
 #include "swarm_monitor/view/live_source.hpp"

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "swarm_core/blackbox/record.hpp"
-#include "swarm_core/mission/phase.hpp"
+#include "swarmflow/mission/phase.hpp"
 
 namespace swarm::monitor {
 

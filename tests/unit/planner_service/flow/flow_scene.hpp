@@ -6,8 +6,8 @@
 
 #include "planner_service/roadmap/connect.hpp"
 #include "planner_service/roadmap/edge_check.hpp"
-#include "swarm_core/base/random.hpp"
-#include "swarm_core/world/world.hpp"
+#include "swarmflow/core/random.hpp"
+#include "swarmflow/core/world.hpp"
 
 namespace swarm::testing {
 

@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "planner_service/flow/build_plan.hpp"
-#include "swarm_core/base/random.hpp"
+#include "swarmflow/core/random.hpp"
 
 namespace swarm::planner {
 namespace {

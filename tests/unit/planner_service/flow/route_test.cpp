@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "planner_service/flow/build_plan.hpp"
-#include "swarm_core/base/random.hpp"
+#include "swarmflow/core/random.hpp"
 #include "swarm_core/gmm/wasserstein.hpp"
 
 namespace swarm::planner {

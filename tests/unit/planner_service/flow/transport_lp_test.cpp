@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-#include "swarm_core/base/random.hpp"
+#include "swarmflow/core/random.hpp"
 #include "tests/unit/planner_service/flow/lp_oracle.hpp"
 
 namespace swarm::planner {

@@ -6,7 +6,7 @@
 
 #include "planner_service/groups/group_shape.hpp"
 #include "swarm_core/gmm/wasserstein.hpp"
-#include "swarm_core/risk/cvar.hpp"
+#include "swarmflow/core/cvar.hpp"
 #include "tests/unit/planner_service/robots_in_flight.hpp"
 
 namespace swarm::planner {

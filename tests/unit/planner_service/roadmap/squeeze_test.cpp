@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "swarm_core/risk/cvar.hpp"
+#include "swarmflow/core/cvar.hpp"
 #include "tests/unit/planner_service/standin_scene.hpp"
 
 namespace swarm::planner {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-#include "robot_agent/control/control_slot.hpp"
+#include "swarmflow/robot/control_slot.hpp"
 
 #include <array>
 #include <memory>

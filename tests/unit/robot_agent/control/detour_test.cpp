@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include "robot_agent/control/polyline.hpp"
-#include "swarm_core/base/random.hpp"
+#include "swarmflow/robot/polyline.hpp"
+#include "swarmflow/core/random.hpp"
 
 namespace swarm::agent {
 namespace {

@@ -11,7 +11,7 @@
 #include "robot_agent/control/density_attraction.hpp"
 #include "robot_agent/control/neighbour_repulsion.hpp"
 #include "robot_agent/control/obstacle_repulsion.hpp"
-#include "swarm_core/base/random.hpp"
+#include "swarmflow/core/random.hpp"
 
 namespace swarm::agent {
 namespace {

@@ -13,7 +13,7 @@
 
 #include "robot_agent/agent.hpp"
 #include "robot_agent/control/builtin_methods.hpp"
-#include "swarm_core/mission/mission_file.hpp"
+#include "swarmflow/mission/mission_file.hpp"
 #include "swarm_core/mission/placement.hpp"
 
 namespace swarm::agent {

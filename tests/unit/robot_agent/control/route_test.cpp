@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-#include "robot_agent/control/route.hpp"
+#include "swarmflow/robot/route.hpp"
 
 #include <vector>
 
 #include <gtest/gtest.h>
 
-#include "swarm_core/base/random.hpp"
+#include "swarmflow/core/random.hpp"
 #include "swarm_core/mission/placement.hpp"
 
 namespace swarm::agent {

@@ -12,7 +12,7 @@
 #include <gtest/gtest.h>
 
 #include "robot_agent/control/safety_filter.hpp"
-#include "swarm_core/base/random.hpp"
+#include "swarmflow/core/random.hpp"
 
 namespace swarm::agent {
 namespace {

@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-#include "robot_agent/control/schedule.hpp"
+#include "swarmflow/robot/schedule.hpp"
 
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-#include "swarm_core/base/random.hpp"
+#include "swarmflow/core/random.hpp"
 
 namespace swarm::agent {
 namespace {

@@ -16,7 +16,7 @@
 
 #include "robot_agent/program/process_loop.hpp"
 #include "swarm_core/blackbox/blackbox_file.hpp"
-#include "swarm_core/mission/mission_file.hpp"
+#include "swarmflow/mission/mission_file.hpp"
 #include "swarm_launcher/simulation/simulation.hpp"
 #include "swarm_link/inproc/inproc_bus.hpp"
 

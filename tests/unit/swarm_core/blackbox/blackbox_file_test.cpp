@@ -13,7 +13,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "swarm_core/base/random.hpp"
+#include "swarmflow/core/random.hpp"
 
 namespace swarm::blackbox {
 namespace {

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "swarm_core/base/random.hpp"
-#include "swarm_core/gmm/gaussian.hpp"
+#include "swarmflow/core/random.hpp"
+#include "swarmflow/core/gaussian.hpp"
 
 namespace swarm::testing {
 

@@ -10,7 +10,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "swarm_core/base/random.hpp"
+#include "swarmflow/core/random.hpp"
 #include "swarm_core/mcap/idl_text.hpp"
 #include "swarm_core/mcap/reader.hpp"
 #include "swarm_core/mcap/writer.hpp"

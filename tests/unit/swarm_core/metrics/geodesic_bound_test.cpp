@@ -9,10 +9,10 @@
 
 #include <gtest/gtest.h>
 
-#include "swarm_core/base/random.hpp"
+#include "swarmflow/core/random.hpp"
 #include "swarm_core/metrics/assignment.hpp"
 #include "swarm_core/metrics/shortest_paths.hpp"
-#include "swarm_core/mission/mission_file.hpp"
+#include "swarmflow/mission/mission_file.hpp"
 
 namespace swarm {
 namespace {

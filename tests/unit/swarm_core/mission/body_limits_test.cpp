@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-#include "swarm_core/mission/body_limits.hpp"
+#include "swarmflow/mission/body_limits.hpp"
 
 #include <cmath>
 

@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-#include "swarm_core/mission/mission_file.hpp"
+#include "swarmflow/mission/mission_file.hpp"
 
 namespace swarm {
 namespace {

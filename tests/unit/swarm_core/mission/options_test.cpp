@@ -1,10 +1,11 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
+#include "swarmflow/mission/option_table.hpp"
+
 #include <gtest/gtest.h>
 
-#include "swarm_core/mission/catalogue.hpp"
-#include "swarm_core/mission/mission_file.hpp"
-#include "swarm_core/mission/option_table.hpp"
+#include "swarmflow/mission/catalogue.hpp"
+#include "swarmflow/mission/mission_file.hpp"
 
 namespace swarm {
 namespace {
@@ -78,7 +79,9 @@ TEST(OpenCatalogue, KeepsNamesAndKeysThatItDoesNotKnow) {
   EXPECT_EQ(again->robots.options, mission->robots.options);
 }
 
-TEST(ClosedCatalogue, RefusesThem) { EXPECT_FALSE(parse_mission(kMission, "m.yaml")); }
+TEST(ClosedCatalogue, RefusesThem) {
+  EXPECT_FALSE(parse_mission(kMission, "m.yaml"));
+}
 
 }  // namespace
 }  // namespace swarm

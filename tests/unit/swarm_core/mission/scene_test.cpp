@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-#include "swarm_core/mission/scene.hpp"
+#include "swarmflow/mission/scene.hpp"
 
 #include <gtest/gtest.h>
 

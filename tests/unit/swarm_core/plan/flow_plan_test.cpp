@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-#include "swarm_core/plan/flow_plan.hpp"
+#include "swarmflow/core/flow_plan.hpp"
 
 #include <cmath>
 #include <limits>
 
 #include <gtest/gtest.h>
 
-#include "swarm_core/base/random.hpp"
+#include "swarmflow/core/random.hpp"
 #include "swarm_core/gmm/wasserstein.hpp"
 
 namespace swarm {

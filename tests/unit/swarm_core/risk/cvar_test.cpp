@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-#include "swarm_core/risk/cvar.hpp"
+#include "swarmflow/core/cvar.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-#include "swarm_core/base/random.hpp"
+#include "swarmflow/core/random.hpp"
 
 namespace swarm {
 namespace {

@@ -11,8 +11,8 @@
 
 #include <gtest/gtest.h>
 
-#include "swarm_core/base/random.hpp"
-#include "swarm_core/risk/cvar.hpp"
+#include "swarmflow/core/random.hpp"
+#include "swarmflow/core/cvar.hpp"
 
 namespace swarm {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-#include "swarm_core/world/box_index.hpp"
+#include "swarmflow/core/box_index.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -9,9 +9,9 @@
 
 #include <gtest/gtest.h>
 
-#include "swarm_core/base/random.hpp"
-#include "swarm_core/risk/cvar.hpp"
-#include "swarm_core/world/world.hpp"
+#include "swarmflow/core/random.hpp"
+#include "swarmflow/core/cvar.hpp"
+#include "swarmflow/core/world.hpp"
 
 namespace swarm {
 namespace {

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
-#include "swarm_core/world/polygon.hpp"
+#include "swarmflow/core/polygon.hpp"
 #include "tests/unit/swarm_core/world/random_polygon.hpp"
 
 namespace swarm {

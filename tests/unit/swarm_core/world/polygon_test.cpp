@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-#include "swarm_core/world/polygon.hpp"
+#include "swarmflow/core/polygon.hpp"
 
 #include <limits>
 

@@ -7,8 +7,8 @@
 #include <numbers>
 #include <vector>
 
-#include "swarm_core/base/random.hpp"
-#include "swarm_core/world/polygon.hpp"
+#include "swarmflow/core/random.hpp"
+#include "swarmflow/core/polygon.hpp"
 
 namespace swarm::testing {
 

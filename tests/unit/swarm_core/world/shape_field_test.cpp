@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-#include "swarm_core/world/shape_field.hpp"
+#include "swarmflow/core/shape_field.hpp"
 
 #include <algorithm>
 #include <cmath>

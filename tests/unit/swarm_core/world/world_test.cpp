@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-#include "swarm_core/world/world.hpp"
+#include "swarmflow/core/world.hpp"
 
 #include <cmath>
 #include <limits>

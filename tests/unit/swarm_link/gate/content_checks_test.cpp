@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "swarm_core/base/random.hpp"
+#include "swarmflow/core/random.hpp"
 #include "swarm_core/metrics/histogram.hpp"
 #include "swarm_link/to_message.hpp"
 #include "swarm_link/wire_bounds.hpp"

@@ -13,7 +13,7 @@
 #include "planner_service/flow/build_plan.hpp"
 #include "planner_service/roadmap/connect.hpp"
 #include "swarm_core/gmm/wasserstein.hpp"
-#include "swarm_core/mission/mission_file.hpp"
+#include "swarmflow/mission/mission_file.hpp"
 #include "tests/unit/planner_service/methods/crops/crops_worlds.hpp"
 
 namespace swarm::planner {

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "planner_service/methods/crops/crops_guide.hpp"
-#include "swarm_core/mission/mission_file.hpp"
+#include "swarmflow/mission/mission_file.hpp"
 
 /// Worlds for guides, and what is looked at of their ways.
 namespace swarm::planner {

@@ -11,7 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "planner_service/replan.hpp"
-#include "swarm_core/base/random.hpp"
+#include "swarmflow/core/random.hpp"
 #include "swarm_core/gmm/wasserstein.hpp"
 #include "swarm_core/mission/placement.hpp"
 #include "swarm_core/plan/flow_draw.hpp"

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "swarm_core/base/random.hpp"
+#include "swarmflow/core/random.hpp"
 #include "tests/unit/planner_service/methods/rover/rover_scene.hpp"
 
 namespace swarm::planner {

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "swarm_core/mission/mission_file.hpp"
+#include "swarmflow/mission/mission_file.hpp"
 
 namespace swarm::testing {
 

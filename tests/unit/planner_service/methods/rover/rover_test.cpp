@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "planner_service/methods/rover/measured_state.hpp"
-#include "swarm_core/base/random.hpp"
+#include "swarmflow/core/random.hpp"
 #include "swarm_core/gmm/wasserstein.hpp"
 #include "tests/unit/planner_service/methods/rover/rover_scene.hpp"
 

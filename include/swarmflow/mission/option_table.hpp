@@ -1,0 +1,83 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "swarmflow/mission/options.hpp"
+
+namespace swarm {
+
+/// Binds the keys of a component's options to the members of its own struct, each stated once with
+/// its range and one line of documentation. The struct's initialisers are the defaults:
+///
+///   struct SpiralOptions { double gain_hz = 0.5; std::uint32_t turns = 3; };
+///   const auto kTable = OptionTable<SpiralOptions>()
+///       .number("gain_hz", &SpiralOptions::gain_hz, positive(10), "speed per metre off the path")
+///       .count("turns", &SpiralOptions::turns, between(1, 100), "turns before it gives up");
+///   kTable.specs()        what a registry and a mission's reader need
+///   kTable.read(values)   the struct with a mission's values
+template <class T>
+class OptionTable {
+ public:
+  OptionTable& number(std::string key, double T::*member, Range range, std::string doc) {
+    add(std::move(key), OptionSpec::Kind::kNumber, range, std::move(doc));
+    specs_.back().fallback = text(T{}.*member);
+    readers_.push_back([member](T& out, const OptionValues& values, const std::string& k) {
+      if (const auto value = values.number(k)) out.*member = *value;
+    });
+    return *this;
+  }
+
+  OptionTable& count(std::string key, std::uint32_t T::*member, Range range, std::string doc) {
+    add(std::move(key), OptionSpec::Kind::kCount, range, std::move(doc));
+    specs_.back().fallback = std::to_string(T{}.*member);
+    readers_.push_back([member](T& out, const OptionValues& values, const std::string& k) {
+      if (const auto value = values.number(k)) out.*member = static_cast<std::uint32_t>(*value);
+    });
+    return *this;
+  }
+
+  OptionTable& choice(std::string key, std::string T::*member, std::vector<std::string> words,
+                      std::string doc) {
+    add(std::move(key), OptionSpec::Kind::kChoice, {}, std::move(doc));
+    specs_.back().fallback = T{}.*member;
+    specs_.back().words = std::move(words);
+    readers_.push_back([member](T& out, const OptionValues& values, const std::string& k) {
+      if (const std::string* value = values.find(k)) out.*member = *value;
+    });
+    return *this;
+  }
+
+  const std::vector<OptionSpec>& specs() const { return specs_; }
+
+  T read(const OptionValues& values) const {
+    T out;
+    for (std::size_t i = 0; i < specs_.size(); ++i) readers_[i](out, values, specs_[i].key);
+    return out;
+  }
+
+ private:
+  static std::string text(double value) {
+    OptionValues written;
+    written.set("x", value);
+    return *written.find("x");
+  }
+
+  void add(std::string key, OptionSpec::Kind kind, const Range& range, std::string doc) {
+    specs_.push_back({.key = std::move(key),
+                      .kind = kind,
+                      .fallback = {},
+                      .range = range,
+                      .doc = std::move(doc)});
+  }
+
+  std::vector<OptionSpec> specs_;
+  std::vector<std::function<void(T&, const OptionValues&, const std::string&)>> readers_;
+};
+
+}  // namespace swarm
