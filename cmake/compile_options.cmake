@@ -2,11 +2,16 @@
 # SPDX-License-Identifier: Apache-2.0
 # swarm_options: what every target of ours compiles with. Third-party headers come in as SYSTEM.
 add_library(swarm_options INTERFACE)
-target_compile_options(swarm_options INTERFACE
-  -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wnon-virtual-dtor
-  $<$<BOOL:${SWARM_WERROR}>:-Werror>)
-target_compile_definitions(swarm_options INTERFACE SWARM_VERSION="${PROJECT_VERSION}")
-target_include_directories(swarm_options INTERFACE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/include)
+set(swarm_warnings -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wnon-virtual-dtor)
+if(SWARM_WERROR)
+  list(APPEND swarm_warnings -Werror)
+endif()
+target_compile_options(swarm_options INTERFACE "$<BUILD_INTERFACE:${swarm_warnings}>")
+target_compile_definitions(swarm_options INTERFACE
+  $<BUILD_INTERFACE:SWARM_VERSION="${PROJECT_VERSION}">)
+target_compile_features(swarm_options INTERFACE cxx_std_20)
+target_include_directories(swarm_options INTERFACE
+  $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>)
 
 if(SWARM_SANITIZE)
   add_compile_options(-fsanitize=${SWARM_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)

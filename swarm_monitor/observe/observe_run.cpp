@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <chrono>
 #include <thread>
+#include <utility>
 
 #include "swarmflow/mission/mission_file.hpp"
 #include "swarm_core/shell/run_directory.hpp"

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <regex>
 #include <string>
 #include <vector>
@@ -81,6 +82,7 @@ TEST(Includes, PointDownwardsOnly) {
       }
     });
   };
+  knows_only("include", {});
   knows_only("swarm_core", {"swarm_core"});
   knows_only("swarm_link", {"swarm_core", "swarm_link"});
   knows_only("planner_service", {"swarm_core", "swarm_link", "planner_service"});
@@ -99,13 +101,6 @@ TEST(Includes, OfTheGateKnowMessagesAndTheCoreAlone) {
   EXPECT_GT(files, 5);
 }
 
-/// Headers of the planner that methods of other projects build on.
-const std::vector<std::string> kPlanningContract = {
-    "planner_service/measured_swarm.hpp",    "planner_service/plan_request.hpp",
-    "planner_service/plan_result.hpp",       "planner_service/planning_method.hpp",
-    "planner_service/planning_registry.hpp", "planner_service/flow/density_peak.hpp",
-    "planner_service/roadmap/roadmap.hpp"};
-
 bool starts_with_any(const std::string& name, const std::vector<std::string>& beginnings) {
   return std::any_of(beginnings.begin(), beginnings.end(),
                      [&](const std::string& beginning) { return name.starts_with(beginning); });
@@ -123,10 +118,12 @@ TEST(Includes, OfThePlannerLeadFromMethodsToFlowToRoadmap) {
     EXPECT_GT(files, 1) << folder;
   };
   const std::string root = "planner_service/";
-  knows_only("roadmap", {root + "roadmap/"});
-  knows_only("flow", {root + "flow/", root + "roadmap/"});
-  knows_only("groups", {root + "groups/", root + "roadmap/", root + "measured_swarm.hpp"});
-  std::vector<std::string> below = kPlanningContract;
+  const std::string contract = "swarmflow/planning/";
+  knows_only("roadmap", {root + "roadmap/", contract + "roadmap.hpp"});
+  knows_only("flow", {root + "flow/", root + "roadmap/", contract + "roadmap.hpp",
+                      contract + "density_peak.hpp"});
+  knows_only("groups", {root + "groups/", root + "roadmap/", contract + "measured_swarm.hpp"});
+  std::vector<std::string> below = {"swarmflow/planning/"};
   for (const char* name : {"flow/", "groups/", "roadmap/", "stage_timer.hpp", "methods/shared/"}) {
     below.push_back(root + name);
   }
@@ -145,18 +142,29 @@ TEST(Includes, OfThePlannerDoNotNameAMethod) {
   });
 }
 
-TEST(Includes, OfThePlanningContractAreCoreTypes) {
-  static const std::regex kThirdParty(R"re(^(fmt|nlohmann|yaml-cpp|CLI|coin|lemon|nanoflann))re");
-  for (const std::string& header : kPlanningContract) {
-    const std::vector<std::string> includes = includes_of(kRoot / header);
-    EXPECT_FALSE(includes.empty()) << header;
-    for (const std::string& include : includes) {
-      const bool is_ours = starts_with_any(include, kSources);
-      EXPECT_TRUE(!is_ours || include.starts_with("swarm_core/") ||
-                  starts_with_any(include, kPlanningContract))
-          << header << " includes " << include;
-      EXPECT_FALSE(std::regex_search(include, kThirdParty)) << header << " includes " << include;
-    }
+// What others build on: nothing private, no vendor's or parser's type, and each ring knows only the
+// rings within.
+TEST(Includes, OfPublicHeadersArePublic) {
+  static const std::regex kThirdParty(
+      R"re(^(fmt|nlohmann|yaml-cpp|CLI|coin|lemon|nanoflann|png|zstd|zlib)\b)re");
+  const std::map<std::string, std::vector<std::string>> allowed = {
+      {"core", {"core"}},
+      {"mission", {"core", "mission"}},
+      {"robot", {"core", "mission", "robot"}},
+      {"planning", {"core", "mission", "planning"}},
+      {"observe", {"core", "mission", "observe"}}};
+  for (const auto& [ring, known] : allowed) {
+    const int files =
+        for_each_include({"include/swarmflow/" + ring}, [&](const auto& file, const auto& include) {
+          EXPECT_FALSE(starts_with_any(include, kSources) || std::regex_search(include, kThirdParty))
+              << file << " includes " << include;
+          if (!include.starts_with("swarmflow/")) return;
+          const bool is_known = std::any_of(known.begin(), known.end(), [&](const auto& other) {
+            return include.starts_with("swarmflow/" + other + "/");
+          });
+          EXPECT_TRUE(is_known) << file << " includes " << include;
+        });
+    EXPECT_GT(files, 0) << ring;
   }
 }
 

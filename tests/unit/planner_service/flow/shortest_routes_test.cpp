@@ -7,7 +7,9 @@
 
 #include <gtest/gtest.h>
 
+#include "planner_service/roadmap/connect.hpp"
 #include "planner_service/roadmap/sampler.hpp"
+#include "swarm_core/gmm/wasserstein.hpp"
 #include "tests/unit/planner_service/standin_scene.hpp"
 
 namespace swarm::planner {

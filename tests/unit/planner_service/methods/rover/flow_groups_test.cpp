@@ -10,6 +10,7 @@
 
 #include <gtest/gtest.h>
 
+#include "planner_service/groups/robot_groups.hpp"
 #include "planner_service/replan.hpp"
 #include "swarmflow/core/random.hpp"
 #include "swarm_core/gmm/wasserstein.hpp"
