@@ -7,6 +7,7 @@
 #include <csignal>
 #include <cstring>
 #include <string>
+#include <utility>
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -49,7 +50,8 @@ int spawn(const std::filesystem::path& program, int out, pid_t& pid) {
   std::string path = program.string();
   std::string flag = "--describe";
   std::array<char*, 3> arguments{path.data(), flag.data(), nullptr};
-  const int error = ::posix_spawn(&pid, path.c_str(), &actions, nullptr, arguments.data(), environ);
+  const int error =
+      ::posix_spawn(&pid, path.c_str(), &actions, nullptr, arguments.data(), environ);
   ::posix_spawn_file_actions_destroy(&actions);
   return error;
 }
@@ -79,17 +81,29 @@ Result<Catalogue> describe_program(const std::filesystem::path& program) {
   }
   if (!ended || status != 0) {
     return fail(ErrorCode::kBadInput,
-                fmt::format("{} --describe: {}; is it a program that calls "
-                            "run_robot()?",
+                fmt::format("{} --describe: {}; is it a program that calls run_robot() or "
+                            "run_planner()?",
                             program.string(),
                             ended ? "ended with an error" : "did not end in ten seconds"));
   }
   return catalogue_from_json(text, program.string());
 }
 
-Result<Catalogue> catalogue_of(const std::filesystem::path& agent_program) {
-  if (agent_program.empty()) return Catalogue{};
-  return describe_program(agent_program);
+Result<Catalogue> catalogue_of(const std::filesystem::path& agent_program,
+                               const std::filesystem::path& planner_program) {
+  Catalogue catalogue;
+  if (!agent_program.empty()) {
+    auto agent = describe_program(agent_program);
+    if (!agent) return agent;
+    catalogue.control_methods = std::move(agent->control_methods);
+    catalogue.drivers = std::move(agent->drivers);
+  }
+  if (!planner_program.empty()) {
+    auto planner = describe_program(planner_program);
+    if (!planner) return planner;
+    catalogue.planning_methods = std::move(planner->planning_methods);
+  }
+  return catalogue;
 }
 
 }  // namespace swarm::launcher

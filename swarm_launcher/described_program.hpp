@@ -9,13 +9,14 @@
 
 namespace swarm::launcher {
 
-/// A robot program's description of itself: runs `program --describe` and reads the JSON that it
-/// prints. kBadInput if it cannot be started, does not end within ten seconds, or prints something
-/// else.
+/// What a robot or planner program says of itself: runs `program --describe` and reads the JSON
+/// that it prints. kBadInput if it cannot be started, does not end within ten seconds, or prints
+/// something else.
 Result<Catalogue> describe_program(const std::filesystem::path& program);
 
-/// The components that a mission may name when this program is going to fly its robots; an empty
-/// path stands for our own program.
-Result<Catalogue> catalogue_of(const std::filesystem::path& agent_program);
+/// The components that a mission may name when these programs are going to fly it; an empty path
+/// stands for our own program.
+Result<Catalogue> catalogue_of(const std::filesystem::path& agent_program,
+                               const std::filesystem::path& planner_program);
 
 }  // namespace swarm::launcher

@@ -196,7 +196,8 @@ Result<void> Flight::start(ProcessIndex process) {
   std::vector<std::string> command_line;
   std::string log;
   if (process == kPlanner) {
-    command_line = {sibling_program("planner_service"), "--run", dir_.string(),
+    command_line = {program_or(options_.how.planner_program, "planner_service"), "--run",
+                    dir_.string(),
                     // A killed planner keeps the plan topic until its lease ends, unless its
                     // successor is stronger.
                     "--strength", fmt::format("{}", kPlannerStrength + planner_starts_++)};

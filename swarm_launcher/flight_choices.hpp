@@ -16,11 +16,12 @@ namespace swarm::launcher {
 /// How a mission is flown, as its user chooses.
 struct FlightChoices {
   std::uint64_t seed = 1;
-  std::string fault{};                    ///< as parse_link_faults() reads it
-  std::filesystem::path out{};            ///< run directory; empty: runs/<mission>-<time>
-  std::filesystem::path agent_program{};  ///< empty: our robot_agent
-  int domain = -1;                        ///< DDS domain; negative: a free one
-  std::optional<Channel> channel{};       ///< empty: choose_channel() decides
+  std::string fault{};               ///< as parse_link_faults() reads it
+  std::filesystem::path out{};       ///< run directory; empty: runs/<mission>-<time>
+  std::filesystem::path agent_program{};    ///< empty: our robot_agent
+  std::filesystem::path planner_program{};  ///< empty: our planner_service
+  int domain = -1;                   ///< DDS domain; negative: a free one
+  std::optional<Channel> channel{};  ///< empty: choose_channel() decides
   AgentDds agent_dds = AgentDds::kFastDds;
   bool cyclone_launcher = false;
   bool cyclone_planner = false;

@@ -28,7 +28,7 @@ Machine this_machine() {
 
 Result<ExitCode> run_mission(const RunOptions& options) {
   become_urgent();
-  const auto catalogue = catalogue_of(options.how.agent_program);
+  const auto catalogue = catalogue_of(options.how.agent_program, options.how.planner_program);
   if (!catalogue) return tl::unexpected(catalogue.error());
   auto mission = load_mission(options.mission_file, *catalogue);
   if (!mission) return tl::unexpected(mission.error());

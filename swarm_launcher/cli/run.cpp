@@ -50,6 +50,9 @@ Command add_run(CLI::App& program) {
   run->add_option("--agent-program", o->how.agent_program,
                   "Robot program with drivers or control methods of your own (run_robot)")
       ->check(CLI::ExistingFile);
+  run->add_option("--planner-program", o->how.planner_program,
+                  "Planner program with planning methods of your own (run_planner)")
+      ->check(CLI::ExistingFile);
   add_domain(*run, o->how.domain);
   add_channel(*run, o->how.channel);
   const std::map<std::string, AgentDds> agent_dds = {{"fastdds", AgentDds::kFastDds},
