@@ -354,7 +354,7 @@ Supervisor::Counts Supervisor::counts() const {
   Counts c;
   for (const Process& p : processes_) c.started += p.started ? 1 : 0;
   for (const Robot& r : robots_) {
-    if (r.lost) {
+    if (r.lost || has_failed(r)) {
       ++c.lost;
       continue;
     }
@@ -379,7 +379,7 @@ std::vector<RobotId> Supervisor::unstopped() const {
 std::vector<RobotId> Supervisor::lost() const {
   std::vector<RobotId> out;
   for (std::uint32_t i = 0; i < robots_.size(); ++i) {
-    if (robots_[i].lost) out.emplace_back(i);
+    if (robots_[i].lost || has_failed(robots_[i])) out.emplace_back(i);
   }
   return out;
 }

@@ -168,6 +168,10 @@ class Supervisor {
   bool has_newest_goal(const Robot& robot) const {
     return robot.report.scene_version >= goal_version_;
   }
+  /// Stopped itself, for its control method failed: it will not arrive.
+  bool has_failed(const Robot& robot) const {
+    return robot.report.mode == RobotMode::kStopped && phase_ != MissionPhase::kStopped;
+  }
   void repeat_stop(SteadyTime now, std::vector<Action>& actions);
   void begin_ending(Outcome outcome, SteadyTime now);
   void end(SteadyTime now, std::vector<Action>& actions);

@@ -235,6 +235,19 @@ RobotReport report_of(SteadyTime sent_at) {
 
 using Robots = std::vector<std::vector<RobotId>>;
 
+TEST(Supervisor, CountsARobotThatStoppedItselfAsLost) {
+  Running bench(3);
+  bench.start();
+
+  bench.report_all(RobotMode::kArrived, true);
+  bench.sut->on_status(RobotId(1), {true, true, RobotMode::kStopped});
+  bench.run_for(seconds(4));
+
+  EXPECT_EQ(bench.sut->outcome(), Outcome::kCompleted);
+  EXPECT_EQ(bench.sut->counts().arrived, 2U);
+  EXPECT_EQ(bench.sut->lost(), std::vector<RobotId>{RobotId(1)});
+}
+
 TEST(SupervisorBodies, OfRobotsThatDieTogetherAreAddedAtOnce) {
   Running bench(5);
   bench.start();
