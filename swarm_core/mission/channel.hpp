@@ -7,7 +7,7 @@
 namespace swarm {
 
 /// What carries the robots' states: DDS topics per cell, or multicast groups per cell; see
-/// docs/architecture.md.
+/// docs/design.md.
 enum class Channel { kTopics, kGroups };
 
 constexpr std::string_view to_string(Channel channel) {
