@@ -28,7 +28,7 @@ done | grep '^swarmflow/[a-z]*/[a-z_]*.hpp$' |
   xargs -P 2 -I{} sh -c "echo '#include <{}>' | g++ -std=c++20 -fsyntax-only -I. $eigen -x c++ - || { echo '{} does not compile alone' >&2; exit 255; }"
 
 echo "examples build against the prefix"
-for example in "$examples"/own_* "$here/faulty_controller"; do
+for example in "$examples"/own_*; do
   name=$(basename "$example")
   cmake -S "$example" -B "$work/$name" -G Ninja -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_BUILD_TYPE=Release >"$work/$name.log" ||
     { cat "$work/$name.log"; fail "$name does not configure"; }
@@ -78,16 +78,4 @@ expect_good driver 12
 fly planner "$examples/own_planner/mission.yaml" --planner-program "$work/own_planner/own_planner"
 expect_good planner 12
 
-echo "a control method that fails stops its robot alone, and is reported"
-for fault in throw nan sleep; do
-  sed "s/FAULT/$fault/" "$here/faulty_controller/mission.yaml" >"$work/$fault.yaml"
-  fly $fault "$work/$fault.yaml" --agent-program "$work/faulty_controller/faulty_controller"
-  expect $fault collisions_robot 0
-done
-expect throw arrived 5
-expect nan arrived 5
-expect sleep arrived 6
-grep -q 'robot 3: the control method threw: no compass' "$work/run_throw/events.jsonl" || fail "no event of what was thrown"
-grep -q 'robot 3: the control method returned a velocity that is not finite' "$work/run_nan/events.jsonl" || fail "no event of the NaN"
-grep -q '"code":"tick-overrun"' "$work/run_sleep/events.jsonl" || { cat "$work/run_sleep/events.jsonl"; fail "no event of the sleep"; }
 echo "all good"

@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include "planner_service/roadmap/connect.hpp"
 #include "tests/unit/planner_service/standin_scene.hpp"
 
 namespace swarm::planner {

@@ -19,6 +19,7 @@
 #include "swarmflow/mission/mission_file.hpp"
 #include "swarm_launcher/simulation/simulation.hpp"
 #include "swarm_link/inproc/inproc_bus.hpp"
+#include "swarm_link/to_message.hpp"
 
 namespace swarm::agent {
 namespace {
@@ -113,7 +114,7 @@ void fly(const Mission& mission, const FlownTwice& flown) {
   SteadyTime now{std::chrono::seconds(77)};
   UtcTime utc_now = launcher::Simulation::begin_utc();
   auto world = std::make_unique<World>(mission.world);
-  auto robots = make_local_robots(mission, *world,
+  auto robots = make_local_robots(mission, *world, builtin_robots(),
                                   {.run_dir = flown.processed.path,
                                    .first = RobotId(0),
                                    .count = kRobots,
