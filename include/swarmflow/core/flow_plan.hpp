@@ -69,11 +69,11 @@ class FlowPlan {
 
   /// The mixture χ(t) that the swarm is to form at plan time t [SwarmPRM, eq. 1]:
   ///
-  ///   χ(t) = Σ π(leg) · ĝ_leg((t − t_from)/(t_to − t_from))    over the legs with t_from ≤ t <
-  ///   t_to
+  ///   χ(t) = Σ π(leg) · ĝ_leg((t − t_from)/(t_to − t_from))
   ///
-  /// ĝ is the W₂ geodesic. Sources count as at rest before their time, sinks from their time on.
-  /// Weights sum to 1 at every t. O(nodes + legs), allocates. \pre !empty(), asserted
+  /// over the legs with t_from ≤ t < t_to; ĝ is the W₂ geodesic. Sources count as at rest before
+  /// their time, sinks from their time on. Weights sum to 1 at every t. O(nodes + legs), allocates.
+  /// \pre !empty(), asserted
   Mixture mixture_at(MissionTime t) const;
 
   /// FNV-1a hash of nodes and legs, the same on every machine: equal digests mean the same flow,
