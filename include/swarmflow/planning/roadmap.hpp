@@ -19,7 +19,7 @@ struct Roadmap {
   /// One direction of an edge.
   struct Arc {
     std::uint32_t to = 0;   ///< index into `nodes` of its other end
-    double length_m = 0.0;  ///< W₂ of its ends, or the method's cost of the edge [m]; +∞: closed
+    double length_m = 0.0;  ///< W₂ of its ends [m], or the method's cost of the edge; +∞: closed
   };
 
   std::vector<Gaussian> nodes;            ///< the Gaussians, world frame
