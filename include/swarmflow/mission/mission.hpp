@@ -27,7 +27,7 @@ namespace swarm {
 /// A robot's body. Noise is zero-mean, Gaussian and independent per axis and control step.
 struct BodySpec {
   std::string model = "single_integrator";  ///< name of its driver; or unicycle, double_integrator
-  double radius_m = 0.2;                    ///< of the disc that covers it [m]
+  double radius_m = 0.2;                    ///< radius of the disc that covers it
   double speed_max_mps = 1.5;               ///< its largest speed [m/s]
   double acceleration_max_mps2 = 3.0;  ///< of unicycle (along its heading) and double integrator
   double turn_rate_max_radps = 3.0;    ///< of unicycle [rad/s]
@@ -97,22 +97,22 @@ struct ControlSpec {
   std::string tracking = "plan";
   double rate_hz = 10.0;            ///< rate of the control loop, 1/Δt
   double cruise_mps = 1.45;         ///< largest desired speed along the path [m/s]
-  double look_ahead_s = 6.0;        ///< apf: how far ahead on its path a robot aims
+  double look_ahead_s = 6.0;        ///< apf, crops: how far ahead on its path a robot aims
   double pace_gain_hz = 0.3;        ///< apf: speed per metre behind the reference
   double keep_clearance_m = 1.0;    ///< apf: clearance up to which corners are not cut
   double density_push_mps = 0.0;    ///< apf: largest speed towards planned density; 0: off
   double neighbour_gap_m = 1.0;     ///< apf: d₀, neighbours nearer than this repel [m]
   double neighbour_push_mps = 0.6;  ///< apf: speed of that repulsion at contact
-  double obstacle_gap_m = 0.5;      ///< s₀, obstacles nearer than this repel [m]
+  double obstacle_gap_m = 0.5;      ///< s₀, obstacles nearer repel (not crops)
   double obstacle_push_mps = 1.0;   ///< speed of that repulsion at contact
   double approach_gain_hz = 0.8;    ///< speed per metre to the end of the path
-  double stuck_after_s = 4.0;       ///< apf: no progress for this long: an escape begins
-  double escape_spread_m = 4.0;     ///< apf: largest σ per axis of its target [m]
-  double escape_s = 5.0;            ///< apf: its longest duration
+  double stuck_after_s = 4.0;       ///< apf, crops: without progress for this long, it escapes
+  double escape_spread_m = 4.0;     ///< apf: largest σ per axis of an escape's target [m]
+  double escape_s = 5.0;            ///< apf, crops: longest duration of an escape
   // intermittent_diffusion, Alg. 1 of its paper
   double diffusion_strength_m2 = 0.01;    ///< G₀ [m²]
   double diffusion_range_m = 0.0;         ///< R; 0: 10 robots.radius_m
-  double diffusion_tolerance_m2 = 0.045;  ///< F + G at which a robot is content [m²]
+  double diffusion_tolerance_m2 = 0.045;  ///< F + G up to which a robot has arrived
   double diffusion_gain_hz = 4.0;         ///< speed per gradient, as far as the step bound allows
   double diffusion_flow_s = 2.5;          ///< longest gradient flow before diffusing (i_max steps)
   double diffusion_noise_mps05 = 3.0;     ///< largest σ of the virtual diffusion [m/√s]

@@ -61,6 +61,8 @@ struct TimeTracking {
 /// begin(), and a tick of all robots of a process must fit into a control period: commands run out
 /// after two periods (event `tick-overrun`). An exception, or a velocity that is not finite, stops
 /// the robot for good (mode kStopped, event `robot-fault`) and the method is not called again.
+/// Methods of different robots must not share data that changes: a simulation runs them in
+/// parallel.
 class ControlMethod {
  public:
   /// Methods are owned by a ControlSlot.

@@ -69,7 +69,7 @@ struct DriverHealth {
 ///   start()                      once, before the first tick
 ///   measure(), then command()    once each in every control period (1/control.rate_hz)
 ///   measure(), then stop()       instead, after an emergency stop or a failed control method
-///   health()                     every tenth tick
+///   health()                     at most every tenth tick
 ///   shutdown()                   once, at the end or after a failed start()
 ///
 /// No call may block: one control loop serves all robots of a process, and a late tick lets
@@ -103,8 +103,8 @@ class Driver {
   /// The robot's state of health. By default good.
   virtual DriverHealth health() const { return {}; }
 
-  /// Disconnects, with the robot at rest or told to stop. Must also work after a failed start(). By
-  /// default nothing.
+  /// Disconnects, with the robot at rest or commanded to stop. Must also work after a failed
+  /// start(). By default nothing.
   virtual void shutdown() {}
 };
 

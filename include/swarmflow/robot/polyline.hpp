@@ -55,7 +55,7 @@ class Polyline {
  private:
   std::vector<Vec2> vertices_;
   std::vector<double> arc_;  // arc length at each vertex
-  double length_m_ = 0.0;    // its last: asked at every tick
+  double length_m_ = 0.0;    // the last of arc_: read at every tick
 };
 
 }  // namespace swarm::agent
