@@ -9,10 +9,13 @@
 
 namespace swarm {
 
-/// Axis-aligned box.
+/// Axis-aligned box in the world frame, its border included. By default the single point (0, 0).
+/// All functions are O(1) and expect min_m ≤ max_m on both axes; this is not checked.
 struct Box {
-  Vec2 min_m = Vec2::Zero();
-  Vec2 max_m = Vec2::Zero();
+  Vec2 min_m = Vec2::Zero();  ///< corner with the smallest x and y [m]
+  Vec2 max_m = Vec2::Zero();  ///< corner with the largest x and y [m]
+
+  /// Whether a point lies inside or on the border.
   bool contains(const Vec2& p) const {
     return (p.array() >= min_m.array()).all() && (p.array() <= max_m.array()).all();
   }
@@ -22,7 +25,7 @@ struct Box {
     const double dy = std::max({min_m.y() - p.y(), 0.0, p.y() - max_m.y()});
     return std::sqrt(dx * dx + dy * dy);
   }
-  /// Squared distance to another box, 0 where they meet [m²].
+  /// Squared distance to another box, 0 where the two touch or overlap [m²].
   double gap_squared_m2(const Box& other) const {
     const Vec2 gap = (other.min_m - max_m).cwiseMax(min_m - other.max_m).cwiseMax(0.0);
     return gap.squaredNorm();

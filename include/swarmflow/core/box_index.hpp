@@ -13,20 +13,31 @@
 
 namespace swarm {
 
-/// Finds the boxes near a place. Few boxes are looked at one by one; more are in a tree of bounding
-/// boxes, O(log n + answers) a query. Copies freely, shares nothing.
+/// Finds the boxes near a point or near another box. Up to kScanned boxes are tested one by one;
+/// more are kept in a binary tree of bounding boxes, where a query takes O(log n + matches).
+///
+/// A value type: copies are deep, and const functions may run in several threads at once. Boxes are
+/// identified by their index in the vector that the constructor was given.
 class BoxIndex {
  public:
-  /// Up to this many boxes, going through them is as fast as the tree (BM_BoxQuery).
+  /// Up to this many boxes a scan is as fast as the tree (benchmark BM_BoxQuery).
   static constexpr std::size_t kScanned = 8;
 
+  /// An index without boxes: every query finds nothing.
   BoxIndex() = default;
+  /// Builds the tree in O(n log n). \pre boxes are finite, with min_m ≤ max_m; they may overlap
   explicit BoxIndex(std::vector<Box> boxes);
 
+  /// The indexed boxes, in the order in which they were given.
   const std::vector<Box>& boxes() const { return boxes_; }
 
-  /// Calls `is_it(i)` for all boxes i within `reach_m` of `query`, and at most those a hair
-  /// farther, until one says true; whether one did. In no particular order.
+  /// Calls `is_it(i)` for every box i within `reach_m` of `query`, in no particular order, until a
+  /// call returns true. Boxes that are farther by rounding alone (1 nm and 1e-12 of the
+  /// coordinates) may be visited too, so the predicate decides. Does not allocate.
+  /// \param query box around which to search; a point p is the box {p, p}
+  /// \param reach_m largest distance between the boxes [m]; a negative one counts as 0
+  /// \param is_it predicate, `bool(std::uint32_t index)`
+  /// \return whether a call returned true
   template <class Predicate>
   bool any_within(const Box& query, double reach_m, Predicate&& is_it) const {
     const double reach_squared = widened_squared(reach_m);
@@ -52,8 +63,12 @@ class BoxIndex {
     return false;
   }
 
-  /// The same for all of them in ascending order, so that what depends on the order is what a scan
-  /// of all boxes gives.
+  /// Calls `visit(i)` for every box within `reach_m` of `query` in ascending order of i: a result
+  /// that depends on the order (the first of several equal distances) is the one of a plain scan.
+  /// Allocates only if more than 64 boxes match.
+  /// \param query box around which to search; a point p is the box {p, p}
+  /// \param reach_m largest distance between the boxes [m]; a negative one counts as 0
+  /// \param visit visitor, `void(std::uint32_t index)`
   template <class Visitor>
   void for_each_within(const Box& query, double reach_m, Visitor&& visit) const {
     if (tree_.empty()) {
@@ -75,8 +90,10 @@ class BoxIndex {
     for (const std::uint32_t i : found) visit(i);
   }
 
-  /// Calls `visit(i)` for a few boxes that are likely the nearest to a point: enough for a bound on
-  /// what the nearest is. None where boxes are few and a scan needs no bound.
+  /// Calls `visit(i)` for the up to four boxes of one leaf of the tree near a point. These are
+  /// likely, but not certain, to include the nearest box: their smallest distance is an upper bound
+  /// with which any_within() and for_each_within() visit less. Without a tree (up to kScanned
+  /// boxes) nothing is visited. O(log n), does not allocate.
   template <class Visitor>
   void for_some_near(const Vec2& point_m, Visitor&& visit) const {
     if (tree_.empty()) return;
@@ -91,17 +108,18 @@ class BoxIndex {
   }
 
  private:
-  // In depth-first order: a node's first child follows it, and past its last descendant is `skip`.
+  // Nodes are in depth-first order: a node's first child follows it, `skip` is the index behind its
+  // last descendant.
   struct Node {
     Box box;
     std::uint32_t skip = 0;
-    std::uint32_t first = 0;  // of order_, in a leaf; an inner node has none of its own
+    std::uint32_t first = 0;  // range [first, last) of order_ in a leaf; empty in an inner node
     std::uint32_t last = 0;
   };
 
   void build(std::uint32_t first, std::uint32_t last);
 
-  // The tests that decide take distances otherwise than boxes do: rounding must not hide a box.
+  // Callers compute distances by other formulas than boxes do: rounding must not hide a box.
   double widened_squared(double reach_m) const {
     const double widened_m = std::max(0.0, reach_m) * (1.0 + 1e-12) + hair_m_;
     return widened_m * widened_m;

@@ -4,30 +4,37 @@
 
 #include "swarmflow/mission/mission.hpp"
 
-/// What bodies can do, as agent and planner both count on it.
 namespace swarm {
 
-/// How long a body may take until it moves at the velocity it was commanded [s]: from full speed to
-/// rest, v_max/a_max; a unicycle turns by a quarter first. Zero for a single integrator.
+/// λ: longest time that a body takes to reach a commanded velocity [s], from the model's name and
+/// limits:
+///
+///   double_integrator  v_max / a_max
+///   unicycle           v_max / a_max + (π/2) / ω_max     (it turns by 90° first)
+///   any other          0
 double body_lag_s(const BodySpec& body);
 
-/// The density and the speed of a plan that robots can follow. The most restrictive body of the
-/// mission decides each number.
+/// Density and speed of a plan that robots can follow. Each number is the one of the most
+/// restrictive body of the mission.
 struct SwarmLimits {
-  /// Robots that fit: hexagonal packing, 2/(√3 d²), at the distance d = 2r + neighbour margin +
-  /// ¼ v_max λ, λ the body's lag: by so much earlier its safety filter slows it down [robots/m²].
+  /// Density of a hexagonal packing [robots/m²]:
+  ///
+  ///   2/(√3 d²),   d = 2 r + safety.neighbour_margin_m + ¼ v_max λ
+  ///
+  /// λ is body_lag_s(): the safety filter slows a robot down earlier by that much.
   double packing_per_m2 = 0.0;
-  /// What a plan is capped at, ¾ of that: robots that flow need room to pass each other. In flights
-  /// of 500 robots the error of the swarm grows above 0.9 of the packing [robots/m²].
+  /// Density cap of plans, ¾ of that packing: robots that flow need room to pass each other
+  /// [robots/m²]. In runs of 500 robots the error of the swarm grows above 0.9 of the packing.
   double cap_per_m2 = 0.0;
-  /// Speed of the means at most: 0.9 of the slowest robot's, so that a robot that fell behind
-  /// catches up; for bodies with λ ≥ 0.5 s 0.7 of it, linear in between [m/s].
+  /// Largest speed of a plan's means [m/s]: (0.9 − 0.4/s · min(λ, 0.5 s)) of the slowest robot's
+  /// speed, so that a robot that fell behind catches up.
   double plan_speed_mps = 0.0;
-  /// Speed that a plan may ask of a single robot: 0.93 of the slowest robot's [m/s].
+  /// Largest speed that a plan may demand of a single robot: 0.93 of the slowest robot's [m/s].
   double robot_speed_mps = 0.0;
 };
 
-/// A robot's speed is the smaller of its largest speed and control.cruise_mps.
+/// The limits of a mission. A robot's speed is the smaller of its speed_max_mps and
+/// control.cruise_mps. O(groups).
 SwarmLimits swarm_limits(const RobotsSpec& robots, const SafetySpec& safety,
                          const ControlSpec& control);
 

@@ -11,38 +11,41 @@
 
 namespace swarm {
 
-/// A component as a mission may ask for it: its name and the options it reads.
+/// A component that a mission may name, and the options that it reads.
 struct ComponentSpec {
-  std::string name;
-  std::string doc;  ///< one sentence
-  std::vector<OptionSpec> options;
+  std::string name;                 ///< value of planner.method, control.method or robots.model
+  std::string doc;                  ///< one sentence for help and documentation
+  std::vector<OptionSpec> options;  ///< keys that it reads from its section
 };
 
 /// The components of one section of the mission file, by name.
 using Components = std::vector<ComponentSpec>;
 
-/// Null if there is none of this name.
+/// The component of this name; null if there is none. O(components).
 const ComponentSpec* find_component(const Components& components, std::string_view name);
 
 /// What the programs of a run can do: the names and keys that a mission file may use. A program
-/// describes itself by `--describe`; the launcher checks a mission against what the programs that
-/// it is going to start describe.
+/// prints its own by `--describe`; the launcher checks a mission against those of the programs that
+/// it is going to start. Built-in components are always known and need not be listed.
 ///
-/// In an open section names and keys that are not known are accepted as they are: a robot program
-/// does not know the planner's keys, and a recording's programs may not be at hand.
+/// In an open section unknown names and keys are accepted as they are: a robot program does not
+/// know the planner's keys, and the programs of a recording may not be at hand.
 struct Catalogue {
-  Components planning_methods;  ///< planner.method and keys beside it
-  Components control_methods;   ///< control.method and keys beside it
-  Components drivers;           ///< robots.model and keys beside it
-  bool planning_is_open = false;
-  bool robots_are_open = false;  ///< control methods and drivers
+  Components planning_methods;    ///< values of planner.method and keys of `planner:`
+  Components control_methods;     ///< values of control.method and keys of `control:`
+  Components drivers;             ///< values of robots.model and keys of `robots:`
+  bool planning_is_open = false;  ///< whether `planner:` is an open section
+  bool robots_are_open = false;   ///< whether `control:` and `robots:` are open sections
 };
 
-/// A catalogue that accepts any name and any scalar key in all these sections.
+/// A catalogue that accepts any name and any scalar key in all these sections, unchecked.
 Catalogue open_catalogue();
 
-/// As JSON, for `--describe`; `describe` reads back to an equal catalogue.
+/// The components as JSON, for `--describe`. Which sections are open is not written; ranges must be
+/// finite.
 std::string to_json(const Catalogue& catalogue);
+/// Reads what to_json() wrote. kBadInput if it is not such JSON; `name` is the program that printed
+/// it, for the message.
 Result<Catalogue> catalogue_from_json(std::string_view text, const std::string& name);
 
 }  // namespace swarm

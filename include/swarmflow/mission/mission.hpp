@@ -20,167 +20,176 @@
 
 namespace swarm {
 
-/// Everything a mission file says, with its defaults. One struct per top-level key, one field per
-/// key of the file, the same names. Components take their own options, never the Mission.
+// The content of a mission file, with its defaults: one struct per top-level key, one member per
+// key of the file, the same names. Ranges are checked when a file is read. Components take their
+// own options, never the Mission.
 
 /// A robot's body. Noise is zero-mean, Gaussian and independent per axis and control step.
 struct BodySpec {
-  std::string model = "single_integrator";  ///< or unicycle, double_integrator
-  double radius_m = 0.2;
-  double speed_max_mps = 1.5;
-  double acceleration_max_mps2 = 3.0;  ///< unicycle (along its heading) and double integrator
-  double turn_rate_max_radps = 3.0;    ///< unicycle
-  double hear_radius_m = 0.0;          ///< its sensing range; 0 = link.hear_radius_m
-  double motion_noise_m = 0.0;         ///< σ of w(k) [ROVER, eq. 9]
-  double position_noise_m = 0.0;       ///< σ of its measured position
-  OptionValues options{};              ///< of its driver
+  std::string model = "single_integrator";  ///< name of its driver; or unicycle, double_integrator
+  double radius_m = 0.2;                    ///< radius of the disc that covers it
+  double speed_max_mps = 1.5;               ///< its largest speed [m/s]
+  double acceleration_max_mps2 = 3.0;  ///< of unicycle (along its heading) and double integrator
+  double turn_rate_max_radps = 3.0;    ///< of unicycle [rad/s]
+  double hear_radius_m = 0.0;          ///< its communication radius; 0: link.hear_radius_m
+  double motion_noise_m = 0.0;         ///< σ of w(k) per control step [ROVER, eq. 9]
+  double position_noise_m = 0.0;       ///< σ of its measured position [m]
+  OptionValues options{};              ///< options that its driver declares
 };
 
 /// A number of robots that differ from the others.
 struct RobotGroupSpec : BodySpec {
-  std::uint32_t count = 1;
+  std::uint32_t count = 1;  ///< number of robots with this body
 };
 
+/// Key `robots`: the swarm; its own BodySpec holds for robots outside of groups.
 struct RobotsSpec : BodySpec {
-  std::uint32_t count = 100;
-  double placement_gap_m = 0.7;  ///< least surface gap to robots and obstacles at the start
-  /// The first ids, group after group; the rest are as the keys beside it say.
+  std::uint32_t count = 100;     ///< number of robots, N
+  double placement_gap_m = 0.7;  ///< least gap between surfaces at the start [m]
+  /// Groups with other bodies: they have the first ids, group after group.
   std::vector<RobotGroupSpec> groups;
 };
 
-/// The body of one robot. \pre robot < robots.count
+/// The body of one robot; a reference into `robots`. O(groups). \pre robot < robots.count, asserted
 const BodySpec& body_of(const RobotsSpec& robots, RobotId robot);
-/// The largest radius of any robot [m].
+/// The largest radius of any robot [m]. O(groups).
 double largest_radius_m(const RobotsSpec& robots);
 
+/// Key `planner`: the planning method, and the options of the built-in ones.
 struct PlannerSpec {
-  std::string method = "swarmprm";  ///< or rover, crops, adoc
-  /// Means by a low-discrepancy sequence, shapes squeezed to keep the risk limit (fit), or uniform
-  /// with rejection, as printed in the paper (uniform: finds a plan less often).
+  std::string method = "swarmprm";  ///< its name; or rover, crops, adoc
+  /// swarmprm: means by a low-discrepancy sequence, shapes squeezed to keep the risk limit (fit),
+  /// or uniform means with rejection, as printed in the paper (uniform: finds a plan less often).
   std::string sampler = "fit";  ///< or halton: low-discrepancy means with rejection
-  /// What the density cap counts: mass through a node at each time, or (static, as printed) ever.
+  /// swarmprm: what the cap bounds: mass at a node at each time, or (static, as printed) in total.
   std::string density_cap = "timed";
   std::uint32_t samples = 500;        ///< n of Alg. 1
   double connection_radius_m = 20.0;  ///< r of Alg. 1, in W₂
-  double risk_alpha = 0.05;           ///< α
-  double risk_delta_m = -0.2;         ///< δ
-  double sigma_min_m = 1.0;           ///< sampler range of σ₁, σ₂
-  double sigma_max_m = 3.0;
-  double rho_max = 0.6;           ///< sampler range of |ρ|
+  double risk_alpha = 0.05;           ///< α of RiskLimit
+  double risk_delta_m = -0.2;         ///< δ of RiskLimit [m]
+  double sigma_min_m = 1.0;           ///< sampler range of σ₁, σ₂ [m]
+  double sigma_max_m = 3.0;           ///< its upper end [m]
+  double rho_max = 0.6;               ///< sampler range of |ρ|
   double bridge_share = 0.3;      ///< share of samples drawn by the Gaussian sampler of ref. [20]
-  double bridge_sigma_m = 10.0;   ///< spread of its pairs
-  std::uint32_t shortcuts = 200;  ///< smoothing tries per route, 0 = publish the roadmap's routes
-  double speed_mps = 1.25;        ///< speed of the Gaussians along a route
-  /// swarmprm and rover: robots/m² at most; 0 = no cap. Unset, `auto` in the file: swarmprm plans
-  /// at a density and a speed that the bodies can follow (body_limits.hpp), the others without a
-  /// cap.
+  double bridge_sigma_m = 10.0;   ///< spread of that sampler's pairs [m]
+  std::uint32_t shortcuts = 200;  ///< smoothing tries per route; 0: none
+  double speed_mps = 1.25;        ///< speed of the means along a route [m/s]
+  /// swarmprm and rover: density cap [robots/m²]; 0: no cap. Empty, `auto` in the file: swarmprm
+  /// plans at a density and a speed that the bodies can follow (body_limits.hpp), the others plan
+  /// without a cap.
   std::optional<double> density_cap_per_m2;
-  double collocation_spacing_m = 10.0;              ///< rover and adoc: grid of the set C
-  double collocation_sigma_m = 7.0710678118654755;  ///< … Σ_c = σ² I
-  double transport_radius_m = 22.5;                 ///< … of Assumption 2, in W₂
-  std::uint32_t horizon = 3;                        ///< rover: h
-  double replan_period_s = 1.0;    ///< rover: a plan from where the robots are each
-  double adoc_penalty = 20.0;      ///< adoc: of the share of a Gaussian that is in obstacles
-  double crops_clearance_m = 0.5;  ///< crops: nodes nearer to an obstacle are discarded
+  double collocation_spacing_m = 10.0;              ///< rover, adoc: grid of the set C [m]
+  double collocation_sigma_m = 7.0710678118654755;  ///< … their Σ_c = σ² I
+  double transport_radius_m = 22.5;                 ///< … radius of Assumption 2, in W₂
+  std::uint32_t horizon = 3;                        ///< rover: h, in steps
+  double replan_period_s = 1.0;    ///< rover: period of plans from measured positions
+  double adoc_penalty = 20.0;      ///< adoc: cost of the share in obstacles
+  double crops_clearance_m = 0.5;  ///< crops: least distance of nodes to obstacles
   double crops_power = 3.0;  ///< crops: p of w(q) = (Σ dist)ᵖ; 3 in the paper, 1 in its code
-  double crops_goal_radius_m = 1.0;  ///< crops: of the intermediate goals
-  OptionValues options{};            ///< of a planning method that declares its own
+  double crops_goal_radius_m = 1.0;  ///< crops: radius of the intermediate goals [m]
+  OptionValues options{};            ///< options that a registered method declares
 };
 
+/// Key `control`: the control method, and the options of the built-in ones.
 struct ControlSpec {
-  std::string method = "apf";  ///< or crops, intermittent_diffusion
-  /// apf: keep the plan's times (plan), or travel the planned path at one's own speed (free).
+  std::string method = "apf";  ///< its name; or crops, intermittent_diffusion
+  /// apf: keep the plan's times (plan), or travel the planned path at cruise speed (free).
   std::string tracking = "plan";
-  double rate_hz = 10.0;
-  double cruise_mps = 1.45;       ///< largest desired speed along the path
-  double look_ahead_s = 6.0;      ///< pursuit: how far ahead on its path a robot aims
-  double pace_gain_hz = 0.3;      ///< tracking plan: speed per metre behind the reference position
-  double keep_clearance_m = 1.0;  ///< pursuit: planned clearance up to this is not cut away
-  double density_push_mps = 0.0;  ///< apf: largest speed towards the planned density; 0 = off
-  double neighbour_gap_m = 1.0;   ///< d0: neighbours nearer than this push
-  double neighbour_push_mps = 0.6;  ///< speed of that push at contact
-  double obstacle_gap_m = 0.5;      ///< obstacles nearer than this push
-  double obstacle_push_mps = 1.0;
-  double approach_gain_hz = 0.8;  ///< P-gain towards the aim point near the end
-  double stuck_after_s = 4.0;     ///< no progress for this long → diffusion to a place nearby
-  double escape_spread_m = 4.0;   ///< largest standard deviation per axis of such places
-  double escape_s = 5.0;          ///< longest way to one
+  double rate_hz = 10.0;            ///< rate of the control loop, 1/Δt
+  double cruise_mps = 1.45;         ///< largest desired speed along the path [m/s]
+  double look_ahead_s = 6.0;        ///< apf, crops: how far ahead on its path a robot aims
+  double pace_gain_hz = 0.3;        ///< apf: speed per metre behind the reference
+  double keep_clearance_m = 1.0;    ///< apf: clearance up to which corners are not cut
+  double density_push_mps = 0.0;    ///< apf: largest speed towards planned density; 0: off
+  double neighbour_gap_m = 1.0;     ///< apf: d₀, neighbours nearer than this repel [m]
+  double neighbour_push_mps = 0.6;  ///< apf: speed of that repulsion at contact
+  double obstacle_gap_m = 0.5;      ///< s₀, obstacles nearer repel (not crops)
+  double obstacle_push_mps = 1.0;   ///< speed of that repulsion at contact
+  double approach_gain_hz = 0.8;    ///< speed per metre to the end of the path
+  double stuck_after_s = 4.0;       ///< apf, crops: without progress for this long, it escapes
+  double escape_spread_m = 4.0;     ///< apf: largest σ per axis of an escape's target [m]
+  double escape_s = 5.0;            ///< apf, crops: longest duration of an escape
   // intermittent_diffusion, Alg. 1 of its paper
-  double diffusion_strength_m2 = 0.01;    ///< G₀
-  double diffusion_range_m = 0.0;         ///< R; 0 = 10 robots.radius_m
-  double diffusion_tolerance_m2 = 0.045;  ///< of a robot's F + G
+  double diffusion_strength_m2 = 0.01;    ///< G₀ [m²]
+  double diffusion_range_m = 0.0;         ///< R; 0: 10 robots.radius_m
+  double diffusion_tolerance_m2 = 0.045;  ///< F + G up to which a robot has arrived
   double diffusion_gain_hz = 4.0;         ///< speed per gradient, as far as the step bound allows
   double diffusion_flow_s = 2.5;          ///< longest gradient flow before diffusing (i_max steps)
   double diffusion_noise_mps05 = 3.0;     ///< largest σ of the virtual diffusion [m/√s]
-  double diffusion_time_s = 10.0;         ///< its longest duration; 0 = plain gradient descent
-  OptionValues options{};                 ///< of a control method that declares its own
+  double diffusion_time_s = 10.0;         ///< its longest duration; 0: gradient descent alone
+  OptionValues options{};                 ///< options that a registered method declares
 };
 
+/// Key `safety`: the safety filter between every control method and the driver.
 struct SafetySpec {
   double gap_share = 0.5;            ///< γ: share of the gap a robot may close by one command
-  double stale_gain = 1.0;           ///< a: how much slower by what is known late
-  double neighbour_margin_m = 0.25;  ///< m
-  double obstacle_margin_m = 0.05;   ///< m_o
-  double follow_share = 0.8;         ///< β: how much of a neighbour's retreat may be used
+  double stale_gain = 1.0;           ///< a: extra closing time per information age
+  double neighbour_margin_m = 0.25;  ///< m: gap kept to other robots [m]
+  double obstacle_margin_m = 0.05;   ///< m_o: gap kept to obstacles and bounds [m]
+  double follow_share = 0.8;         ///< β: usable share of a neighbour's retreating speed
 };
 
+/// Key `link`: which states are received, and when they are published.
 struct LinkSpec {
-  double cell_size_m = 100.0;        ///< of the topics channel
-  double hear_radius_m = 4.0;        ///< states of robots this near must be heard
-  double join_margin_m = 6.0;        ///< a cell is joined this much before it is needed
-  double leave_margin_m = 9.0;       ///< and left this much after
-  double group_cell_size_m = 5.0;    ///< of the groups channel, whose cells cost no discovery
-  double send_error_m = 0.05;        ///< dead reckoning: speak when extrapolation is off by this
-  double send_interval_max_s = 0.5;  ///< … or this old
-  double send_near_m = 1.0;          ///< … or, on a poor link, while a surface is this near
-  double status_hz = 1.0;
+  double cell_size_m = 100.0;        ///< side of a cell of the topics channel [m]
+  double hear_radius_m = 4.0;        ///< communication radius [m]
+  double join_margin_m = 6.0;        ///< a cell is joined this much before it is needed [m]
+  double leave_margin_m = 9.0;       ///< and left this much after [m]
+  double group_cell_size_m = 5.0;    ///< side of a cell of the groups channel [m]
+  double send_error_m = 0.05;        ///< a state is published when extrapolation is off by this
+  double send_interval_max_s = 0.5;  ///< … or when the last one is this old
+  double send_near_m = 1.0;          ///< … or, on a degraded link, while a surface is this near
+  double status_hz = 1.0;            ///< rate of a robot's statuses
 };
 
+/// Key `timing`: timeouts between processes.
 struct TimingSpec {
-  double heartbeat_hz = 5.0;
-  double planner_silence_s = 2.0;   ///< silent planner → hold, avoidance on
-  double neighbour_forget_s = 2.0;  ///< until then its radius grows by v_max · age
-  double clock_skew_warn_s = 0.25;
-  double clock_skew_refuse_s = 10.0;
+  double heartbeat_hz = 5.0;          ///< rate of the planner's heartbeats
+  double planner_silence_s = 2.0;     ///< robots hold after this time without a heartbeat
+  double neighbour_forget_s = 2.0;    ///< a neighbour is forgotten after this time without a state
+  double clock_skew_warn_s = 0.25;    ///< stamps off by more are reported
+  double clock_skew_refuse_s = 10.0;  ///< messages from further in the future are refused
 };
 
 /// The plan's clock τ: how far it slows down when the swarm falls behind the plan.
 struct PlanClockSpec {
-  double lag_quantile = 0.75;    ///< of the robots' lags; the clock looks at this one
-  double lag_free_s = 2.0;       ///< up to this lag τ advances with time
-  double lag_stop_s = 8.0;       ///< at this lag it would stand still, were there no least rate
-  double rate_min = 0.2;         ///< τ advances at least this fast; 1 = the clock never slows down
-  double hopeless_lag_s = 30.0;  ///< robots later than this do not slow it down; they are named
+  double lag_quantile = 0.75;    ///< quantile L of the robots' lags that sets the rate
+  double lag_free_s = 2.0;       ///< L₀: up to this lag τ advances with time
+  double lag_stop_s = 8.0;       ///< L₁: lag at which the rate would be 0 without rate_min
+  double rate_min = 0.2;         ///< least dτ/dt; 1: the clock never slows down
+  double hopeless_lag_s = 30.0;  ///< robots later than this do not count; they are reported
 };
 
+/// Key `launcher`: start and end of a run's processes.
 struct LauncherSpec {
-  double starts_per_s = 60.0;
-  std::uint32_t starting_max = 8;  ///< processes started and not heard yet
-  double quorum_share = 1.0;       ///< after the time-out this share of robots is enough
-  double quorum_timeout_s = 30.0;  ///< until then all are waited for; the missing are named
-  double time_limit_s = 600.0;     ///< of mission time
-  std::uint32_t respawn_planner_max = 3;
-  std::uint32_t respawn_agent_max = 0;
+  double starts_per_s = 60.0;      ///< rate of process starts
+  std::uint32_t starting_max = 8;  ///< most processes started but not received yet
+  double quorum_share = 1.0;       ///< share of robots that is enough after the timeout
+  double quorum_timeout_s = 30.0;  ///< until then all are waited for; missing ones are reported
+  double time_limit_s = 600.0;     ///< longest mission time
+  std::uint32_t respawn_planner_max = 3;  ///< most restarts of the planner
+  std::uint32_t respawn_agent_max = 0;    ///< most restarts of each agent process
 };
 
-/// What the audit demands of a run beyond arrival and no contact. A bar that is not set is not
-/// judged; one whose quantity cannot be computed from the run fails it. The quantities and how they
-/// are measured: swarm_monitor/tracking/tracking.hpp.
+/// Key `criteria`: what the audit demands of a run beyond arrival and no contact. A bar that is not
+/// set is not judged; one whose quantity cannot be computed from the run fails it. The quantities
+/// and how they are measured: "Tracking" in docs/architecture.md.
 struct CriteriaSpec {
+  /// A limit; empty: not judged.
   using Bar = std::optional<double>;
-  Bar w2_ratio_max{};       ///< mean W2 of swarm and χ(τ) over the mean floor of sampling
-  Bar w2_half_ratio_max{};  ///< the same while at most half of the robots have arrived
-  Bar w2_end_ratio_max{};   ///< W2 of the last positions to the goal mixture over its floor
-  Bar centre_lag_max_s{};   ///< amount of the signed lag of the swarm's centre
-  Bar lag_p90_max_s{};      ///< 90 % of the amounts of the robots' signed lags
-  Bar lag_p99_max_s{};
-  Bar clock_error_max_s{};    ///< amount by which a robot's τ differs from the published one
-  Bar reference_p50_max_m{};  ///< distance of robots under way to their own references
-  Bar reference_p95_max_m{};
-  Bar reference_rms_max_m{};
+  Bar w2_ratio_max{};              ///< mean W2 of swarm and χ(τ) over the mean floor of sampling
+  Bar w2_half_ratio_max{};         ///< the same while at most half of the robots have arrived
+  Bar w2_end_ratio_max{};          ///< W2 of the last positions to the goal mixture over its floor
+  Bar centre_lag_max_s{};          ///< amount of the signed lag of the swarm's centre
+  Bar lag_p90_max_s{};             ///< 90 % of the amounts of the robots' signed lags
+  Bar lag_p99_max_s{};             ///< the same for 99 %
+  Bar clock_error_max_s{};         ///< amount by which a robot's τ differs from the published one
+  Bar reference_p50_max_m{};       ///< median distance of robots under way to their references
+  Bar reference_p95_max_m{};       ///< 95 % of these distances
+  Bar reference_rms_max_m{};       ///< root mean square of these distances
   Bar density_over_cap_p95_max{};  ///< flown peak over the cap, minus 1, at 95 % of times
-  Bar density_over_cap_max{};      ///< … always
-  Bar planned_over_cap_max{};      ///< planned peak over the cap, minus 1, always
+  Bar density_over_cap_max{};      ///< the same at all times
+  Bar planned_over_cap_max{};      ///< planned peak over the cap, minus 1, at all times
   Bar cvar_kept_share_min{};  ///< share of times with the executed CVaR ≤ planner.risk_delta_m
   Bar own_place_share_min{};  ///< share of robots within 0.7 m of their last reference
   Bar path_ratio_max{};       ///< mean path over the geodesic bound
@@ -189,33 +198,35 @@ struct CriteriaSpec {
 };
 
 struct Mission;
-/// The largest sensing range of any robot [m].
+/// The largest communication radius of any robot [m]. O(groups).
 double hears_farthest_m(const Mission& mission);
 
-/// What script and user may ask of a running mission: a command to all, or a change of the scene.
+/// What script and operator may do to a running mission: a command to all, or a scene change.
 using MissionAction = std::variant<CommandKind, SceneChange>;
 
+/// One entry of key `script`.
 struct ScriptEvent {
-  double at_s = 0.0;  ///< mission time
-  MissionAction action = CommandKind::kPause;
+  double at_s = 0.0;                           ///< mission time at which it is due [s]
+  MissionAction action = CommandKind::kPause;  ///< what is done then
 };
 
+/// A whole mission, as load_mission() reads it.
 struct Mission {
-  std::string name = "mission";
-  World world;
-  RobotsSpec robots;
-  Mixture start;
-  Mixture goal;
-  std::shared_ptr<const ShapeField> goal_shape;  ///< the drawing `goal` was fitted to; null = none
-  PlannerSpec planner;
-  ControlSpec control;
-  SafetySpec safety;
-  LinkSpec link;
-  TimingSpec timing;
-  PlanClockSpec plan_clock;
-  LauncherSpec launcher;
-  CriteriaSpec criteria;
-  std::vector<ScriptEvent> script;  ///< ordered by at_s
+  std::string name = "mission";                  ///< 1 to 64 letters, digits, _ - .
+  World world;                                   ///< map at the start
+  RobotsSpec robots;                             ///< the swarm
+  Mixture start;                                 ///< where it starts
+  Mixture goal;                                  ///< where it is to be
+  std::shared_ptr<const ShapeField> goal_shape;  ///< the drawing `goal` was fitted to; null: none
+  PlannerSpec planner;                           ///< planning method and options
+  ControlSpec control;                           ///< control method and options
+  SafetySpec safety;                             ///< safety filter
+  LinkSpec link;                                 ///< communication
+  TimingSpec timing;                             ///< timeouts
+  PlanClockSpec plan_clock;                      ///< the plan's clock
+  LauncherSpec launcher;                         ///< processes
+  CriteriaSpec criteria;                         ///< bars of the audit
+  std::vector<ScriptEvent> script;               ///< scripted actions, by ascending at_s
 };
 
 }  // namespace swarm

@@ -11,23 +11,28 @@
 
 namespace swarm {
 
-/// Largest mission file read.
+/// Size of the largest mission file that is read [bytes].
 inline constexpr std::size_t kMaxMissionBytes = 16U << 20U;
 
 /// Reads a mission from YAML. Strict: every key is known, used once, in range and of the right
-/// type; the world is well-formed; start and goal lie inside it. On failure the error holds *all*
-/// violations, one per line, as `file:line:column: what is wrong; what would be right`. `name` is
-/// only used in messages; a goal's bitmap is looked for in `directory`. `catalogue`: the components
-/// beside the built-in ones that the mission may name, and their keys. Never throws.
+/// type; the world is well-formed; start and goal lie inside it. Never throws.
+/// \param yaml text of the file
+/// \param name name of the file, for messages only
+/// \param directory where the bitmap of a goal is looked for
+/// \param catalogue components beside the built-in ones that the mission may name, and their keys
+/// \return kBadInput with *all* violations, one per line, as `file:line:column: what is wrong;
+///   what would be right`
 Result<Mission> parse_mission(std::string_view yaml, const std::string& name,
                               const std::filesystem::path& directory = {},
                               const Catalogue& catalogue = {});
 
-/// Reads and parses a file.
+/// Reads and parses a mission file; its bitmaps are looked for beside it. Errors as of
+/// parse_mission(), kBadInput too if the file cannot be read.
 Result<Mission> load_mission(const std::filesystem::path& file, const Catalogue& catalogue = {});
 
-/// The mission with every default written out, as YAML that parse_mission() reads back to an equal
-/// mission (defends logged runs against changing defaults).
+/// The mission as YAML with every default written out, which parse_mission() reads back to an equal
+/// mission: a logged run does not depend on later defaults. Of options that components declare only
+/// those are written that the mission sets.
 std::string to_yaml(const Mission& mission);
 
 }  // namespace swarm

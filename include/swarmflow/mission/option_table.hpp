@@ -13,17 +13,21 @@
 namespace swarm {
 
 /// Binds the keys of a component's options to the members of its own struct, each stated once with
-/// its range and one line of documentation. The struct's initialisers are the defaults:
+/// its range and one line of documentation. The struct's initialisers are the defaults; they are
+/// not checked against the ranges:
 ///
 ///   struct SpiralOptions { double gain_hz = 0.5; std::uint32_t turns = 3; };
 ///   const auto kTable = OptionTable<SpiralOptions>()
 ///       .number("gain_hz", &SpiralOptions::gain_hz, positive(10), "speed per metre off the path")
 ///       .count("turns", &SpiralOptions::turns, between(1, 100), "turns before it gives up");
-///   kTable.specs()        what a registry and a mission's reader need
+///   kTable.specs()        for the ComponentSpec of a registry
 ///   kTable.read(values)   the struct with a mission's values
+///
+/// \tparam T a struct that can be default-constructed and copied
 template <class T>
 class OptionTable {
  public:
+  /// Adds an option of kind kNumber: its key, member, accepted numbers and documentation.
   OptionTable& number(std::string key, double T::*member, Range range, std::string doc) {
     add(std::move(key), OptionSpec::Kind::kNumber, range, std::move(doc));
     specs_.back().fallback = text(T{}.*member);
@@ -33,6 +37,7 @@ class OptionTable {
     return *this;
   }
 
+  /// Adds an option of kind kCount: its key, member, accepted numbers and documentation.
   OptionTable& count(std::string key, std::uint32_t T::*member, Range range, std::string doc) {
     add(std::move(key), OptionSpec::Kind::kCount, range, std::move(doc));
     specs_.back().fallback = std::to_string(T{}.*member);
@@ -42,6 +47,7 @@ class OptionTable {
     return *this;
   }
 
+  /// Adds an option of kind kChoice: its key, member, accepted words and documentation.
   OptionTable& choice(std::string key, std::string T::*member, std::vector<std::string> words,
                       std::string doc) {
     add(std::move(key), OptionSpec::Kind::kChoice, {}, std::move(doc));
@@ -53,8 +59,11 @@ class OptionTable {
     return *this;
   }
 
+  /// The specs of all options, in the order of their calls.
   const std::vector<OptionSpec>& specs() const { return specs_; }
 
+  /// The struct with the values that are set, defaults for the others. Values are expected to be
+  /// checked: a number that cannot be read counts as not set. Cost: a lookup per option.
   T read(const OptionValues& values) const {
     T out;
     for (std::size_t i = 0; i < specs_.size(); ++i) readers_[i](out, values, specs_[i].key);

@@ -7,20 +7,32 @@
 
 namespace swarm {
 
-/// Where a mission stands. Moved by commands; kStopped is final.
-enum class MissionPhase : std::uint8_t { kReady = 0, kRunning = 1, kPaused = 2, kStopped = 3 };
+/// Phase of a mission; changed by commands (phase_after()). The numbers are those of the messages.
+enum class MissionPhase : std::uint8_t {
+  kReady = 0,    ///< not started yet: robots wait at their start positions
+  kRunning = 1,  ///< robots follow the plan
+  kPaused = 2,   ///< robots hold their positions, the plan's clock is stopped
+  kStopped = 3   ///< emergency stop; final
+};
 
-enum class CommandKind : std::uint8_t { kStart = 0, kPause = 1, kResume = 2, kStop = 3 };
+/// A command to the whole swarm, from launcher, script or operator.
+enum class CommandKind : std::uint8_t {
+  kStart = 0,   ///< begins the mission; its stamp is t0 of mission time
+  kPause = 1,   ///< holds all robots
+  kResume = 2,  ///< continues after a pause
+  kStop = 3     ///< emergency stop: zero velocity, for good
+};
 
 /// What a robot is doing.
 enum class RobotMode : std::uint8_t {
   kWaiting = 0,  ///< no plan yet, or the mission has not started: holds with avoidance on
-  kMoving = 1,
-  kHolding = 2,  ///< planner silent or mission paused: holds with avoidance on
-  kArrived = 3,
-  kStopped = 4,  ///< emergency stop, latched: zero velocity
+  kMoving = 1,   ///< follows its route
+  kHolding = 2,  ///< planner silent, mission paused or no position: holds with avoidance on
+  kArrived = 3,  ///< at its final position, which it keeps with avoidance on
+  kStopped = 4,  ///< emergency stop or failed control method, latched: zero velocity
 };
 
+/// The phase as files and messages for people name it: "ready", "running", "paused", "stopped".
 constexpr std::string_view to_string(MissionPhase phase) {
   switch (phase) {
     case MissionPhase::kReady:
@@ -35,6 +47,7 @@ constexpr std::string_view to_string(MissionPhase phase) {
   return "unknown";
 }
 
+/// The command as a script names it: "start", "pause", "resume", "stop".
 constexpr std::string_view to_string(CommandKind kind) {
   switch (kind) {
     case CommandKind::kStart:
@@ -49,6 +62,7 @@ constexpr std::string_view to_string(CommandKind kind) {
   return "unknown";
 }
 
+/// The mode as logs and views name it: "waiting", "moving", "holding", "arrived", "stopped".
 constexpr std::string_view to_string(RobotMode mode) {
   switch (mode) {
     case RobotMode::kWaiting:
@@ -65,8 +79,8 @@ constexpr std::string_view to_string(RobotMode mode) {
   return "unknown";
 }
 
-/// The phase after a command, for planner, agents and launcher alike. A stop always holds; what
-/// makes no sense in a phase (pausing before the start) changes nothing.
+/// The phase after a command, the same in planner, agents and launcher. A stop is always obeyed; a
+/// command that does not apply in a phase (a pause before the start) changes nothing.
 constexpr MissionPhase phase_after(MissionPhase phase, CommandKind kind) {
   if (phase == MissionPhase::kStopped || kind == CommandKind::kStop) return MissionPhase::kStopped;
   switch (kind) {

@@ -7,11 +7,11 @@
 
 namespace swarm::planner {
 
-/// A local maximum of the density N χ(t)(x) of a plan's mixture.
+/// A local maximum of the density N χ(t)(x) of a plan's mixture, N the number of robots.
 struct DensityPeak {
-  double per_m2 = 0.0;  ///< [robots/m²]
-  MissionTime time{0};
-  Vec2 at_m = Vec2::Zero();
+  double per_m2 = 0.0;       ///< the density [robots/m²]
+  MissionTime time{0};       ///< plan time of the maximum [s]
+  Vec2 at_m = Vec2::Zero();  ///< its position [m]
 };
 
 }  // namespace swarm::planner

@@ -11,21 +11,25 @@
 
 namespace swarm::planner {
 
-/// What to plan: the flow of a swarm from one mixture to another. Refers to objects of the caller,
-/// which outlive the call but not more: a method that needs them later copies them.
+/// The input of a planning method: the flow of a swarm from one mixture to another is wanted.
+/// Refers to objects of the caller, valid during the call: a method that needs them later copies
+/// them.
 struct PlanRequest {
-  const World& world;    ///< bounds and obstacles as they are now [m]
-  const Mixture& start;  ///< where the swarm is; its components are the sources of the plan
-  const Mixture& goal;   ///< where it shall be; its components are the sinks of the plan
+  /// Bounds and obstacles as they are now; an obstacle that moves may occur at several positions,
+  /// those it has until the next plan. Includes bodies of fallen robots where a plan around them is
+  /// tried.
+  const World& world;
+  const Mixture& start;  ///< where the swarm is; component i is to be source i of the plan
+  const Mixture& goal;   ///< where it is to be; the means of its components are those of the sinks
 };
 
-/// Tells the time for statistics. Plans do not depend on it.
+/// Returns the present time, for statistics; plans must not depend on it. A test passes its own.
 using StageClock = std::function<SteadyTime()>;
 
 /// What a method may use while it plans.
 struct PlanContext {
-  Rng& rng;          ///< the only source of chance: the same state gives the same plan
-  StageClock clock;  ///< for PlanStats
+  Rng& rng;          ///< the only source of randomness: the same state gives the same plan
+  StageClock clock;  ///< for the times in PlanStats; not empty
 };
 
 }  // namespace swarm::planner

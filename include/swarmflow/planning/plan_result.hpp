@@ -13,50 +13,52 @@
 
 namespace swarm::planner {
 
-/// What a plan cost and how long its paths are, for reports. A method fills in what it knows;
-/// `nodes`, `edges`, `total_ms` and `densest` are filled in by Planner.
+/// Computing times and lengths of a plan, for reports. A method fills in what it knows, the rest
+/// stays 0; `nodes`, `edges`, `total_ms` and `densest` are overwritten by the planner program.
 struct PlanStats {
-  std::size_t nodes = 0;      ///< of PlanResult::roadmap
-  std::size_t edges = 0;      ///< of PlanResult::roadmap
-  double roadmap_ms = 0.0;    ///< sampling, neighbours, edge checks
-  double search_ms = 0.0;     ///< shortest routes, and the proof of those taken
-  double transport_ms = 0.0;  ///< LP (13)
-  double smoothing_ms = 0.0;
-  double total_ms = 0.0;
-  double raw_mean_path_m = 0.0;      ///< Σ mass · length of the route's mean, before smoothing
-  double planned_mean_path_m = 0.0;  ///< the same of the published plan
-  double cost_m = 0.0;               ///< Σ mass · W₂ length of the route
+  std::size_t nodes = 0;         ///< nodes of PlanResult::roadmap
+  std::size_t edges = 0;         ///< edges of PlanResult::roadmap
+  double roadmap_ms = 0.0;       ///< time for sampling, neighbour search and edge checks [ms]
+  double search_ms = 0.0;        ///< time for shortest routes, and the check of those in use [ms]
+  double transport_ms = 0.0;     ///< time for the transport problem [SwarmPRM, eq. 13] [ms]
+  double smoothing_ms = 0.0;     ///< time for shortening routes [ms]
+  double total_ms = 0.0;         ///< time of the whole call of PlanningMethod::plan() [ms]
+  double raw_mean_path_m = 0.0;  ///< Σ mass · length of the route's mean, before smoothing [m]
+  double planned_mean_path_m = 0.0;  ///< the same of the returned plan [m]
+  double cost_m = 0.0;               ///< Σ mass · W₂ length of the route [m]
   double cap_per_m2 = 0.0;           ///< density cap that the plan keeps [robots/m²]; 0 = none
-  bool cap_is_timed = false;         ///< no place is denser than the cap at any time of the plan
-  DensityPeak densest{};             ///< disc of 2 m, where a timed cap does not bound it
+  /// Whether the planned density is below the cap everywhere at every time of the plan, instead of
+  /// only the mass through each node being bounded.
+  bool cap_is_timed = false;
+  DensityPeak densest{};  ///< densest disc of 2 m radius; not computed where a timed cap bounds it
 };
 
-/// Something about a plan that its user should know, in one line.
+/// A property of a plan that its user should know; published as an event.
 struct PlanWarning {
-  std::string code;  ///< for programs, as `cap-raised`
-  std::string text;  ///< for people
+  std::string code;  ///< its kind, for programs, as `cap-raised`
+  std::string text;  ///< one line for people
 };
 
-/// By how much a plan breaks the risk limit, where it does so most. Only the plan of a swarm that
+/// By how much a plan breaks the risk limit, where it does so most. Only the plan for a swarm that
 /// breaks the limit already may do so.
 struct PlanExcess {
-  double by_m = 0.0;         ///< largest CVaR_α − δ; 0 where the limit is kept
-  std::size_t obstacle = 0;  ///< of the mission's world
-  MissionTime at{0};         ///< of the plan
+  double by_m = 0.0;         ///< largest CVaR_α − δ; 0 where the limit is kept [m]
+  std::size_t obstacle = 0;  ///< where: index into World::obstacles() of the request's world
+  MissionTime at{0};         ///< when: plan time [s]
 };
 
-/// `the plan breaks the risk limit by 0.120 m at obstacle 3, t = 12.0 s`
+/// The excess as one line: `the plan breaks the risk limit by 0.120 m at obstacle 3, t = 12.0 s`.
 std::string describe(const PlanExcess& excess);
 
-/// What a planning method returns.
+/// The output of a planning method.
 struct PlanResult {
-  /// FlowPlan::sources()[i] is start component i of the request. Sinks have the means of its goal
-  /// components.
+  /// The flow. FlowPlan::sources()[i] is start component i of the request (their number is
+  /// checked), and every sink has the mean of a goal component.
   FlowPlan plan;
-  Roadmap roadmap;  ///< what was searched, for drawings; may be empty
-  PlanStats stats;
-  std::vector<PlanWarning> warnings;
-  PlanExcess excess{};
+  Roadmap roadmap;                    ///< the graph that was searched, for drawings; may be empty
+  PlanStats stats;                    ///< computing times and lengths
+  std::vector<PlanWarning> warnings;  ///< published as events with the plan
+  PlanExcess excess{};                ///< by_m = 0 for a plan that keeps its constraints
 };
 
 }  // namespace swarm::planner

@@ -16,74 +16,94 @@
 
 namespace swarm::planner {
 
-/// Of what a method promises the risk limit CVaR_α ≤ δ.
+/// What a method guarantees to keep the risk limit CVaR_α ≤ δ (RiskLimit).
 enum class RiskPromise {
-  kNone,
-  kEveryGaussian,  ///< of every Gaussian of the plan, all along its legs
-  kMixture,        ///< of the mixture as a whole, at the times of the plan's nodes
+  kNone,           ///< no guarantee
+  kEveryGaussian,  ///< every Gaussian of the plan, all along its legs
+  kMixture,        ///< the mixture as a whole, at the times of the plan's nodes
 };
 
-/// What a method does and promises. Planner, audit and reports ask for it, so that none of them
-/// needs to know the method's name.
+/// Properties of a method. The planner program, audits and reports read them, so that none of them
+/// depends on the method's name.
 struct PlanningTraits {
-  RiskPromise risk_promise = RiskPromise::kNone;
-  /// Robots keep the plan's places and times, so its density and speed must suit their bodies:
-  /// Planner checks that. False where the plan is a guide.
+  RiskPromise risk_promise = RiskPromise::kNone;  ///< what keeps the risk limit
+  /// Whether robots are to be where the plan has them when it has them there: then its density and
+  /// speed are checked against what their bodies can do. False where the plan is only a guide.
   bool is_kept_in_time = false;
-  double speed_mps = 0.0;  ///< of the means along their routes; 0 where there is no such number
-  std::optional<double> density_cap_per_m2{};  ///< that plans are held to [robots/m²], if any
-  bool uses_places = false;                    ///< needs ReportedRobot::leg and ::goal
+  double speed_mps = 0.0;  ///< speed of the means along their routes; 0: not constant [m/s]
+  std::optional<double> density_cap_per_m2{};  ///< cap that every plan keeps, if any [robots/m²]
+  bool uses_places = false;  ///< whether ReportedRobot::leg and ReportedRobot::goal are needed
 };
 
-/// How a swarm's flow is planned: the extension point of the planner. A method is registered by
-/// name (planning_registry.hpp) and chosen by `planner.method` of the mission.
+/// Plans the flow of a swarm: the extension point of `planner.method` (planning_registry.hpp). One
+/// object serves a whole mission.
 ///
-/// All calls come from one thread. A method may keep what it learnt from one call to the next; the
-/// same sequence of calls with the same random states gives the same plans. Angles in radians,
-/// everything else in SI units, in the frame of the mission's map.
+/// All calls come from one thread, the planner program's only one. A method may keep data between
+/// calls (a roadmap of a map that hardly changes); the same sequence of calls with the same random
+/// states must give the same plans. Memory may be allocated freely. No call may throw: an exception
+/// ends the planner program with exit code 2, after which the launcher restarts it.
+///
+/// The first plan of a mission is one call of plan(). A plan for a swarm under way is the sequence
+///
+///   measure(swarm)                          groups: the start mixture
+///   goal_from(swarm)                        the goal mixture
+///   plan({world, start, goal}, context)
+///   order_members(groups, plan, swarm)      which robot takes which route
 class PlanningMethod {
  public:
+  /// Methods are owned through this class.
   virtual ~PlanningMethod() = default;
   PlanningMethod(const PlanningMethod&) = delete;
   PlanningMethod& operator=(const PlanningMethod&) = delete;
 
-  /// The flow from request.start to request.goal. kInfeasible where there is none: the message
-  /// says why, and what to loosen. May take as long as it needs; robots follow their last plan
-  /// meanwhile.
+  /// Plans the flow from request.start to request.goal.
+  ///
+  /// The program publishes no heartbeat meanwhile: robots follow their last plan for
+  /// `timing.planner_silence_s` and then hold until the next heartbeat.
+  /// \param request start, goal and map
+  /// \param context random generator and clock
+  /// \return kInfeasible where there is no such flow; the message states why, and which key of the
+  ///   mission to change. The last plan then stays in force.
   virtual Result<PlanResult> plan(const PlanRequest& request, const PlanContext& context) = 0;
 
-  /// The risk limit in force. The one of the mission until set_risk() is called.
+  /// The risk limit of the next plan: that of the mission until set_risk() is called. A method
+  /// without a guarantee only stores it.
   virtual const RiskLimit& risk() const = 0;
-  /// The risk limit of plans from now on; an operator may change it in flight.
+  /// Sets the risk limit of plans from now on; an operator may change it during a mission (`risk`).
   virtual void set_risk(const RiskLimit& risk) = 0;
 
+  /// Properties of the method; constant during its lifetime. By default a guide without guarantees.
   virtual PlanningTraits traits() const { return {}; }
 
-  /// The time after which a plan is made anew although nothing has changed, until all robots have
-  /// arrived; nothing for a method whose plan holds for the whole mission.
+  /// Period after which a running mission gets a new plan although nothing changed, until all
+  /// robots have arrived; empty (the default) for a method whose plan holds for the whole mission.
   virtual std::optional<Duration> replan_period() const { return std::nullopt; }
 
-  // In flight a plan starts where the robots are: the planner asks for their groups, plans from
-  // these as the start mixture, and tells each robot its group and its share there.
-
-  /// The robots in groups, each robot in one of them. By default robots that stand together, as
-  /// group_robots() finds them. kInfeasible where no group keeps the risk limit.
+  /// Divides the robots into groups, each robot into exactly one: group i becomes source i of the
+  /// plan, and robots are sent their group and their share in it. The default clusters robots
+  /// within 6 m and in line of sight of each other, fits Gaussians that keep risk(), and keeps
+  /// robots that have arrived in their goal component.
+  /// \param swarm the robots, the map and the goal
+  /// \return kInfeasible where robots are too near an obstacle for any Gaussian that keeps the
+  ///   risk limit
   virtual Result<std::vector<RobotGroup>> measure(const MeasuredSwarm& swarm);
 
-  /// The goal to plan to from measured groups, by default the mission's. It has the same components
-  /// with other weights, for methods that have to deal in whole robots.
+  /// The goal to plan to from measured groups, by default swarm.goal. An override returns the same
+  /// components with other weights, for methods that assign whole robots.
   virtual Mixture goal_from(const MeasuredSwarm& swarm) const { return swarm.goal; }
 
-  /// Puts the members of each group in another order once the plan is known. Group i is source i
-  /// of the plan. By default they stay as measure() put them.
+  /// Reorders RobotGroup::members once the plan is known, which decides who takes which route at
+  /// the splits. Group i is source i of the plan. By default the order of measure() stays.
   virtual void order_members(std::vector<RobotGroup>& /*groups*/, const FlowPlan& /*plan*/,
                              const MeasuredSwarm& /*swarm*/) const {}
 
-  /// Many robots make no progress near this place. True when the method's next plan avoids it: then
-  /// that plan is made at once.
+  /// Called when a tenth of the robots has made no progress for 8 s.
+  /// The argument is the position of one of them [m].
+  /// \return whether the method's next plan avoids that position; then it is made at once
   virtual bool on_congestion(const Vec2& /*at_m*/) { return false; }
 
  protected:
+  /// Only for derived classes.
   PlanningMethod() = default;
 };
 

@@ -14,38 +14,44 @@
 
 namespace swarm::planner {
 
-/// How many plans a method will be asked for.
+/// How many plans will be requested from a method.
 enum class PlanningUse {
-  kInFlight,  ///< again and again, as the scene changes: what was learnt of the map is worth
-              ///< keeping
+  kInFlight,  ///< one after the other, as the scene changes: data about the map is worth keeping
   kOnePlan,   ///< one plan only, as fast as possible
 };
 
 /// What a factory may read to make a method.
 struct MethodContext {
-  const Mission& mission;  ///< with the options of the method; outlives the call only
-  SwarmLimits limits;      ///< what the robots' bodies can follow
-  PlanningUse use = PlanningUse::kInFlight;
+  /// The mission, all defaults filled in; valid during the call. The method's own options are in
+  /// mission.planner.options: OptionTable::read() gives them with their defaults.
+  const Mission& mission;
+  SwarmLimits limits;  ///< density and speed of plans that the robots' bodies can follow
+  PlanningUse use = PlanningUse::kInFlight;  ///< how many plans will be requested
 };
 
-/// A planning method as a mission names it by planner.method.
+/// A planning method as a mission names it by `planner.method`.
 struct PlanningEntry {
-  ComponentSpec spec;  ///< its keys are those that it reads from mission.planner.options
-  /// kBadInput says which option of the mission is wrong.
+  ComponentSpec spec;  ///< name, documentation, and the options read from mission.planner.options
+  /// Makes the method of a mission, once per program; cheap, as planning itself is plan().
+  /// kBadInput, with the key in the message, if an option of the mission is wrong.
   std::function<Result<std::unique_ptr<PlanningMethod>>(const MethodContext&)> make;
 };
 
-/// The planning methods of a program by name: the built-in ones and a guest's register alike.
+/// The planning methods that a planner program has, by name. Built-in methods and those of others
+/// are registered in the same way.
 class PlanningRegistry {
  public:
-  /// \pre no entry of this name is there
+  /// Adds a method. \pre entry.make is set and the name is new; asserted
   void add(PlanningEntry entry);
 
+  /// All methods, in the order of registration.
   const std::vector<PlanningEntry>& all() const { return entries_; }
+  /// Names and options of all methods, for a Catalogue.
   Components specs() const;
 
-  /// The method that the mission names. kBadInput for an unknown name lists those that are known;
-  /// otherwise errors are the factory's.
+  /// Makes the method that the mission names.
+  /// \return kBadInput for an unknown name, with the known ones in the message; otherwise the
+  ///   factory's errors
   Result<std::unique_ptr<PlanningMethod>> make(const Mission& mission, PlanningUse use) const;
 
  private:

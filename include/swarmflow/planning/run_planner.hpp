@@ -4,15 +4,27 @@
 
 #include "swarmflow/planning/planning_registry.hpp"
 
+/// Planning: what a planning method is written against, and the program that runs it.
 namespace swarm::planner {
 
-/// The built-in methods, to which a guest adds its own.
+/// The built-in methods (swarmprm, rover, crops, adoc), to which a program adds its own.
 PlanningRegistry builtin_planning();
 
-/// The whole planner program, for the main() of ours and of a guest: reads the command line, plans
-/// the mission of the run directory with the method it names, publishes plan and heartbeat until it
-/// is stopped. With `--describe` it prints what the registry has, as JSON, and ends. Returns the
-/// exit code. The registry must outlive the call. One per process, since it handles signals.
+/// The whole planner program, to be returned from main():
+///
+///   int main(int argc, char** argv) {
+///     auto registry = swarm::planner::builtin_planning();
+///     registry.add(my_method());
+///     return swarm::planner::run_planner(argc, argv, registry);
+///   }
+///
+/// Reads the command line, plans the mission of the run directory with the method it names, and
+/// publishes plans and heartbeats until a signal or the end of the launcher. With `--describe` it
+/// prints the registry as JSON and ends: that is how the launcher checks a mission's keys. Does not
+/// throw.
+/// \param registry its methods; outlives the call
+/// \return the exit code (ExitCode)
+/// \pre at most one call per process, from its main thread, since it handles signals
 int run_planner(int argc, char** argv, const PlanningRegistry& registry);
 
 }  // namespace swarm::planner

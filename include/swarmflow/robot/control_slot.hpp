@@ -12,15 +12,21 @@
 
 namespace swarm::agent {
 
-/// Owns one control method of any class. A method of at most kInline_bytes is kept inside, so that
-/// the hundreds of robots of a simulation are read from one place in memory; a larger one is on the
-/// heap. Moved, never copied.
+/// Owns one control method of any class, like a std::unique_ptr. A method of at most kInline_bytes
+/// that can be moved without exceptions is stored inside the slot, so that a simulation reads a
+/// robot from contiguous memory; another one is on the heap. Can be moved, not copied; moving a
+/// slot moves a method stored inside, so its address changes.
 class ControlSlot {
  public:
+  /// Size of the largest method that is stored inside [bytes].
   static constexpr std::size_t kInline_bytes = 576;
 
+  /// An empty slot.
   ControlSlot() = default;
 
+  /// A slot with a new method: `ControlSlot::of<Spiral>(options)`.
+  /// \tparam Method a class derived from ControlMethod
+  /// \param args arguments of its constructor
   template <class Method, class... Args>
   static ControlSlot of(Args&&... args) {
     ControlSlot slot;
@@ -38,14 +44,16 @@ class ControlSlot {
     return slot;
   }
 
-  /// For methods that others made.
+  /// A slot that takes over a method from the heap.
   static ControlSlot of(std::unique_ptr<ControlMethod> method) {
     ControlSlot slot;
     slot.method_ = method.release();
     return slot;
   }
 
+  /// Takes over the method of another slot, which is empty afterwards.
   ControlSlot(ControlSlot&& other) noexcept { take(other); }
+  /// Destroys the own method and takes over that of another slot, which is empty afterwards.
   ControlSlot& operator=(ControlSlot&& other) noexcept {
     if (this == &other) return *this;
     clear();
@@ -54,10 +62,14 @@ class ControlSlot {
   }
   ControlSlot(const ControlSlot&) = delete;
   ControlSlot& operator=(const ControlSlot&) = delete;
+  /// Destroys the method.
   ~ControlSlot() { clear(); }
 
+  /// The method. \pre the slot is not empty; not checked
   ControlMethod& operator*() const { return *method_; }
+  /// The method; null for an empty slot.
   ControlMethod* operator->() const { return method_; }
+  /// Whether the slot has a method.
   explicit operator bool() const { return method_ != nullptr; }
 
  private:

@@ -12,65 +12,99 @@
 
 namespace swarm::agent {
 
-/// What a driver knows of its robot at one moment. World frame, metres.
+/// What a driver knows of its robot at one tick. World frame ENU, metres.
 struct Measurement {
-  Vec2 position_m = Vec2::Zero();  ///< as sensed: all that the agent knows
-  /// False while the driver has no position to rely on: `position_m` is then the last one it had.
-  /// The robot brakes, and its position is not published as a new one.
+  /// Position of the robot's centre as sensed, noise included: the only position the agent uses
+  /// [m].
+  Vec2 position_m = Vec2::Zero();
+  /// False while the driver has no position to rely on; `position_m` is then the last one it had.
+  /// The robot is commanded to stop, an event reports it, and no state update is published.
   bool is_valid = true;
-  Duration age{};  ///< time since the position was sensed
-  /// How it moves, of a body that does not have the velocity it is commanded at once: neighbours
-  /// who trusted its command would drive into it.
+  /// Time since the position was sensed. Not used by the agent so far.
+  Duration age{};
+  /// Measured velocity [m/s], to be set for a body that does not reach a commanded velocity at
+  /// once: it is what neighbours receive. Empty: neighbours receive the commanded velocity.
   std::optional<Vec2> velocity_mps;
-  std::optional<double> heading_rad;  ///< in [−π, π], counter-clockwise from the x axis
-  /// Where it truly is, if that is known (simulations do): for the robot log, not for the agent.
+  /// Heading in [−π, π], counter-clockwise from the x axis. Not used by the agent so far.
+  std::optional<double> heading_rad;
+  /// True position if it is known, as in a simulation: recorded in the robot log instead of
+  /// position_m, and not seen by the control method [m].
   std::optional<Vec2> true_position_m;
-  /// Whether the last command ran out before now, so that the body stops: a late control loop.
+  /// Whether the last command ran out since the last measurement, so that the body began to stop
+  /// by itself: the control loop was late. The next two members are read only then.
   bool command_expired = false;
-  SteadyTime expired_at;
-  Vec2 expired_position_m = Vec2::Zero();  ///< where that was, as in the robot log
+  SteadyTime expired_at;                   ///< when the command ran out
+  Vec2 expired_position_m = Vec2::Zero();  ///< true position at that time, for the robot log [m]
 };
 
-/// How a robot is to stop.
+/// How a robot is to stop. The agent requests kHold only, so far; a driver must not fail on the
+/// others.
 enum class StopKind : std::uint8_t {
-  kHold,  ///< stay where it is, ready to go on: brake, hover
+  kHold,  ///< stay in place, ready to continue: brake, hover
   kLand,  ///< end safely: land, sit down, park
   kKill,  ///< cut the motors now; may not be undone
 };
 
 /// A driver's report of its robot's state of health.
 struct DriverHealth {
-  enum class Level : std::uint8_t { kGood, kDegraded, kFailed };
-  Level level = Level::kGood;
-  std::string text{};  ///< what is wrong, for an event
+  /// Severity. A level other than kGood is reported as an event `robot-fault`; the robot goes on.
+  enum class Level : std::uint8_t {
+    kGood,      ///< works
+    kDegraded,  ///< works with restrictions, as with a low battery
+    kFailed     ///< does not work
+  };
+  Level level = Level::kGood;  ///< how bad it is
+  std::string text{};          ///< what is wrong, one line; needed where `level` is not kGood
 };
 
-/// A robot's body: what a simulated robot and a real one's driver have in common.
+/// The interface to one robot's body: simulated robots and the drivers of real ones implement it.
+/// The extension point of `robots.model` (driver_registry.hpp).
 ///
-/// Contract: a command is a velocity in the world frame, valid for a limited time; a body whose
-/// command ran out stops by itself (the watchdog every mobile base has). The safety layer's promise
-/// rests on it. All calls come from one thread and must not block: a driver that waits for its
-/// robot does so in a thread of its own.
+/// Contract: a command is a velocity in the world frame that is valid for a limited time; a body
+/// whose command ran out stops by itself, as by the watchdog of a mobile base. The safety filter's
+/// guarantees rest on that and on the measured position.
 ///
-/// Life: start() once, then measure() and command() in every control period, stop() when the
-/// mission demands it, shutdown() once at the end, also after a failed start().
+/// Calls, all from the thread of the control loop:
+///
+///   start()                      once, before the first tick
+///   measure(), then command()    once each in every control period (1/control.rate_hz)
+///   measure(), then stop()       instead, after an emergency stop or a failed control method
+///   health()                     at most every tenth tick
+///   shutdown()                   once, at the end or after a failed start()
+///
+/// No call may block: one control loop serves all robots of a process, and a late tick lets
+/// commands run out. A driver that waits for its robot does so in a thread of its own and hands
+/// over the newest data. No call may throw: an exception ends the process with exit code 2, without
+/// shutdown().
 class Driver {
  public:
+  /// Called after shutdown().
   virtual ~Driver() = default;
 
-  /// Connects to the robot. An error ends the robot's process with its message.
+  /// Connects to the robot; the only call that may take time, in which the launcher waits for the
+  /// robot. By default nothing.
+  /// \return an error to end the robot's process with its message
   virtual Result<void> start() { return {}; }
 
+  /// The newest measurement. Called once at the begin of every tick, with non-decreasing `now`.
   virtual Measurement measure(SteadyTime now) = 0;
 
-  /// `velocity_mps` holds for `valid_for`, then the body stops.
+  /// Commands a velocity; replaces the last command.
+  /// \param now time of the tick, as passed to measure()
+  /// \param velocity_mps finite velocity, world frame, as the safety filter allows it [m/s]
+  /// \param valid_for time from `now` after which the body stops by itself: two control periods
   virtual void command(SteadyTime now, const Vec2& velocity_mps, Duration valid_for) = 0;
 
-  /// Called at each period of a stop, so that a lost one is repeated; the default commands zero.
+  /// Stops the robot. Called in every control period while the stop is in force, instead of
+  /// command(), so that a lost order is repeated; must be idempotent. By default commands zero
+  /// velocity for 1 s.
   virtual void stop(SteadyTime now, StopKind kind);
 
+  /// The robot's state of health. By default good.
   virtual DriverHealth health() const { return {}; }
 
+  /// Disconnects, with the robot at rest or commanded to stop. Must also work after a failed
+  /// start(). By default nothing.
   virtual void shutdown() {}
 };
 

@@ -7,18 +7,20 @@
 
 namespace swarm::agent {
 
-/// The estimate that a robot has of a neighbour at its present tick.
+/// A robot's estimate of another robot at the present tick, from the state updates received.
 struct Neighbour {
-  RobotId robot;
-  Vec2 position_m = Vec2::Zero();  ///< extrapolated from its last state
-  Vec2 velocity_mps = Vec2::Zero();
-  double radius_m = 0.0;  ///< its radius, grown while no state is received for longer than expected
-  /// Information age [s]: how old the knowledge of its motion is. That is the time that a state
-  /// takes to arrive, since the neighbour would have published one had it turned; on a degraded
-  /// link, for one that moves nearby, the time since its last state.
+  RobotId robot;                     ///< its number
+  Vec2 position_m = Vec2::Zero();    ///< extrapolated linearly from its last state update [m]
+  Vec2 velocity_mps = Vec2::Zero();  ///< as published in its last state update [m/s]
+  /// Its radius [m]; grown by its largest speed for every second that its next state update is
+  /// overdue (link.send_interval_max_s and two control periods).
+  double radius_m = 0.0;
+  /// Information age of its motion [s]: the transit time of its state updates, since it would have
+  /// published another one had it turned; on a degraded link, for a robot that moves nearby, the
+  /// time since its last state update.
   double stale_s = 0.0;
-  /// Possible-stop age [s]: for how long it may have been stopped by now, had its process stalled
-  /// right after its last state.
+  /// Possible-stop age [s]: how long it may have been at rest by now if its process stalled right
+  /// after its last state update and its last command ran out. 0 for a recent state update.
   double stalled_s = 0.0;
 };
 

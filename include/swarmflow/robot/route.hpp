@@ -13,46 +13,78 @@
 
 namespace swarm::agent {
 
-/// One robot's own path through the flow, and when it is to be where on it.
+/// One robot's own path through the plan, and when it is to be where on it.
 struct Route {
-  Polyline path;
-  Schedule schedule;
-  std::uint32_t sink = 0;  ///< index into FlowPlan::sinks()
-  Gaussian goal;           ///< the sink's Gaussian
+  Polyline path;           ///< at least one vertex, the last one the robot's position in the goal
+  Schedule schedule;       ///< arc length on `path` as a function of plan time, at least one entry
+  std::uint32_t sink = 0;  ///< its goal, as an index into FlowPlan::sinks()
+  Gaussian goal;           ///< the Gaussian of that sink
 };
 
+/// How a route keeps off obstacles.
 struct RouteOptions {
-  double radius_m = 0.2;
-  /// The normalised offset is clamped to this Mahalanobis distance: the transport map keeps it, so
-  /// a robot that starts in the far tail still ends inside the goal's 99 % ellipse (3.03).
+  double radius_m = 0.2;  ///< radius of the robot [m]
+  /// Largest Mahalanobis distance of a robot's offset from a Gaussian's mean; a larger offset is
+  /// shortened to it. Transport maps keep that distance, so a robot that starts in the far tail
+  /// still ends inside the goal's 99 % ellipse (3.03).
   double offset_max = 2.5;
-  double vertex_clearance_m = 1.0;  ///< surface distance kept at the route's corners where possible
-  double leg_clearance_m = 0.3;     ///< and along its legs
+  /// Distance between surfaces kept at the vertices of the route where possible [m].
+  double vertex_clearance_m = 1.0;
+  double leg_clearance_m = 0.3;  ///< the same along its legs [m]
 };
 
-/// The way of a robot that stands at the start of the mission.
+/// The route of a robot that is at its position at the start of the mission.
 ///
-/// At every split it takes the leg its `share` ∈ [0, 1) falls into, which it then rescales to that
-/// leg: with shares stratified over all robots the counts on every leg come out right to within
-/// one, without a word said. Its offset y₀ = x₀ − μ rides along the optimal transport maps, y' =
-/// Ty, so on each leg it moves in a straight line (swarmprm eq. 3–4); where μ + y would come too
-/// close to an obstacle, y is scaled towards 0, where the plan's CVaR promise holds. Deterministic.
+/// At every split the robot takes the leg that its share falls into, and rescales the share to that
+/// leg: with the shares (id + ½)/N the number of robots on every leg is right to within one,
+/// without communication. Its offset y₀ = x₀ − μ follows the optimal transport maps,
+///
+///   y' = T y,   T = Σ₁⁻¹ # Σ₂ (geometric mean)                     [SwarmPRM, eq. 3–4]
+///
+/// so on each leg it moves in a straight line. Where μ + y would come too near an obstacle, y is
+/// scaled towards 0, where the plan keeps its risk limit. Bodies of fallen robots only bend the
+/// path. Deterministic; allocates; O(vertices) distance queries.
+/// \param plan the plan
+/// \param share the robot's share in [0, 1)
+/// \param position_m its position [m]
+/// \param world the map
+/// \param options radius and clearances
+/// \pre the plan is not empty
 Route route_from_start(const FlowPlan& plan, double share, const Vec2& position_m,
                        const World& world, const RouteOptions& options);
 
-/// The way of a robot that is told by the planner, in mid-flight, which source of a new plan is its
-/// group's. It begins where the robot is, so nothing jumps; then it goes on as above. \pre `source`
-/// is an index into plan.sources()
+/// The route of a robot under way into a new plan, in which the planner has assigned it to a
+/// source. It begins at the robot's position, so no reference jumps, and continues as
+/// route_from_start().
+/// \param plan the plan
+/// \param source the robot's source, as an index into plan.sources()
+/// \param share the robot's share among those of its source, in [0, 1)
+/// \param position_m its position [m]
+/// \param world the map
+/// \param options radius and clearances
+/// \pre source < plan.sources().size(); not checked
 Route route_from_source(const FlowPlan& plan, std::uint32_t source, double share,
                         const Vec2& position_m, const World& world, const RouteOptions& options);
 
-/// The path of a robot that has no place in the plan yet (it joined late, was restarted, or the
-/// planner did not receive it): it joins the flow where a leg's geodesic passes nearest to it in
-/// space and, given the plan's time, in time: d² + (Δt / kJoin_s)², d the Mahalanobis distance; in
-/// line of sight if any is. From there it goes on as above.
+/// The route of a robot without an assigned source (it joined late, was restarted, or the planner
+/// did not receive its status). It joins the flow at the point of a leg's geodesic that is nearest
+/// in space and time,
+///
+///   min d² + (Δt / kJoin_s)²,   d the Mahalanobis distance of the robot
+///
+/// among points in line of sight if there are any, and continues as route_from_start(). Seventeen
+/// points per leg are tested, so O(legs) geodesics and visibility queries.
+/// \param plan the plan
+/// \param share the robot's share in [0, 1), for the splits that follow
+/// \param position_m its position [m]
+/// \param world the map
+/// \param options radius and clearances
+/// \param plan_time_s τ of the plan's clock [s]; empty: only the distance in space counts
+/// \pre the plan has a leg; not checked
 Route route_from_here(const FlowPlan& plan, double share, const Vec2& position_m,
                       const World& world, const RouteOptions& options,
                       std::optional<double> plan_time_s = std::nullopt);
-inline constexpr double kJoin_s = 10.0;  ///< this far off in time counts as one σ in space
+/// In route_from_here() a difference of this much plan time counts like a distance of one σ [s].
+inline constexpr double kJoin_s = 10.0;
 
 }  // namespace swarm::agent
