@@ -15,6 +15,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "swarm_launcher/builtin_catalogue.hpp"
 #include "swarmflow/core/time.hpp"
 
 extern char** environ;
@@ -88,8 +89,10 @@ Result<Catalogue> describe_program(const std::filesystem::path& program) {
 }
 
 Result<Catalogue> catalogue_of(const std::filesystem::path& agent_program) {
-  if (agent_program.empty()) return Catalogue{};
-  return describe_program(agent_program);
+  if (agent_program.empty()) return builtin_catalogue();
+  auto catalogue = describe_program(agent_program);
+  if (catalogue) catalogue->planning_methods = builtin_catalogue().planning_methods;
+  return catalogue;
 }
 
 }  // namespace swarm::launcher

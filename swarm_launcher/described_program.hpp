@@ -14,8 +14,8 @@ namespace swarm::launcher {
 /// else.
 Result<Catalogue> describe_program(const std::filesystem::path& program);
 
-/// The components that a mission may name when this program is going to fly its robots; an empty
-/// path stands for our own program.
+/// The components that a mission may name when this program is going to fly its robots and our own
+/// plans; an empty path stands for our own program.
 Result<Catalogue> catalogue_of(const std::filesystem::path& agent_program);
 
 }  // namespace swarm::launcher

@@ -2,13 +2,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "swarmflow/mission/catalogue.hpp"
 #include "swarmflow/mission/mission.hpp"
 
 /// What bodies can do, as agent and planner both count on it.
 namespace swarm {
 
-/// How long a body may take until it moves at the velocity it was commanded [s]: from full speed to
-/// rest, v_max/a_max; a unicycle turns by a quarter first. Zero for a single integrator.
+/// How long a body takes until it moves at the velocity it was commanded, as its driver declares it
+/// [s].
+double declared_lag_s(const BodySpec& body, const LagSpec& lag);
+
+/// The same of a body of a mission: BodySpec::lag_s, and zero where it is not set.
 double body_lag_s(const BodySpec& body);
 
 /// The density and the speed of a plan that robots can follow. The most restrictive body of the

@@ -11,11 +11,22 @@
 
 namespace swarm {
 
+/// How long the body of a driver takes until it moves at the velocity it was commanded: so much
+/// earlier its safety filter brakes, and so much more room its plans leave. A declaration and no
+/// function, as programs that do not have the driver use it too.
+struct LagSpec {
+  double fixed_s = 0.0;      ///< whatever the command
+  bool accelerates = false;  ///< and from full speed to rest, v_max / a_max
+  bool turns = false;        ///< and a turn by a quarter, π / 2 ω_max
+  bool operator==(const LagSpec&) const = default;
+};
+
 /// A component as a mission may ask for it: its name and the options it reads.
 struct ComponentSpec {
   std::string name;
   std::string doc;  ///< one sentence
   std::vector<OptionSpec> options;
+  LagSpec lag{};  ///< of a driver
 };
 
 /// The components of one section of the mission file, by name.

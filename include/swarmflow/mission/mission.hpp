@@ -9,14 +9,14 @@
 #include <variant>
 #include <vector>
 
+#include "swarmflow/core/cvar.hpp"
 #include "swarmflow/core/ids.hpp"
 #include "swarmflow/core/mixture.hpp"
+#include "swarmflow/core/shape_field.hpp"
+#include "swarmflow/core/world.hpp"
 #include "swarmflow/mission/options.hpp"
 #include "swarmflow/mission/phase.hpp"
 #include "swarmflow/mission/scene.hpp"
-#include "swarmflow/core/cvar.hpp"
-#include "swarmflow/core/shape_field.hpp"
-#include "swarmflow/core/world.hpp"
 
 namespace swarm {
 
@@ -25,7 +25,7 @@ namespace swarm {
 
 /// A robot's body. Noise is zero-mean, Gaussian and independent per axis and control step.
 struct BodySpec {
-  std::string model = "single_integrator";  ///< or unicycle, double_integrator
+  std::string model = "single_integrator";  ///< a driver that the robots' program has
   double radius_m = 0.2;
   double speed_max_mps = 1.5;
   double acceleration_max_mps2 = 3.0;  ///< unicycle (along its heading) and double integrator
@@ -33,7 +33,10 @@ struct BodySpec {
   double hear_radius_m = 0.0;          ///< its sensing range; 0 = link.hear_radius_m
   double motion_noise_m = 0.0;         ///< σ of w(k) [ROVER, eq. 9]
   double position_noise_m = 0.0;       ///< σ of its measured position
-  OptionValues options{};              ///< of its driver
+  /// How long it may take until it moves at the velocity it was commanded. Unset, `auto` in the
+  /// file: the reader sets it as the driver declares it, see body_lag_s().
+  std::optional<double> lag_s{};
+  OptionValues options{};  ///< of its driver
 };
 
 /// A number of robots that differ from the others.
@@ -54,66 +57,22 @@ const BodySpec& body_of(const RobotsSpec& robots, RobotId robot);
 double largest_radius_m(const RobotsSpec& robots);
 
 struct PlannerSpec {
-  std::string method = "swarmprm";  ///< or rover, crops, adoc
-  /// Means by a low-discrepancy sequence, shapes squeezed to keep the risk limit (fit), or uniform
-  /// with rejection, as printed in the paper (uniform: finds a plan less often).
-  std::string sampler = "fit";  ///< or halton: low-discrepancy means with rejection
-  /// What the density cap counts: mass through a node at each time, or (static, as printed) ever.
-  std::string density_cap = "timed";
-  std::uint32_t samples = 500;        ///< n of Alg. 1
-  double connection_radius_m = 20.0;  ///< r of Alg. 1, in W₂
-  double risk_alpha = 0.05;           ///< α
-  double risk_delta_m = -0.2;         ///< δ
-  double sigma_min_m = 1.0;           ///< sampler range of σ₁, σ₂
-  double sigma_max_m = 3.0;
-  double rho_max = 0.6;           ///< sampler range of |ρ|
-  double bridge_share = 0.3;      ///< share of samples drawn by the Gaussian sampler of ref. [20]
-  double bridge_sigma_m = 10.0;   ///< spread of its pairs
-  std::uint32_t shortcuts = 200;  ///< smoothing tries per route, 0 = publish the roadmap's routes
-  double speed_mps = 1.25;        ///< speed of the Gaussians along a route
+  std::string method = "swarmprm";  ///< a planning method that the planner's program has
+  double risk_alpha = 0.05;         ///< α
+  double risk_delta_m = -0.2;       ///< δ
+  double speed_mps = 1.25;          ///< speed of the Gaussians along a route
   /// swarmprm and rover: robots/m² at most; 0 = no cap. Unset, `auto` in the file: swarmprm plans
   /// at a density and a speed that the bodies can follow (body_limits.hpp), the others without a
   /// cap.
   std::optional<double> density_cap_per_m2;
-  double collocation_spacing_m = 10.0;              ///< rover and adoc: grid of the set C
-  double collocation_sigma_m = 7.0710678118654755;  ///< … Σ_c = σ² I
-  double transport_radius_m = 22.5;                 ///< … of Assumption 2, in W₂
-  std::uint32_t horizon = 3;                        ///< rover: h
-  double replan_period_s = 1.0;    ///< rover: a plan from where the robots are each
-  double adoc_penalty = 20.0;      ///< adoc: of the share of a Gaussian that is in obstacles
-  double crops_clearance_m = 0.5;  ///< crops: nodes nearer to an obstacle are discarded
-  double crops_power = 3.0;  ///< crops: p of w(q) = (Σ dist)ᵖ; 3 in the paper, 1 in its code
-  double crops_goal_radius_m = 1.0;  ///< crops: of the intermediate goals
-  OptionValues options{};            ///< of a planning method that declares its own
+  OptionValues options{};  ///< of the planning methods, which declare them
 };
 
 struct ControlSpec {
-  std::string method = "apf";  ///< or crops, intermittent_diffusion
-  /// apf: keep the plan's times (plan), or travel the planned path at one's own speed (free).
-  std::string tracking = "plan";
+  std::string method = "apf";  ///< a control method that the robots' program has
   double rate_hz = 10.0;
-  double cruise_mps = 1.45;       ///< largest desired speed along the path
-  double look_ahead_s = 6.0;      ///< pursuit: how far ahead on its path a robot aims
-  double pace_gain_hz = 0.3;      ///< tracking plan: speed per metre behind the reference position
-  double keep_clearance_m = 1.0;  ///< pursuit: planned clearance up to this is not cut away
-  double density_push_mps = 0.0;  ///< apf: largest speed towards the planned density; 0 = off
-  double neighbour_gap_m = 1.0;   ///< d0: neighbours nearer than this push
-  double neighbour_push_mps = 0.6;  ///< speed of that push at contact
-  double obstacle_gap_m = 0.5;      ///< obstacles nearer than this push
-  double obstacle_push_mps = 1.0;
-  double approach_gain_hz = 0.8;  ///< P-gain towards the aim point near the end
-  double stuck_after_s = 4.0;     ///< no progress for this long → diffusion to a place nearby
-  double escape_spread_m = 4.0;   ///< largest standard deviation per axis of such places
-  double escape_s = 5.0;          ///< longest way to one
-  // intermittent_diffusion, Alg. 1 of its paper
-  double diffusion_strength_m2 = 0.01;    ///< G₀
-  double diffusion_range_m = 0.0;         ///< R; 0 = 10 robots.radius_m
-  double diffusion_tolerance_m2 = 0.045;  ///< of a robot's F + G
-  double diffusion_gain_hz = 4.0;         ///< speed per gradient, as far as the step bound allows
-  double diffusion_flow_s = 2.5;          ///< longest gradient flow before diffusing (i_max steps)
-  double diffusion_noise_mps05 = 3.0;     ///< largest σ of the virtual diffusion [m/√s]
-  double diffusion_time_s = 10.0;         ///< its longest duration; 0 = plain gradient descent
-  OptionValues options{};                 ///< of a control method that declares its own
+  double cruise_mps = 1.45;  ///< largest desired speed along the path
+  OptionValues options{};    ///< of the control methods, which declare them
 };
 
 struct SafetySpec {

@@ -18,13 +18,16 @@ inline constexpr std::size_t kMaxMissionBytes = 16U << 20U;
 /// type; the world is well-formed; start and goal lie inside it. On failure the error holds *all*
 /// violations, one per line, as `file:line:column: what is wrong; what would be right`. `name` is
 /// only used in messages; a goal's bitmap is looked for in `directory`. `catalogue`: the components
-/// beside the built-in ones that the mission may name, and their keys. Never throws.
+/// that the mission may name, and their keys, whose defaults are set where the file leaves them
+/// out. By default names and keys of components are taken as they are: right for the mission of a
+/// run, which its launcher has checked. Never throws.
 Result<Mission> parse_mission(std::string_view yaml, const std::string& name,
                               const std::filesystem::path& directory = {},
-                              const Catalogue& catalogue = {});
+                              const Catalogue& catalogue = open_catalogue());
 
 /// Reads and parses a file.
-Result<Mission> load_mission(const std::filesystem::path& file, const Catalogue& catalogue = {});
+Result<Mission> load_mission(const std::filesystem::path& file,
+                             const Catalogue& catalogue = open_catalogue());
 
 /// The mission with every default written out, as YAML that parse_mission() reads back to an equal
 /// mission (defends logged runs against changing defaults).

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <concepts>
 #include <cstdint>
 #include <functional>
 #include <string>
@@ -53,7 +54,24 @@ class OptionTable {
     return *this;
   }
 
+  /// The keys of a struct that T is derived from: components that read the same keys share them.
+  template <class Base>
+  requires std::derived_from<T, Base> OptionTable& with(const OptionTable<Base>& shared) {
+    for (std::size_t i = 0; i < shared.specs().size(); ++i) {
+      specs_.push_back(shared.specs()[i]);
+      readers_.push_back(shared.readers()[i]);
+    }
+    return *this;
+  }
+
+  /// The number of the key added last must not exceed that of this key.
+  OptionTable& at_most(std::string key) {
+    specs_.back().at_most = std::move(key);
+    return *this;
+  }
+
   const std::vector<OptionSpec>& specs() const { return specs_; }
+  const auto& readers() const { return readers_; }
 
   T read(const OptionValues& values) const {
     T out;

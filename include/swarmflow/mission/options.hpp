@@ -38,6 +38,7 @@ struct OptionSpec {
   Range range{};                     ///< of numbers and counts
   std::vector<std::string> words{};  ///< of a choice
   std::string doc;                   ///< one line, for help and documentation
+  std::string at_most{};  ///< the key of the same section that its number must not exceed, if any
   bool operator==(const OptionSpec&) const = default;
 };
 

@@ -6,11 +6,11 @@
 #include <memory>
 #include <vector>
 
-#include "swarmflow/planning/planning_method.hpp"
 #include "swarmflow/core/result.hpp"
 #include "swarmflow/mission/body_limits.hpp"
 #include "swarmflow/mission/catalogue.hpp"
 #include "swarmflow/mission/mission.hpp"
+#include "swarmflow/planning/planning_method.hpp"
 
 namespace swarm::planner {
 
@@ -26,6 +26,9 @@ struct MethodContext {
   const Mission& mission;  ///< with the options of the method; outlives the call only
   SwarmLimits limits;      ///< what the robots' bodies can follow
   PlanningUse use = PlanningUse::kInFlight;
+
+  /// The keys that the method declares, as its mission sets them.
+  const OptionValues& options() const { return mission.planner.options; }
 };
 
 /// A planning method as a mission names it by planner.method.
@@ -38,11 +41,13 @@ struct PlanningEntry {
 /// The planning methods of a program by name: the built-in ones and a guest's register alike.
 class PlanningRegistry {
  public:
-  /// \pre no entry of this name is there
+  /// \pre no entry of this name is there, and its keys are not those of another with another spec
   void add(PlanningEntry entry);
 
   const std::vector<PlanningEntry>& all() const { return entries_; }
   Components specs() const;
+  /// What the planner's program knows of a mission file: not the components of the robots.
+  Catalogue catalogue() const;
 
   /// The method that the mission names. kBadInput for an unknown name lists those that are known;
   /// otherwise errors are the factory's.

@@ -7,10 +7,10 @@
 #include <string_view>
 #include <vector>
 
-#include "swarmflow/robot/control_slot.hpp"
 #include "swarmflow/core/result.hpp"
 #include "swarmflow/mission/catalogue.hpp"
 #include "swarmflow/mission/mission.hpp"
+#include "swarmflow/robot/control_slot.hpp"
 
 namespace swarm::agent {
 
@@ -29,6 +29,9 @@ struct PreparedControl {
   /// Distance beyond which other robots do not matter to the method, centre to centre [m]; no robot
   /// is received from beyond its communication radius.
   double reach_m = std::numeric_limits<double>::infinity();
+  /// Surface gap below which other robots press: at least so near they are received as often as the
+  /// safety filter needs them [m].
+  double press_gap_m = 1.0;
   /// Whether ControlView::planned_density is read.
   bool reads_density = false;
 };

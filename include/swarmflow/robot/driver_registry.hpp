@@ -8,10 +8,10 @@
 #include <string_view>
 #include <vector>
 
-#include "swarmflow/robot/driver.hpp"
 #include "swarmflow/core/ids.hpp"
 #include "swarmflow/mission/catalogue.hpp"
 #include "swarmflow/mission/mission.hpp"
+#include "swarmflow/robot/driver.hpp"
 
 namespace swarm::agent {
 
@@ -31,11 +31,8 @@ struct DriverContext {
 
 /// A driver as a mission names it by robots.model.
 struct DriverEntry {
-  ComponentSpec spec;
+  ComponentSpec spec;  ///< with the lag of the body
   std::function<Result<std::unique_ptr<Driver>>(const DriverContext&)> make;
-  /// How long the body may take until it moves at the velocity it was commanded [s]: so much
-  /// earlier its safety filter brakes. Empty: at once.
-  std::function<double(const BodySpec&)> lag_s{};
 };
 
 /// The drivers that a robot program has, by name: the built-in ones and a guest's register alike.
