@@ -18,7 +18,7 @@ int main(int argc, char** argv) {
     using namespace launcher::cli;
     const Command commands[] = {add_run(app),   add_gateway(app), add_join(app),
                                 add_soak(app),  add_plan(app),    add_simulate(app),
-                                add_table(app), add_command(app)};
+                                add_table(app), add_command(app), add_keys(app)};
     const auto done = shell::parse(app, argc, argv, builtin_catalogue());
     if (!done) return tl::unexpected(done.error());
     if (*done) return **done;
