@@ -16,7 +16,6 @@
 #include "planner_service/plan_keeper.hpp"
 #include "planner_service/planner_inbox.hpp"
 #include "swarm_core/base/clock.hpp"
-#include "swarmflow/mission/mission_file.hpp"
 #include "swarm_core/plan/plan_json.hpp"
 #include "swarm_core/plan/planning_record.hpp"
 #include "swarm_core/shell/run_directory.hpp"
@@ -24,6 +23,7 @@
 #include "swarm_link/run_meeting.hpp"
 #include "swarm_link/to_message.hpp"
 #include "swarm_link/topics.hpp"
+#include "swarmflow/mission/mission_file.hpp"
 
 namespace swarm::planner {
 namespace {
@@ -213,11 +213,7 @@ Result<std::unique_ptr<PlannerProcess>> PlannerProcess::make(const ProcessOption
   impl->options = options;
   const auto run = shell::read_run_info(options.run_dir);
   if (!run) return tl::unexpected(run.error());
-  auto mission = load_mission(options.run_dir / shell::kMissionFile,
-                              Catalogue{.planning_methods = registry.specs(),
-                                        .control_methods = {},
-                                        .drivers = {},
-                                        .robots_are_open = true});
+  auto mission = load_mission(options.run_dir / shell::kMissionFile, registry.catalogue());
   if (!mission) return tl::unexpected(mission.error());
   impl->mission = std::move(*mission);
   auto planner = Planner::make(registry, impl->mission);

@@ -14,6 +14,14 @@ namespace swarm::planner {
 
 void PlanningRegistry::add(PlanningEntry entry) {
   SWARM_ASSERT(entry.make && find_component(specs(), entry.spec.name) == nullptr);
+  for (const OptionSpec& option : entry.spec.options) {
+    for (const PlanningEntry& other : entries_) {
+      const auto& theirs = other.spec.options;
+      SWARM_ASSERT(std::all_of(theirs.begin(), theirs.end(), [&](const OptionSpec& o) {
+        return o.key != option.key || o == option;
+      }));
+    }
+  }
   entries_.push_back(std::move(entry));
 }
 
@@ -23,12 +31,16 @@ Components PlanningRegistry::specs() const {
   return specs;
 }
 
+Catalogue PlanningRegistry::catalogue() const {
+  return {
+      .planning_methods = specs(), .control_methods = {}, .drivers = {}, .robots_are_open = true};
+}
+
 Result<std::unique_ptr<PlanningMethod>> PlanningRegistry::make(const Mission& mission,
                                                                PlanningUse use) const {
-  const auto found =
-      std::find_if(entries_.begin(), entries_.end(), [&](const PlanningEntry& entry) {
-        return entry.spec.name == mission.planner.method;
-      });
+  const auto found = std::find_if(
+      entries_.begin(), entries_.end(),
+      [&](const PlanningEntry& entry) { return entry.spec.name == mission.planner.method; });
   if (found == entries_.end()) {
     std::string known;
     for (const PlanningEntry& entry : entries_) {
@@ -38,10 +50,9 @@ Result<std::unique_ptr<PlanningMethod>> PlanningRegistry::make(const Mission& mi
                                                   "it has {}",
                                                   mission.planner.method, known));
   }
-  return found->make(
-      {.mission = mission,
-       .limits = swarm_limits(mission.robots, mission.safety, mission.control),
-       .use = use});
+  return found->make({.mission = mission,
+                      .limits = swarm_limits(mission.robots, mission.safety, mission.control),
+                      .use = use});
 }
 
 }  // namespace swarm::planner

@@ -9,10 +9,10 @@
 #include <CLI/CLI.hpp>
 
 #include "planner_service/planner_process.hpp"
-#include "swarmflow/core/result.hpp"
 #include "swarm_core/mission/link_faults.hpp"
 #include "swarm_core/shell/program.hpp"
 #include "swarm_core/shell/stop_signal.hpp"
+#include "swarmflow/core/result.hpp"
 
 namespace swarm::planner {
 namespace {
@@ -35,12 +35,10 @@ Result<std::optional<ExitCode>> read_options(int argc, char** argv,
   app.add_flag("--describe", describe,
                "Print its planning methods with their options as JSON, and exit");
   shell::add_common_options(app);
-  auto done = shell::parse(app, argc, argv);
+  auto done = shell::parse(app, argc, argv, registry.catalogue());
   if (!done || *done) return done;
   if (describe) {
-    Catalogue catalogue;
-    catalogue.planning_methods = registry.specs();
-    std::puts(to_json(catalogue).c_str());
+    std::puts(to_json(registry.catalogue()).c_str());
     return ExitCode::kOk;
   }
   if (options.run_dir.empty()) {

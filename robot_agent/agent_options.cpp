@@ -27,7 +27,8 @@ double fastest_mps(const RobotsSpec& robots) {
 
 /// Distance beyond which a robot matters neither to the safety filter, nor to forces of contact,
 /// nor to when a state is published [m].
-double close_m(const Mission& mission, const BodySpec& body, double lag_s) {
+double close_m(const Mission& mission, const BodySpec& body, double press_gap_m) {
+  const double lag_s = body_lag_s(body);
   const double period_s = 1.0 / mission.control.rate_hz;
   const double margin_m = mission.safety.neighbour_margin_m;
   const double braking_s = period_s / mission.safety.gap_share + lag_s;
@@ -35,7 +36,7 @@ double close_m(const Mission& mission, const BodySpec& body, double lag_s) {
   // A robot that follows, or one that stopped unnoticed and was left behind, moves on for so long.
   const double unnoticed_s = 2.0 * period_s + lag_s + mission.link.send_interval_max_s;
   const double follows_m = margin_m + fastest_mps(mission.robots) * unnoticed_s;
-  const double pressing_m = std::max(mission.control.neighbour_gap_m, room_gap_m(mission));
+  const double pressing_m = std::max(press_gap_m, room_gap_m(mission));
   return body.radius_m + largest_radius_m(mission.robots) +
          std::max({brake_m, follows_m, mission.link.send_near_m, pressing_m});
 }
@@ -49,7 +50,7 @@ std::vector<std::string_view> names_of(const ControlRegistry& registry) {
 }  // namespace
 
 Result<Shared<AgentOptions>> agent_options(const Mission& mission, RobotId robot,
-                                           const ControlRegistry& registry, double lag_s) {
+                                           const ControlRegistry& registry) {
   const BodySpec& body = body_of(mission.robots, robot);
   const ControlSpec& c = mission.control;
   const LinkSpec& l = mission.link;
@@ -62,7 +63,7 @@ Result<Shared<AgentOptions>> agent_options(const Mission& mission, RobotId robot
   }
   auto control = entry->prepare({.mission = mission, .body = body});
   if (!control) return tl::unexpected(control.error());
-  const double near_m = close_m(mission, body, lag_s);
+  const double near_m = close_m(mission, body, control->press_gap_m);
   const double matters_m =
       std::isinf(control->reach_m) ? hear_m : std::max(near_m, control->reach_m);
   return Shared<AgentOptions>(AgentOptions{
@@ -71,7 +72,7 @@ Result<Shared<AgentOptions>> agent_options(const Mission& mission, RobotId robot
       .safety = {.radius_m = body.radius_m,
                  .speed_max_mps = body.speed_max_mps,
                  .period = period,
-                 .lag_s = lag_s,
+                 .lag_s = body_lag_s(body),
                  .gap_share = mission.safety.gap_share,
                  .stale_gain = mission.safety.stale_gain,
                  .neighbour_margin_m = mission.safety.neighbour_margin_m,
@@ -96,19 +97,18 @@ Result<Shared<AgentOptions>> agent_options(const Mission& mission, RobotId robot
 }
 
 Shared<AgentOptions> agent_options(const Mission& mission, RobotId robot) {
-  auto options =
-      agent_options(mission, robot, builtin_control(), body_lag_s(body_of(mission.robots, robot)));
+  auto options = agent_options(mission, robot, builtin_control());
   SWARM_ASSERT(options.has_value());
   return *std::move(options);
 }
 
-Result<AgentOptionsOf> AgentOptionsOf::make(const Mission& mission, const ControlRegistry& registry,
-                                            const LagOf& lag_of) {
+Result<AgentOptionsOf> AgentOptionsOf::make(const Mission& mission,
+                                            const ControlRegistry& registry) {
   std::map<const BodySpec*, Shared<AgentOptions>> by_body;
   for (std::uint32_t id = 0; id < mission.robots.count; ++id) {
     const auto [found, is_new] = by_body.try_emplace(&body_of(mission.robots, RobotId(id)));
     if (!is_new) continue;
-    auto options = agent_options(mission, RobotId(id), registry, lag_of(*found->first));
+    auto options = agent_options(mission, RobotId(id), registry);
     if (!options) return tl::unexpected(options.error());
     found->second = *std::move(options);
   }
@@ -123,6 +123,11 @@ AgentOptionsOf::AgentOptionsOf(const Mission& mission) : mission_(&mission) {
   auto made = make(mission, builtin_control());
   SWARM_ASSERT(made.has_value());
   by_body_ = std::move(made->by_body_);
+}
+
+bool AgentOptionsOf::reads_density() const {
+  return std::any_of(by_body_.begin(), by_body_.end(),
+                     [](const auto& made) { return made.second->control.reads_density; });
 }
 
 const Shared<AgentOptions>& AgentOptionsOf::operator()(RobotId robot) const {

@@ -2,18 +2,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <functional>
 #include <map>
 
-#include "swarmflow/robot/route.hpp"
 #include "robot_agent/control/safety_filter.hpp"
-#include "swarmflow/robot/control_registry.hpp"
 #include "robot_agent/neighbour_table.hpp"
 #include "robot_agent/say_policy.hpp"
-#include "swarmflow/core/result.hpp"
 #include "swarm_core/base/shared.hpp"
+#include "swarmflow/core/result.hpp"
 #include "swarmflow/mission/body_limits.hpp"
 #include "swarmflow/mission/mission.hpp"
+#include "swarmflow/robot/control_registry.hpp"
+#include "swarmflow/robot/route.hpp"
 
 namespace swarm::agent {
 
@@ -26,26 +25,24 @@ struct AgentOptions {
   SayOptions say;
 };
 
-/// How long a body may take until it moves at the velocity it was commanded [s].
-using LagOf = std::function<double(const BodySpec&)>;
-
-/// The options of a robot of a mission, and of any other with its body, which lags by `lag_s`.
+/// The options of a robot of a mission, and of any other with its body.
 /// kBadInput if the registry has no such control method, or what the method reports about the
 /// mission.
 Result<Shared<AgentOptions>> agent_options(const Mission& mission, RobotId robot,
-                                           const ControlRegistry& registry, double lag_s);
+                                           const ControlRegistry& registry);
 /// The same with a built-in method. \pre mission.control.method is one
 Shared<AgentOptions> agent_options(const Mission& mission, RobotId robot);
 
 /// The options of all robots of a mission, made once for each body. The mission outlives it.
 class AgentOptionsOf {
  public:
-  static Result<AgentOptionsOf> make(const Mission& mission, const ControlRegistry& registry,
-                                     const LagOf& lag_of = body_lag_s);
+  static Result<AgentOptionsOf> make(const Mission& mission, const ControlRegistry& registry);
   /// With a built-in method.
   explicit AgentOptionsOf(const Mission& mission);
 
   const Shared<AgentOptions>& operator()(RobotId robot) const;
+  /// Whether the control method reads the planned density.
+  bool reads_density() const;
 
  private:
   AgentOptionsOf(const Mission& mission, std::map<const BodySpec*, Shared<AgentOptions>> by_body);

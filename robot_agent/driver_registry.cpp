@@ -5,20 +5,18 @@
 #include <algorithm>
 #include <utility>
 
-#include "robot_agent/drivers/lag.hpp"
 #include "robot_agent/drivers/simulated_robot.hpp"
 #include "swarm_core/base/assert.hpp"
 
 namespace swarm::agent {
 namespace {
 
-DriverEntry simulated(std::string name, std::string doc) {
-  return {.spec = {.name = std::move(name), .doc = std::move(doc), .options = {}},
+DriverEntry simulated(std::string name, std::string doc, const LagSpec& lag) {
+  return {.spec = {.name = std::move(name), .doc = std::move(doc), .options = {}, .lag = lag},
           .make = [](const DriverContext& context) -> Result<std::unique_ptr<Driver>> {
             return std::make_unique<SimulatedRobot>(
                 make_simulated_body(context.body(), context.now, context.position_m, context.seed));
-          },
-          .lag_s = lag_s};
+          }};
 }
 
 }  // namespace
@@ -41,9 +39,11 @@ Components DriverRegistry::specs() const {
 }
 
 void register_builtin_drivers(DriverRegistry& registry) {
-  registry.add(simulated("single_integrator", "Simulated: has a commanded velocity at once"));
-  registry.add(simulated("double_integrator", "Simulated: accelerates within a limit"));
-  registry.add(simulated("unicycle", "Simulated: drives forwards and turns, within limits"));
+  registry.add(simulated("single_integrator", "Simulated: has a commanded velocity at once", {}));
+  registry.add(simulated("unicycle", "Simulated: drives forwards and turns, within limits",
+                         {.accelerates = true, .turns = true}));
+  registry.add(simulated("double_integrator", "Simulated: accelerates within a limit",
+                         {.accelerates = true}));
 }
 
 }  // namespace swarm::agent

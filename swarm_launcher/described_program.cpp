@@ -16,6 +16,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "swarm_launcher/builtin_catalogue.hpp"
 #include "swarmflow/core/time.hpp"
 
 extern char** environ;
@@ -91,7 +92,7 @@ Result<Catalogue> describe_program(const std::filesystem::path& program) {
 
 Result<Catalogue> catalogue_of(const std::filesystem::path& agent_program,
                                const std::filesystem::path& planner_program) {
-  Catalogue catalogue;
+  Catalogue catalogue = builtin_catalogue();
   if (!agent_program.empty()) {
     auto agent = describe_program(agent_program);
     if (!agent) return agent;

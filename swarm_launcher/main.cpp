@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "swarm_core/shell/program.hpp"
 #include "swarm_core/shell/stop_signal.hpp"
+#include "swarm_launcher/builtin_catalogue.hpp"
 #include "swarm_launcher/cli/commands.hpp"
 
 int main(int argc, char** argv) {
@@ -15,9 +16,10 @@ int main(int argc, char** argv) {
     app.require_subcommand(1);
     shell::add_common_options(app);
     using namespace launcher::cli;
-    const Command commands[] = {add_run(app),  add_gateway(app),  add_join(app),  add_soak(app),
-                                add_plan(app), add_simulate(app), add_table(app), add_command(app)};
-    const auto done = shell::parse(app, argc, argv);
+    const Command commands[] = {add_run(app),   add_gateway(app), add_join(app),
+                                add_soak(app),  add_plan(app),    add_simulate(app),
+                                add_table(app), add_command(app), add_keys(app)};
+    const auto done = shell::parse(app, argc, argv, builtin_catalogue());
     if (!done) return tl::unexpected(done.error());
     if (*done) return **done;
     shell::catch_stop_signals();

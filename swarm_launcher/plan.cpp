@@ -19,10 +19,11 @@
 #include "planner_service/plan_checks.hpp"
 #include "planner_service/planner.hpp"
 #include "swarm_core/metrics/shortest_paths.hpp"
-#include "swarmflow/mission/mission_file.hpp"
 #include "swarm_core/plan/plan_json.hpp"
 #include "swarm_core/shell/run_directory.hpp"
+#include "swarm_launcher/builtin_catalogue.hpp"
 #include "swarm_monitor/svg.hpp"
+#include "swarmflow/mission/mission_file.hpp"
 
 namespace swarm::launcher {
 namespace {
@@ -179,7 +180,7 @@ Result<void> write_plan(const std::filesystem::path& out, const Mission& mission
 }  // namespace
 
 Result<ExitCode> plan_mission(const PlanCommandOptions& options) {
-  const auto mission = load_mission(options.mission_file);
+  const auto mission = load_mission(options.mission_file, builtin_catalogue());
   if (!mission) return tl::unexpected(mission.error());
   planner::PlanningRegistry methods;
   planner::register_builtin_methods(methods);

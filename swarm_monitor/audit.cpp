@@ -69,7 +69,7 @@ bool fills_shape(const RecordedRun& run) {
 bool is_home(const RecordedRun& run, std::size_t goal, const Vec2& position_m) {
   if (fills_shape(run) && run.mission.goal_shape != nullptr) {
     return run.mission.goal_shape->at(position_m).energy_m2 <=
-           run.mission.control.diffusion_tolerance_m2;
+           run.mission.control.options.number("diffusion_tolerance_m2").value_or(0.0);
   }
   return run.goal().components()[goal].gaussian.contains_99(position_m);
 }

@@ -17,7 +17,7 @@ namespace {
 
 template <class Method>
 PlanningEntry entry(std::string name, std::string doc) {
-  return {.spec = {.name = std::move(name), .doc = std::move(doc), .options = {}},
+  return {.spec = {.name = std::move(name), .doc = std::move(doc), .options = Method::keys()},
           .make = &Method::make};
 }
 

@@ -5,23 +5,30 @@
 
 #include "robot_agent/control/builtin_methods.hpp"
 #include "robot_agent/control/crops.hpp"
+#include "robot_agent/control/shared_keys.hpp"
 #include "robot_agent/margins.hpp"
 
 namespace swarm::agent {
 namespace {
 
+/// The guide's goals are the planner's, and so is the key of their radius.
+double goal_radius_m(const Mission& mission) {
+  return mission.planner.options.number("crops_goal_radius_m")
+      .value_or(GuidePointsOptions{}.goal_radius_m);
+}
+
 CropsOptions crops_options(const Mission& mission, const BodySpec& body) {
-  const ControlSpec& c = mission.control;
-  const double cruise_mps = std::min(c.cruise_mps, body.speed_max_mps);
+  const PathKeys c = path_keys().read(mission.control.options);
+  const double cruise_mps = std::min(mission.control.cruise_mps, body.speed_max_mps);
   const auto ticks = [&](double time_s) {
-    return static_cast<std::size_t>(std::max(1.0, std::round(time_s * c.rate_hz)));
+    return static_cast<std::size_t>(std::max(1.0, std::round(time_s * mission.control.rate_hz)));
   };
   return {
       .cruise_mps = cruise_mps,
       .approach_gain_hz = c.approach_gain_hz,
       .guide = {.radius_m = body.radius_m,
                 .passable_m = obstacle_margin_m(mission, body) + 0.01,
-                .goal_radius_m = mission.planner.crops_goal_radius_m,
+                .goal_radius_m = goal_radius_m(mission),
                 .sight_m = c.look_ahead_s * cruise_mps},
       .place = {.radius_m = body.radius_m,
                 .room_gap_m = room_gap_m(mission),
@@ -50,7 +57,7 @@ ControlEntry crops_method() {
   return {.spec = {.name = "crops",
                    .doc = "From one intermediate goal of the guide to the next in the direction of "
                           "superposed fields [CRoPS]",
-                   .options = {}},
+                   .options = path_keys().specs()},
           .prepare = prepare};
 }
 

@@ -4,28 +4,28 @@
 
 #include "robot_agent/control/builtin_methods.hpp"
 #include "robot_agent/control/intermittent_diffusion.hpp"
+#include "robot_agent/control/intermittent_diffusion_keys.hpp"
 
 namespace swarm::agent {
 IntermittentDiffusionOptions intermittent_diffusion_options(const Mission& mission,
                                                             const BodySpec& body) {
-  const ControlSpec& c = mission.control;
-  return {.shape = mission.goal_shape,
-          .goal = mission.goal,
-          .repulsion = {.strength_m2 = c.diffusion_strength_m2,
-                        .range_m =
-                            c.diffusion_range_m > 0.0 ? c.diffusion_range_m : 10.0 * body.radius_m},
-          .diffusion = {.noise_mps05 = c.diffusion_noise_mps05,
-                        .time_s = c.diffusion_time_s,
-                        .clearance_m = body.radius_m + mission.safety.obstacle_margin_m},
-          .obstacles = {.radius_m = body.radius_m,
-                        .gap_m = c.obstacle_gap_m,
-                        .push_mps = c.obstacle_push_mps},
-          .radius_m = body.radius_m,
-          .tolerance_m2 = c.diffusion_tolerance_m2,
-          .gain_hz = c.diffusion_gain_hz,
-          .cruise_mps = std::min(c.cruise_mps, body.speed_max_mps),
-          .period = from_seconds(1.0 / c.rate_hz),
-          .flow_time = from_seconds(c.diffusion_flow_s)};
+  const auto c = intermittent_diffusion_keys().read(mission.control.options);
+  return {
+      .shape = mission.goal_shape,
+      .goal = mission.goal,
+      .repulsion = {.strength_m2 = c.strength_m2, .range_m = c.range_or_default_m(body.radius_m)},
+      .diffusion = {.noise_mps05 = c.noise_mps05,
+                    .time_s = c.time_s,
+                    .clearance_m = body.radius_m + mission.safety.obstacle_margin_m},
+      .obstacles = {.radius_m = body.radius_m,
+                    .gap_m = c.obstacle_gap_m,
+                    .push_mps = c.obstacle_push_mps},
+      .radius_m = body.radius_m,
+      .tolerance_m2 = c.tolerance_m2,
+      .gain_hz = c.gain_hz,
+      .cruise_mps = std::min(mission.control.cruise_mps, body.speed_max_mps),
+      .period = from_seconds(1.0 / mission.control.rate_hz),
+      .flow_time = from_seconds(c.flow_s)};
 }
 
 namespace {
@@ -43,7 +43,7 @@ ControlEntry intermittent_diffusion_method() {
   return {.spec = {.name = "intermittent_diffusion",
                    .doc = "Shape formation by gradient flow and intermittent diffusion, without a "
                           "path [intermittent diffusion, Alg. 1]",
-                   .options = {}},
+                   .options = intermittent_diffusion_keys().specs()},
           .prepare = prepare};
 }
 

@@ -5,9 +5,9 @@
 #include <cstdint>
 
 #include "robot_agent/control/density_attraction.hpp"
-#include "swarmflow/robot/planned_density.hpp"
-#include "swarmflow/mission/mission.hpp"
 #include "swarmflow/core/flow_plan.hpp"
+#include "swarmflow/mission/mission.hpp"
+#include "swarmflow/robot/planned_density.hpp"
 
 namespace swarm::agent {
 
@@ -15,8 +15,8 @@ namespace swarm::agent {
 /// one for all robots of a process. No allocation once warm.
 class DensityForecast {
  public:
-  explicit DensityForecast(const Mission& mission)
-      : is_asked_for_(mission.control.density_push_mps > 0.0), robots_(mission.robots.count) {}
+  DensityForecast(const Mission& mission, bool is_asked_for)
+      : is_asked_for_(is_asked_for), robots_(mission.robots.count) {}
 
   bool is_asked_for() const { return is_asked_for_; }
 

@@ -39,14 +39,6 @@ Result<LogFile> open_log(const Mission& mission, const LocalRobotsSpec& spec, Ro
   return LogFile(std::move(*writer));
 }
 
-/// What bodies lag behind their commands, as their drivers say.
-std::function<double(const BodySpec&)> lag_by(const DriverRegistry& drivers) {
-  return [&drivers](const BodySpec& body) {
-    const DriverEntry* entry = drivers.find(body.model);
-    return entry != nullptr && entry->lag_s ? entry->lag_s(body) : 0.0;
-  };
-}
-
 Result<std::unique_ptr<Driver>> start_driver(const DriverRegistry& drivers,
                                              const DriverContext& context) {
   const std::string& name = context.body().model;
@@ -76,8 +68,9 @@ Result<LocalRobots> make_local_robots(const Mission& mission, const World& world
   if (!places) return tl::unexpected(places.error());
   LocalRobots made;
   made.robots.reserve(spec.count);
-  const auto options_of = AgentOptionsOf::make(mission, registry.control, lag_by(registry.drivers));
+  const auto options_of = AgentOptionsOf::make(mission, registry.control);
   if (!options_of) return tl::unexpected(options_of.error());
+  made.read_density = options_of->reads_density();
   for (std::uint32_t i = 0; i < spec.count; ++i) {
     const RobotId id(spec.first.value() + i);
     const Vec2& placed_m = (*places)[id.value()];

@@ -7,12 +7,12 @@
 #include <memory>
 #include <vector>
 
-#include "swarmflow/robot/driver.hpp"
 #include "robot_agent/inbox.hpp"
 #include "robot_agent/loop/robot_loop.hpp"
 #include "robot_agent/program/log_file.hpp"
-#include "swarmflow/robot/run_robot.hpp"
 #include "swarmflow/core/result.hpp"
+#include "swarmflow/robot/driver.hpp"
+#include "swarmflow/robot/run_robot.hpp"
 
 namespace swarm::agent {
 
@@ -38,6 +38,7 @@ struct LocalRobotsSpec {
 struct LocalRobots {
   std::vector<LocalRobot> robots;
   bool any_is_underway = false;  ///< some were restarted in mid-flight
+  bool read_density = false;     ///< their control method asks for the planned density
 };
 
 /// Makes robots at their places in the mission, or where their logs saw them last, with the control

@@ -54,7 +54,7 @@ ProcessLoop::ProcessLoop(const Mission& mission, std::unique_ptr<World> world, L
       plans_(local_.any_is_underway),
       status_(mission, *bus_.status),
       events_(local_.robots, *bus_.event),
-      density_(mission) {}
+      density_(mission, local_.read_density) {}
 
 void ProcessLoop::tick(const Time& time) {
   std::vector<LocalRobot>& robots = local_.robots;

@@ -49,7 +49,7 @@ Result<ExitCode> run(int argc, char** argv, const RobotRegistry& registry) {
       "robot_agent");
   CommandLine line;
   add_options(app, line);
-  const auto done = shell::parse(app, argc, argv);
+  const auto done = shell::parse(app, argc, argv, catalogue_of(registry));
   if (!done) return tl::unexpected(done.error());
   if (*done) return **done;
   if (line.describe) {

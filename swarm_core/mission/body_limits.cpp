@@ -25,14 +25,14 @@ double packing_per_m2(double distance_m) {
 
 }  // namespace
 
-double body_lag_s(const BodySpec& body) {
-  const double stopping_s = body.speed_max_mps / body.acceleration_max_mps2;
-  if (body.model == "double_integrator") return stopping_s;
-  if (body.model == "unicycle") {
-    return stopping_s + 0.5 * std::numbers::pi / body.turn_rate_max_radps;
-  }
-  return 0.0;
+double declared_lag_s(const BodySpec& body, const LagSpec& lag) {
+  double lag_s = lag.fixed_s;
+  if (lag.accelerates) lag_s += body.speed_max_mps / body.acceleration_max_mps2;
+  if (lag.turns) lag_s += 0.5 * std::numbers::pi / body.turn_rate_max_radps;
+  return lag_s;
 }
+
+double body_lag_s(const BodySpec& body) { return body.lag_s.value_or(0.0); }
 
 SwarmLimits swarm_limits(const RobotsSpec& robots, const SafetySpec& safety,
                          const ControlSpec& control) {

@@ -26,6 +26,7 @@ Json option_json(const OptionSpec& option) {
             {"kind", kind->second},
             {"default", option.fallback},
             {"doc", option.doc}};
+  if (!option.at_most.empty()) json["at_most"] = option.at_most;
   if (option.kind == OptionSpec::Kind::kChoice) {
     json["words"] = option.words;
   } else {
@@ -41,8 +42,13 @@ Json components_json(const Components& components) {
   for (const ComponentSpec& component : components) {
     Json options = Json::array();
     for (const OptionSpec& option : component.options) options.push_back(option_json(option));
-    list.push_back(
-        {{"name", component.name}, {"doc", component.doc}, {"options", std::move(options)}});
+    Json json{{"name", component.name}, {"doc", component.doc}, {"options", std::move(options)}};
+    if (!(component.lag == LagSpec{})) {
+      json["lag"] = {{"fixed_s", component.lag.fixed_s},
+                     {"accelerates", component.lag.accelerates},
+                     {"turns", component.lag.turns}};
+    }
+    list.push_back(std::move(json));
   }
   return list;
 }
@@ -52,7 +58,8 @@ Json components_json(const Components& components) {
 OptionSpec option_from(const Json& json) {
   OptionSpec option{.key = json.at("key").get<std::string>(),
                     .fallback = json.at("default").get<std::string>(),
-                    .doc = json.at("doc").get<std::string>()};
+                    .doc = json.at("doc").get<std::string>(),
+                    .at_most = json.value("at_most", "")};
   const auto word = json.at("kind").get<std::string>();
   const auto kind =
       std::find_if(kKinds.begin(), kKinds.end(), [&](const auto& k) { return k.second == word; });
@@ -74,6 +81,11 @@ Components components_from(const Json& list) {
                             .doc = json.at("doc").get<std::string>(),
                             .options = {}};
     for (const Json& option : json.at("options")) component.options.push_back(option_from(option));
+    if (const auto lag = json.find("lag"); lag != json.end()) {
+      component.lag = {.fixed_s = lag->at("fixed_s").get<double>(),
+                       .accelerates = lag->at("accelerates").get<bool>(),
+                       .turns = lag->at("turns").get<bool>()};
+    }
     components.push_back(std::move(component));
   }
   return components;

@@ -4,29 +4,24 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdio>
 #include <memory>
-#include <set>
-#include <span>
 #include <utility>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "swarm_core/mission/goal_shape.hpp"
 #include "swarm_core/mission/mission_fields.hpp"
-#include "swarm_core/mission/mission_rules.hpp"
-#include "swarm_core/mission/scene_change_file.hpp"
+#include "swarm_core/mission/mission_shapes.hpp"
+#include "swarm_core/mission/script_reader.hpp"
+#include "swarm_core/mission/section_reader.hpp"
 #include "swarm_core/mission/yaml_reader.hpp"
 
 namespace swarm {
 namespace {
 
-using mission_fields::Field;
 using yaml::MapReader;
 using yaml::Node;
-using yaml::Position;
 
 /// The name becomes part of file names.
 bool is_good_name(std::string_view name) {
@@ -41,28 +36,32 @@ class MissionReader {
  public:
   MissionReader(const std::filesystem::path& directory, const Catalogue& catalogue,
                 yaml::Violations& violations)
-      : catalogue_(catalogue), violations_(violations), shapes_(violations, directory) {}
+      : violations_(violations), shapes_(violations, directory), sections_(catalogue, violations) {}
 
   Mission read(const Node& root) {
     MapReader top(root, "", violations_);
     read_version(top);
     if (const Node* node = top.take("name")) read_name(*node);
-    if (const Node* node = top.take("robots")) read_robots(*node);
+    sections_.read_robots(top.take("robots"), mission_.robots);
     if (const Node* node = top.take("world", true)) read_world(*node);
     mission_.start = read_mixture(top, "start");
     mission_.goal = read_mixture(top, "goal", &mission_.goal_shape);
     if (const Node* node = top.take("goal_shape")) read_drawing(*node);
-    read_section(top, "planner", mission_.planner, mission_fields::kPlanner);
-    read_section(top, "control", mission_.control, mission_fields::kControl);
+    sections_.read_planner(top.take("planner"), mission_.planner);
+    sections_.read_control(top.take("control"), mission_.control);
     read_section(top, "safety", mission_.safety, mission_fields::kSafety);
     read_section(top, "link", mission_.link, mission_fields::kLink);
     read_section(top, "timing", mission_.timing, mission_fields::kTiming);
     read_section(top, "plan_clock", mission_.plan_clock, mission_fields::kPlanClock);
     read_section(top, "launcher", mission_.launcher, mission_fields::kLauncher);
     read_section(top, "criteria", mission_.criteria, mission_fields::kCriteria);
-    if (const Node* node = top.take("script")) read_script(*node);
+    if (const Node* node = top.take("script")) {
+      mission_.script = read_script(
+          *node, {.world = has_world_ ? &mission_.world : nullptr, .robots = mission_.robots.count},
+          shapes_, violations_);
+    }
     top.finish();
-    if (top.is_map()) check_rules();
+    if (top.is_map()) sections_.check_rules(mission_);
     return std::move(mission_);
   }
 
@@ -86,181 +85,9 @@ class MissionReader {
   }
 
   template <class Section, std::size_t N>
-  void read_section(MapReader& top, std::string_view key, Section& section,
-                    const std::array<Field<Section>, N>& fields) {
-    const Node* node = top.take(key);
-    if (node == nullptr) return;
-    MapReader keys(*node, std::string(key), violations_);
-    if constexpr (std::is_same_v<Section, ControlSpec>) {
-      read_component(keys, "method", control_section(), section.method);
-      read_choice(keys, "tracking", mission_fields::kTracking, section.tracking);
-    }
-    if constexpr (std::is_same_v<Section, PlannerSpec>) {
-      read_component(keys, "method", planner_section(), section.method);
-      read_choice(keys, "sampler", mission_fields::kPlannerSamplers, section.sampler);
-      read_choice(keys, "density_cap", mission_fields::kDensityCaps, section.density_cap);
-      read_automatic(keys, "density_cap_per_m2", mission_fields::kDensityCap_per_m2,
-                     section.density_cap_per_m2);
-    }
-    read_fields(keys, section, fields);
-    if constexpr (std::is_same_v<Section, ControlSpec>) {
-      read_options(keys, control_section(), section.options);
-    }
-    if constexpr (std::is_same_v<Section, PlannerSpec>) {
-      read_options(keys, planner_section(), section.options);
-    }
-    keys.finish();
-  }
-
-  template <class Section, std::size_t N>
-  void read_fields(MapReader& keys, Section& section, const std::array<Field<Section>, N>& fields) {
-    for (const Field<Section>& field : fields) {
-      if (const Node* value = keys.take(field.key)) read_field(*value, keys, field, section);
-    }
-  }
-
-  void read_body(MapReader& keys, BodySpec& body) {
-    read_component(keys, "model", drivers_section(), body.model);
-    read_fields(keys, body, mission_fields::kBody);
-    read_options(keys, drivers_section(), body.options);
-  }
-
-  void read_robots(const Node& node) {
-    RobotsSpec& robots = mission_.robots;
-    MapReader keys(node, "robots", violations_);
-    read_fields(keys, robots, mission_fields::kRobots);
-    read_body(keys, robots);
-    const Node* groups = keys.take("groups");
-    keys.finish();
-    if (groups == nullptr) return;
-    const auto* items =
-        yaml::read_list(*groups, "robots.groups", 0, mission_fields::kMaxRobotGroups, violations_);
-    if (items == nullptr) return;
-    std::uint64_t grouped = 0;
-    for (std::size_t i = 0; i < items->size(); ++i) {
-      RobotGroupSpec group{robots, 0};  // what it does not say is as for the others
-      MapReader keys_of_group((*items)[i], fmt::format("robots.groups[{}]", i), violations_);
-      if (const Node* value = keys_of_group.take("count", true)) {
-        group.count =
-            yaml::read_count(*value, keys_of_group.path_of("count"),
-                             mission_fields::between(1, mission_fields::kMaxRobots), violations_)
-                .value_or(0);
-      }
-      read_body(keys_of_group, group);
-      keys_of_group.finish();
-      grouped += group.count;
-      robots.groups.push_back(std::move(group));
-    }
-    if (grouped > robots.count) {
-      violations_.add(groups->at,
-                      fmt::format("robots.groups have {} robots; must be <= robots.count ({})",
-                                  grouped, robots.count));
-    }
-  }
-
-  template <class Section>
-  void read_field(const Node& value, const MapReader& keys, const Field<Section>& field,
-                  Section& section) {
-    const std::string path = keys.path_of(field.key);
-    const bool good = std::visit(
-        [&](auto member) {
-          using T = std::remove_reference_t<decltype(section.*member)>;
-          if constexpr (std::is_same_v<T, std::uint32_t>) {
-            const auto read = yaml::read_count(value, path, field.range, violations_);
-            if (read) section.*member = *read;
-            return read.has_value();
-          } else {
-            const auto read = yaml::read_number(value, path, field.range, violations_);
-            if (read) section.*member = *read;
-            return read.has_value();
-          }
-        },
-        field.member);
-    if (good) {
-      places_[path] = value.at;
-    } else {
-      bad_.insert(path);
-    }
-  }
-
-  /// A number, or `auto`, which leaves the value unset.
-  void read_automatic(MapReader& keys, std::string_view key, const yaml::Range& range,
-                      std::optional<double>& value) {
-    const Node* node = keys.take(key);
-    if (node == nullptr) return;
-    if (node->kind == Node::Kind::kScalar && node->text == mission_fields::kAutomatic) {
-      value.reset();
-    } else {
-      value = yaml::read_number(*node, keys.path_of(key), range, violations_);
-    }
-  }
-
-  void read_choice(MapReader& keys, std::string_view key, std::span<const std::string_view> known,
-                   std::string& choice) {
-    const Node* node = keys.take(key);
-    if (node == nullptr) return;
-    auto chosen = yaml::read_choice(*node, keys.path_of(key), known, violations_);
-    if (chosen) choice = *std::move(chosen);
-  }
-
-  /// The components that a section of the file may name.
-  struct ComponentSection {
-    std::span<const std::string_view> built_in;
-    const Components& others;
-    bool is_open = false;
-  };
-  ComponentSection control_section() const {
-    return {mission_fields::kControlMethods, catalogue_.control_methods,
-            catalogue_.robots_are_open};
-  }
-  ComponentSection planner_section() const {
-    return {mission_fields::kPlannerMethods, catalogue_.planning_methods,
-            catalogue_.planning_is_open};
-  }
-  ComponentSection drivers_section() const {
-    return {mission_fields::kRobotModels, catalogue_.drivers, catalogue_.robots_are_open};
-  }
-
-  void read_component(MapReader& keys, std::string_view key, const ComponentSection& section,
-                      std::string& name) {
-    if (!section.is_open) {
-      std::vector<std::string_view> known(section.built_in.begin(), section.built_in.end());
-      for (const ComponentSpec& component : section.others) {
-        if (std::find(known.begin(), known.end(), component.name) == known.end()) {
-          known.emplace_back(component.name);
-        }
-      }
-      return read_choice(keys, key, known, name);
-    }
-    const Node* node = keys.take(key);
-    if (node == nullptr) return;
-    if (auto text = yaml::read_text(*node, keys.path_of(key), violations_)) name = *text;
-  }
-
-  /// The options that components of a section declare, whichever of them the mission names.
-  void read_options(MapReader& keys, const ComponentSection& section, OptionValues& values) {
-    for (const ComponentSpec& component : section.others) {
-      for (const OptionSpec& option : component.options) {
-        if (const Node* node = keys.take(option.key)) read_option(*node, keys, option, values);
-      }
-    }
-    if (!section.is_open) return;
-    for (const auto& [key, node] : keys.take_scalars()) values.set(key, node->text);
-  }
-
-  void read_option(const Node& node, const MapReader& keys, const OptionSpec& option,
-                   OptionValues& values) {
-    const std::string path = keys.path_of(option.key);
-    bool good = false;
-    if (option.kind == OptionSpec::Kind::kChoice) {
-      const std::vector<std::string_view> words(option.words.begin(), option.words.end());
-      good = yaml::read_choice(node, path, words, violations_).has_value();
-    } else if (option.kind == OptionSpec::Kind::kCount) {
-      good = yaml::read_count(node, path, option.range, violations_).has_value();
-    } else {
-      good = yaml::read_number(node, path, option.range, violations_).has_value();
-    }
-    if (good) values.set(option.key, node.text);
+  void read_section(MapReader& top, const std::string& name, Section& section,
+                    const std::array<mission_fields::Field<Section>, N>& fields) {
+    sections_.read(top.take(name), name, section, fields);
   }
 
   void read_world(const Node& node) {
@@ -319,87 +146,11 @@ class MissionReader {
         .value_or(Mixture{});
   }
 
-  void read_script(const Node& node) {
-    const auto* items =
-        yaml::read_list(node, "script", 0, mission_fields::kMaxScriptEvents, violations_);
-    if (items == nullptr) return;
-    double previous_s = 0.0;
-    Scene scene = first_scene(mission_.world.obstacles().size());
-    for (std::size_t i = 0; i < items->size(); ++i) {
-      const std::string path = fmt::format("script[{}]", i);
-      MapReader keys((*items)[i], path, violations_);
-      std::optional<double> at_s;
-      if (const Node* value = keys.take("at_s", true)) {
-        at_s = yaml::read_number(*value, keys.path_of("at_s"), mission_fields::kScriptTime_s,
-                                 violations_);
-        if (at_s && *at_s < previous_s) {
-          violations_.add(value->at, fmt::format("{} is {}; must be >= the one before ({})",
-                                                 keys.path_of("at_s"), *at_s, previous_s));
-        }
-        previous_s = at_s.value_or(previous_s);
-      }
-      const Node* word = keys.take("action", true);
-      const auto name = word == nullptr
-                            ? std::nullopt
-                            : yaml::read_choice(*word, keys.path_of("action"),
-                                                mission_fields::kScriptActions, violations_);
-      if (!name) continue;  // which other keys belong here is not known
-      const auto action = read_action(*name, keys, path, (*items)[i].at);
-      keys.finish();
-      if (!at_s || !action) continue;
-      if (has_world_) follow_scene(scene, *action, *at_s, (*items)[i].at, path);
-      mission_.script.push_back({.at_s = *at_s, .action = *action});
-    }
-  }
-
-  /// Obstacles that a script moves or removes must be there by then. Which robots fall is not
-  /// known: a script may clear any.
-  void follow_scene(Scene& scene, const MissionAction& action, double at_s, Position at,
-                    const std::string& path) {
-    const auto* change = std::get_if<SceneChange>(&action);
-    if (change == nullptr) return;
-    if (const auto* clear = std::get_if<ClearBody>(change)) {
-      if (clear->robot.value() < mission_.robots.count) return;
-      violations_.add(at, fmt::format("{}: there is no robot {}", path, clear->robot.value()));
-      return;
-    }
-    auto next = after(scene, *change, mission_.world, UtcTime(from_seconds(at_s)));
-    if (next) {
-      scene = std::move(*next);
-    } else {
-      violations_.add(at, fmt::format("{}: {}", path, next.error().message));
-    }
-  }
-
-  std::optional<MissionAction> read_action(const std::string& name, MapReader& keys,
-                                           const std::string& path, Position at) {
-    for (const CommandKind kind : {CommandKind::kPause, CommandKind::kResume, CommandKind::kStop}) {
-      if (name == to_string(kind)) return kind;
-    }
-    auto change = read_scene_change(name, keys, path, at, shapes_, mission_.world, violations_);
-    if (!change) return std::nullopt;
-    return *std::move(change);
-  }
-
-  /// A rule is shown where one of its keys is given; a rule whose key is broken by itself waits.
-  void check_rules() {
-    for (const BrokenRule& rule : broken_rules(mission_)) {
-      const auto is_bad = [&](std::string_view key) { return bad_.contains(std::string(key)); };
-      if (std::any_of(rule.keys.begin(), rule.keys.end(), is_bad)) continue;
-      const auto given = std::find_if(rule.keys.begin(), rule.keys.end(),
-                                      [&](auto key) { return places_.contains(std::string(key)); });
-      const Position at = given == rule.keys.end() ? Position{} : places_[std::string(*given)];
-      violations_.add(at, rule.message);
-    }
-  }
-
-  const Catalogue& catalogue_;
   yaml::Violations& violations_;
   Mission mission_;
   ShapeReader shapes_;
+  SectionReader sections_;
   bool has_world_ = false;
-  std::map<std::string, Position> places_;  // of scalar keys, by path
-  std::set<std::string> bad_;               // paths of scalar keys with a violation
 };
 
 }  // namespace

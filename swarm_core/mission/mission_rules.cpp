@@ -2,14 +2,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "swarm_core/mission/mission_rules.hpp"
 
+#include <algorithm>
+#include <utility>
+
 #include <fmt/format.h>
 
 namespace swarm {
 namespace {
 
 struct Side {
-  std::string_view key;
-  double value;
+  std::string key;
+  double value = 0.0;
 };
 
 /// Collects rules of the form "culprit ≤ limit".
@@ -25,7 +28,7 @@ class Rules {
     add({culprit.key, limit.key}, fmt::format("{} is {}; must be < {} ({})", culprit.key,
                                               culprit.value, limit.key, limit.value));
   }
-  void add(std::vector<std::string_view> keys, std::string message) {
+  void add(std::vector<std::string> keys, std::string message) {
     broken.push_back({std::move(keys), std::move(message)});
   }
   std::vector<BrokenRule> broken;
@@ -41,12 +44,32 @@ double least_hear_radius_m(const Mission& mission) {
          2.0 * mission.robots.speed_max_mps * (braking_s + mission.link.send_interval_max_s);
 }
 
+std::vector<BrokenRule> broken_rules(const std::string& section, const Components& components,
+                                     const OptionValues& values) {
+  Rules rules;
+  for (const ComponentSpec& component : components) {
+    const auto side = [&](std::string_view key) -> Side {
+      const auto option =
+          std::find_if(component.options.begin(), component.options.end(),
+                       [&](const OptionSpec& candidate) { return candidate.key == key; });
+      if (option == component.options.end()) return {};
+      OptionValues fallback;
+      fallback.set(key, option->fallback);
+      const auto given = values.number(key);
+      return {fmt::format("{}.{}", section, key),
+              given ? *given : fallback.number(key).value_or(0.0)};
+    };
+    for (const OptionSpec& option : component.options) {
+      if (!option.at_most.empty()) rules.at_most(side(option.key), side(option.at_most));
+    }
+  }
+  return std::move(rules.broken);
+}
+
 std::vector<BrokenRule> broken_rules(const Mission& mission) {
   const auto& [name, world, robots, start, goal, goal_shape, planner, control, safety, link, timing,
                plan_clock, launcher, criteria, script] = mission;
   Rules rules;
-  rules.at_most({"planner.sigma_min_m", planner.sigma_min_m},
-                {"planner.sigma_max_m", planner.sigma_max_m});
   rules.at_most({"planner.speed_mps", planner.speed_mps},
                 {"robots.speed_max_mps", robots.speed_max_mps});
   rules.at_most({"control.cruise_mps", control.cruise_mps},

@@ -3,17 +3,17 @@
 #pragma once
 
 #include <string>
-#include <string_view>
 #include <vector>
 
+#include "swarmflow/mission/catalogue.hpp"
 #include "swarmflow/mission/mission.hpp"
 
 namespace swarm {
 
 /// A rule between several keys that a mission breaks.
 struct BrokenRule {
-  std::vector<std::string_view> keys;  ///< paths of the keys it ties, the most likely culprit first
-  std::string message;                 ///< what is wrong; what would be right
+  std::vector<std::string> keys;  ///< paths of the keys it ties, the most likely culprit first
+  std::string message;            ///< what is wrong; what would be right
 };
 
 /// Distance between two robots' centres from which they must hear each other [m]: the safety filter
@@ -23,5 +23,10 @@ double least_hear_radius_m(const Mission& mission);
 
 /// All rules between keys that `mission` breaks; its single values are taken to be in range.
 std::vector<BrokenRule> broken_rules(const Mission& mission);
+
+/// The rules between keys of the components of a section (OptionSpec::at_most) that the values
+/// break. A value that is not set is the key's default.
+std::vector<BrokenRule> broken_rules(const std::string& section, const Components& components,
+                                     const OptionValues& values);
 
 }  // namespace swarm

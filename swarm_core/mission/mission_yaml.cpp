@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 
 #include "swarm_core/mission/mission_fields.hpp"
-#include "swarmflow/mission/mission_file.hpp"
 #include "swarm_core/mission/scene_change_file.hpp"
+#include "swarmflow/mission/mission_file.hpp"
 
 namespace swarm {
 namespace {
@@ -84,6 +84,10 @@ void write_fields(Out out, const Section& section,
   }
 }
 
+std::string or_automatic(const std::optional<double>& value) {
+  return value ? fmt::format("{}", *value) : std::string(mission_fields::kAutomatic);
+}
+
 /// The values of a component's own options, as checked when they were read.
 void write_options(Out out, const OptionValues& options) {
   for (const auto& [key, text] : options.all()) fmt::format_to(out, "  {}: {}\n", key, text);
@@ -97,14 +101,16 @@ void write_criteria(Out out, const CriteriaSpec& criteria) {
 }
 
 void write_robots(Out out, const RobotsSpec& robots) {
-  fmt::format_to(out, "robots:\n  model: {}\n", robots.model);
+  fmt::format_to(out, "robots:\n  model: {}\n  lag_s: {}\n", robots.model,
+                 or_automatic(robots.lag_s));
   write_fields(out, robots, mission_fields::kRobots);
   write_fields<BodySpec>(out, robots, mission_fields::kBody);
   write_options(out, robots.options);
   if (robots.groups.empty()) return;
   fmt::format_to(out, "  groups:\n");
   for (const RobotGroupSpec& group : robots.groups) {
-    fmt::format_to(out, "    - {{count: {}, model: {}", group.count, group.model);
+    fmt::format_to(out, "    - {{count: {}, model: {}, lag_s: {}", group.count, group.model,
+                   or_automatic(group.lag_s));
     for (const auto& field : mission_fields::kBody) {
       fmt::format_to(
           out, ", {}: {}", field.key,
@@ -142,16 +148,11 @@ std::string to_yaml(const Mission& mission) {
   write_mixture(out, "start", mission.start);
   write_mixture(out, "goal", mission.goal);
   if (mission.goal_shape) write_shape(out, *mission.goal_shape);
-  fmt::format_to(out, "planner:\n  method: {}\n  sampler: {}\n  density_cap: {}\n",
-                 mission.planner.method, mission.planner.sampler, mission.planner.density_cap);
-  fmt::format_to(out, "  density_cap_per_m2: {}\n",
-                 mission.planner.density_cap_per_m2
-                     ? fmt::format("{}", *mission.planner.density_cap_per_m2)
-                     : std::string(mission_fields::kAutomatic));
+  fmt::format_to(out, "planner:\n  method: {}\n  density_cap_per_m2: {}\n", mission.planner.method,
+                 or_automatic(mission.planner.density_cap_per_m2));
   write_fields(out, mission.planner, mission_fields::kPlanner);
   write_options(out, mission.planner.options);
-  fmt::format_to(out, "control:\n  method: {}\n  tracking: {}\n", mission.control.method,
-                 mission.control.tracking);
+  fmt::format_to(out, "control:\n  method: {}\n", mission.control.method);
   write_fields(out, mission.control, mission_fields::kControl);
   write_options(out, mission.control.options);
   fmt::format_to(out, "safety:\n");

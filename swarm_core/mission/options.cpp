@@ -32,9 +32,11 @@ const std::string* OptionValues::find(std::string_view key) const {
 std::optional<double> OptionValues::number(std::string_view key) const {
   const std::string* text = find(key);
   if (text == nullptr) return std::nullopt;
+  std::string_view digits = *text;
+  if (digits.starts_with('+') && !digits.starts_with("+-")) digits.remove_prefix(1);
   double value = 0.0;
-  const auto [end, error] = std::from_chars(text->data(), text->data() + text->size(), value);
-  if (error != std::errc{} || end != text->data() + text->size()) return std::nullopt;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+  if (error != std::errc{} || end != digits.data() + digits.size()) return std::nullopt;
   return value;
 }
 

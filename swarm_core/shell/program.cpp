@@ -33,7 +33,8 @@ void add_common_options(CLI::App& app) {
       ->type_name("MISSION.yaml");
 }
 
-Result<std::optional<ExitCode>> parse(CLI::App& app, int argc, char** argv) {
+Result<std::optional<ExitCode>> parse(CLI::App& app, int argc, char** argv,
+                                      const Catalogue& catalogue) {
   // --check is a task of its own: what the program needs otherwise is not required beside it.
   for (int i = 1; i < argc; ++i) {
     const std::string argument = argv[i];
@@ -41,7 +42,7 @@ Result<std::optional<ExitCode>> parse(CLI::App& app, int argc, char** argv) {
     if (!inline_value && argument != "--check") continue;
     if (!inline_value && i + 1 == argc) break;
     const std::string file = inline_value ? argument.substr(8) : argv[i + 1];
-    const auto mission = load_mission(file);
+    const auto mission = load_mission(file, catalogue);
     if (!mission) return tl::unexpected(mission.error());
     std::printf("%s: ok\n", file.c_str());
     return ExitCode::kOk;

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "swarmflow/core/result.hpp"
+#include "swarmflow/mission/catalogue.hpp"
 
 namespace CLI {
 class App;
@@ -23,7 +24,9 @@ int run_main(const std::string& name, const std::function<Result<ExitCode>()>& b
 void add_common_options(CLI::App& app);
 
 /// Parses. Holds an exit code when there is nothing left to do (help, version, check); an error of
-/// kind kBadInput on wrong usage.
-Result<std::optional<ExitCode>> parse(CLI::App& app, int argc, char** argv);
+/// kind kBadInput on wrong usage. `--check` knows the components of `catalogue`; a program that
+/// has only some leaves the sections of the others open.
+Result<std::optional<ExitCode>> parse(CLI::App& app, int argc, char** argv,
+                                      const Catalogue& catalogue = open_catalogue());
 
 }  // namespace swarm::shell

@@ -7,8 +7,8 @@
 
 #include <CLI/CLI.hpp>
 
-#include "swarmflow/core/result.hpp"
 #include "swarm_core/mission/channel.hpp"
+#include "swarmflow/core/result.hpp"
 
 /// The program's subcommands: one file each, or two that belong together.
 namespace swarm::launcher::cli {
@@ -26,6 +26,7 @@ Command add_plan(CLI::App& program);
 Command add_simulate(CLI::App& program);
 Command add_table(CLI::App& program);
 Command add_soak(CLI::App& program);
+Command add_keys(CLI::App& program);
 
 /// The options that run and soak share. \pre what they fill outlives the program's options
 void add_channel(CLI::App& command, std::optional<Channel>& channel);

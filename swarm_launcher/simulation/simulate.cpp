@@ -9,17 +9,18 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "swarmflow/mission/mission_file.hpp"
 #include "swarm_core/mission/scene_log.hpp"
 #include "swarm_core/plan/plan_json.hpp"
 #include "swarm_core/plan/planning_record.hpp"
 #include "swarm_core/shell/run_dir.hpp"
 #include "swarm_core/shell/run_directory.hpp"
 #include "swarm_core/shell/stop_signal.hpp"
+#include "swarm_launcher/builtin_catalogue.hpp"
 #include "swarm_launcher/event_log.hpp"
 #include "swarm_launcher/progress.hpp"
 #include "swarm_launcher/simulation/simulation.hpp"
 #include "swarm_launcher/summary.hpp"
+#include "swarmflow/mission/mission_file.hpp"
 
 namespace swarm::launcher {
 namespace {
@@ -108,7 +109,7 @@ Result<ExitCode> summarise_unrecorded(const Simulation& simulation, const Measur
 }  // namespace
 
 Result<ExitCode> simulate_mission(const SimulateOptions& options) {
-  auto mission = load_mission(options.mission_file);
+  auto mission = load_mission(options.mission_file, builtin_catalogue());
   if (!mission) return tl::unexpected(mission.error());
   if (options.robots) mission->robots.count = *options.robots;
   for (const Kill& kill : options.kills) {

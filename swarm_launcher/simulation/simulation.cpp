@@ -68,7 +68,7 @@ Simulation::Simulation(const Mission& mission, planner::Planner planner,
       crew_(std::max<std::size_t>(options.threads, 1)),
       collected_(crew_.size()),
       now_(kBegin),
-      density_(mission) {
+      density_(mission, agent::AgentOptionsOf(mission).reads_density()) {
   options_.kills = in_order_of_time(std::move(options_.kills));
 }
 

@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "swarm_launcher/builtin_catalogue.hpp"
 #include "swarmflow/mission/mission_file.hpp"
 
 namespace swarm::launcher {
@@ -44,7 +45,7 @@ Result<Mission> soak_mission(std::uint32_t robots, double rate_hz, double durati
     fmt::format_to(std::back_inserter(yaml), "  - {{at_s: {}, action: goto, goal: {}}}\n", at_s,
                    ends[goal]);
   }
-  return parse_mission(yaml, "the soak's own mission");
+  return parse_mission(yaml, "the soak's own mission", {}, builtin_catalogue());
 }
 
 }  // namespace swarm::launcher

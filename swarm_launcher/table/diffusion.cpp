@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "robot_agent/control/intermittent_diffusion_keys.hpp"
 #include "swarm_launcher/table/experiments.hpp"
 #include "swarm_launcher/table/figure.hpp"
 
@@ -35,13 +36,16 @@ Mission scaled(Mission mission, const Case& c) {
   RobotsSpec& robots = mission.robots;
   robots.count = c.robots;
   for (double* value : {&robots.radius_m, &robots.placement_gap_m, &robots.speed_max_mps,
-                        &mission.control.cruise_mps, &mission.control.obstacle_gap_m,
-                        &mission.safety.neighbour_margin_m, &mission.safety.obstacle_margin_m,
-                        &mission.link.hear_radius_m, &mission.link.send_error_m}) {
+                        &mission.control.cruise_mps, &mission.safety.neighbour_margin_m,
+                        &mission.safety.obstacle_margin_m, &mission.link.hear_radius_m,
+                        &mission.link.send_error_m}) {
     *value *= factor;
   }
   mission.control.rate_hz /= factor;
-  mission.control.diffusion_tolerance_m2 = c.tolerance_m2;
+  OptionValues& keys = mission.control.options;
+  const double gap_m = agent::intermittent_diffusion_keys().read(keys).obstacle_gap_m;
+  keys.set("obstacle_gap_m", factor * gap_m);
+  keys.set("diffusion_tolerance_m2", c.tolerance_m2);
   mission.launcher.time_limit_s = kTimeLimit_s;
   return mission;
 }
@@ -91,7 +95,7 @@ Result<void> experiment(Rows& rows, std::span<const Case> cases) {
     if (auto added = rows.add(c.mission, cells, *mission, seeds); !added) return added;
     const std::size_t ours = formed(rows.newest(), c);
 
-    mission->control.diffusion_time_s = 0.0;
+    mission->control.options.set("diffusion_time_s", 0.0);
     const std::string plain = fmt::format("{}, gradient descent", c.mission);
     const std::uint32_t plain_seeds = std::min(seeds, c.seeds_of_descent);
     if (auto added = rows.add(plain, cells, *mission, plain_seeds); !added) return added;

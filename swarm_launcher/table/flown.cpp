@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "robot_agent/control/cotangent_repulsion.hpp"
+#include "robot_agent/control/intermittent_diffusion_keys.hpp"
 #include "swarm_core/shell/stop_signal.hpp"
 #include "swarm_monitor/audit.hpp"
 #include "swarm_monitor/report.hpp"
@@ -72,9 +73,9 @@ double risk_share(const monitor::RecordedRun& run) {
 /// All robots are recorded at the same times, evenly from the first step on.
 std::vector<double> energy_m2(const monitor::RecordedRun& run) {
   const ControlSpec& control = run.mission.control;
-  const double range_m = control.diffusion_range_m > 0.0 ? control.diffusion_range_m
-                                                         : 10.0 * run.mission.robots.radius_m;
-  const agent::CotangentOptions repulsion{control.diffusion_strength_m2, range_m};
+  const auto keys = agent::intermittent_diffusion_keys().read(control.options);
+  const agent::CotangentOptions repulsion{keys.strength_m2,
+                                          keys.range_or_default_m(run.mission.robots.radius_m)};
   const double points_hz = control.rate_hz / static_cast<double>(periods_a_point(run.mission));
   const auto every = static_cast<std::size_t>(std::max(1.0, Flown::kEnergyEvery_s * points_hz));
   std::vector<double> energy;

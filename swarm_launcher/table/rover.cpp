@@ -101,7 +101,7 @@ Result<void> rover_experiment(Rows& rows) {
     by_alpha.push_back(rows.all().size() - 1);
   }
   mission->planner.risk_alpha = kAlphas.front().first;
-  mission->control.tracking = "free";
+  mission->control.options.set("tracking", "free");
   if (auto added = rows.add("scenario 2, tracking: free", "| |", *mission, seeds); !added) {
     return added;
   }

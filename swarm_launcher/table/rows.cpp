@@ -8,9 +8,10 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "swarmflow/mission/mission_file.hpp"
 #include "swarm_core/shell/run_directory.hpp"
+#include "swarm_launcher/builtin_catalogue.hpp"
 #include "swarm_launcher/progress.hpp"
+#include "swarmflow/mission/mission_file.hpp"
 
 namespace swarm::launcher {
 namespace {
@@ -78,7 +79,7 @@ nlohmann::ordered_json to_json(const Row& row) {
 }  // namespace
 
 Result<Mission> Rows::load(const std::string& name) const {
-  return load_mission(options_.missions / (name + ".yaml"));
+  return load_mission(options_.missions / (name + ".yaml"), builtin_catalogue());
 }
 
 Result<void> Rows::add(const std::string& name, const std::string& published,

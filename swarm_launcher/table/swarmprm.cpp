@@ -26,19 +26,19 @@ Result<void> add_ablations(Rows& rows, Mission mission) {
   };
   add("cap 1.5", mission);
   Mission free = mission;
-  free.control.tracking = "free";
+  free.control.options.set("tracking", "free");
   add("cap 1.5, tracking free", free);
   Mission dense = mission;
-  dense.control.density_push_mps = 0.3;
+  dense.control.options.set("density_push_mps", 0.3);
   add("cap 1.5, density term 0.3 m/s", dense);
   Mission close = mission;
-  close.control.neighbour_push_mps = 0.0;
+  close.control.options.set("neighbour_push_mps", 0.0);
   add("cap 1.5, no repulsion", close);
   Mission uncapped = mission;
   uncapped.planner.density_cap_per_m2 = 0.0;
   add("no cap", uncapped);
   Mission uncapped_free = uncapped;
-  uncapped_free.control.tracking = "free";
+  uncapped_free.control.options.set("tracking", "free");
   add("no cap, tracking free", uncapped_free);
   if (auto added = rows.add_in_turns(names, missions, seeds); !added) return added;
   rows.may_fail(missions.size() - 1);  // all but the first

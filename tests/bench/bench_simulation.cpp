@@ -10,9 +10,9 @@
 
 #include <benchmark/benchmark.h>
 
-#include "swarmflow/mission/mission_file.hpp"
 #include "swarm_launcher/simulation/air.hpp"
 #include "swarm_launcher/simulation/simulation.hpp"
+#include "swarmflow/mission/mission_file.hpp"
 
 namespace swarm::launcher {
 namespace {
@@ -41,10 +41,10 @@ Mission open_mission(std::uint32_t robots) {
   mission.world = World::make({{0.0, 0.0}, {side_m + kWay_m, side_m}}, {}).value();
   mission.start = crowd_at(0.5 * side_m);
   mission.goal = crowd_at(0.5 * side_m + kWay_m);
-  mission.planner.sigma_min_m = 0.9 * sigma_m;
-  mission.planner.sigma_max_m = 1.1 * sigma_m;
-  mission.planner.connection_radius_m = 2.0 * kWay_m;
-  mission.planner.bridge_share = 0.0;
+  mission.planner.options.set("sigma_min_m", 0.9 * sigma_m);
+  mission.planner.options.set("sigma_max_m", 1.1 * sigma_m);
+  mission.planner.options.set("connection_radius_m", 2.0 * kWay_m);
+  mission.planner.options.set("bridge_share", 0.0);
   mission.robots.count = robots;
   mission.launcher.time_limit_s = 1e4;
   return mission;

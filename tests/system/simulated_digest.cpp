@@ -12,11 +12,12 @@
 #include "program.hpp"
 #include "swarm_core/blackbox/blackbox_file.hpp"
 #include "swarm_core/mission/link_faults.hpp"
-#include "swarmflow/mission/mission_file.hpp"
 #include "swarm_core/mission/scene_log.hpp"
-#include "swarmflow/core/plan_clock.hpp"
 #include "swarm_core/plan/plan_json.hpp"
+#include "swarm_launcher/builtin_catalogue.hpp"
 #include "swarm_launcher/simulation/simulation.hpp"
+#include "swarmflow/core/plan_clock.hpp"
+#include "swarmflow/mission/mission_file.hpp"
 
 namespace swarm::test {
 namespace {
@@ -104,7 +105,7 @@ class HashingObserver final : public launcher::SimulationObserver {
 }  // namespace
 
 Result<std::string> simulated_digest(const DigestCase& flight) {
-  auto mission = load_mission(flight.mission_file);
+  auto mission = load_mission(flight.mission_file, builtin_catalogue());
   if (!mission) return tl::unexpected(mission.error());
   // Of a very large swarm a hundred show as much.
   constexpr std::uint32_t kMostRobots = 200;

@@ -2,16 +2,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "swarmflow/mission/catalogue.hpp"
 #include "swarmflow/mission/mission.hpp"
 
 namespace swarm {
 
-/// λ: longest time that a body takes to reach a commanded velocity [s], from the model's name and
-/// limits:
+/// λ: longest time that a body takes to reach a commanded velocity [s], from what its driver declares
+/// and the body's limits:
 ///
-///   double_integrator  v_max / a_max
-///   unicycle           v_max / a_max + (π/2) / ω_max     (it turns by 90° first)
-///   any other          0
+///   λ = fixed_s + v_max / a_max (if it accelerates) + (π/2) / ω_max (if it turns)
+double declared_lag_s(const BodySpec& body, const LagSpec& lag);
+
+/// λ of a body of a mission [s]: BodySpec::lag_s, or 0 where that is not set.
 double body_lag_s(const BodySpec& body);
 
 /// Density and speed of a plan that robots can follow. Each number is the one of the most

@@ -11,11 +11,22 @@
 
 namespace swarm {
 
+/// How the time that a body takes to reach a commanded velocity depends on its limits, see
+/// declared_lag_s(). A declaration and not a function, since programs without the driver use it too.
+struct LagSpec {
+  double fixed_s = 0.0;      ///< part that does not depend on the command [s]
+  bool accelerates = false;  ///< adds the time from rest to full speed, v_max / a_max
+  bool turns = false;        ///< adds the time of a quarter turn, (π/2) / ω_max
+  /// Whether all members are the same.
+  bool operator==(const LagSpec&) const = default;
+};
+
 /// A component that a mission may name, and the options that it reads.
 struct ComponentSpec {
   std::string name;                 ///< value of planner.method, control.method or robots.model
   std::string doc;                  ///< one sentence for help and documentation
   std::vector<OptionSpec> options;  ///< keys that it reads from its section
+  LagSpec lag{};                    ///< of a driver: how late its body follows a command
 };
 
 /// The components of one section of the mission file, by name.

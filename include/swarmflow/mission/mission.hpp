@@ -9,14 +9,14 @@
 #include <variant>
 #include <vector>
 
+#include "swarmflow/core/cvar.hpp"
 #include "swarmflow/core/ids.hpp"
 #include "swarmflow/core/mixture.hpp"
+#include "swarmflow/core/shape_field.hpp"
+#include "swarmflow/core/world.hpp"
 #include "swarmflow/mission/options.hpp"
 #include "swarmflow/mission/phase.hpp"
 #include "swarmflow/mission/scene.hpp"
-#include "swarmflow/core/cvar.hpp"
-#include "swarmflow/core/shape_field.hpp"
-#include "swarmflow/core/world.hpp"
 
 namespace swarm {
 
@@ -26,7 +26,7 @@ namespace swarm {
 
 /// A robot's body. Noise is zero-mean, Gaussian and independent per axis and control step.
 struct BodySpec {
-  std::string model = "single_integrator";  ///< name of its driver; or unicycle, double_integrator
+  std::string model = "single_integrator";  ///< name of a driver that the robots' program has
   double radius_m = 0.2;                    ///< radius of the disc that covers it
   double speed_max_mps = 1.5;               ///< its largest speed [m/s]
   double acceleration_max_mps2 = 3.0;  ///< of unicycle (along its heading) and double integrator
@@ -34,7 +34,10 @@ struct BodySpec {
   double hear_radius_m = 0.0;          ///< its communication radius; 0: link.hear_radius_m
   double motion_noise_m = 0.0;         ///< σ of w(k) per control step [ROVER, eq. 9]
   double position_noise_m = 0.0;       ///< σ of its measured position [m]
-  OptionValues options{};              ///< options that its driver declares
+  /// Longest time that it takes to reach a commanded velocity [s]. Unset, `auto` in the file: the
+  /// reader sets it as the driver declares it, see body_lag_s().
+  std::optional<double> lag_s{};
+  OptionValues options{};  ///< options that its driver declares
 };
 
 /// A number of robots that differ from the others.
@@ -57,67 +60,23 @@ double largest_radius_m(const RobotsSpec& robots);
 
 /// Key `planner`: the planning method, and the options of the built-in ones.
 struct PlannerSpec {
-  std::string method = "swarmprm";  ///< its name; or rover, crops, adoc
-  /// swarmprm: means by a low-discrepancy sequence, shapes squeezed to keep the risk limit (fit),
-  /// or uniform means with rejection, as printed in the paper (uniform: finds a plan less often).
-  std::string sampler = "fit";  ///< or halton: low-discrepancy means with rejection
-  /// swarmprm: what the cap bounds: mass at a node at each time, or (static, as printed) in total.
-  std::string density_cap = "timed";
-  std::uint32_t samples = 500;        ///< n of Alg. 1
-  double connection_radius_m = 20.0;  ///< r of Alg. 1, in W₂
-  double risk_alpha = 0.05;           ///< α of RiskLimit
-  double risk_delta_m = -0.2;         ///< δ of RiskLimit [m]
-  double sigma_min_m = 1.0;           ///< sampler range of σ₁, σ₂ [m]
-  double sigma_max_m = 3.0;           ///< its upper end [m]
-  double rho_max = 0.6;               ///< sampler range of |ρ|
-  double bridge_share = 0.3;      ///< share of samples drawn by the Gaussian sampler of ref. [20]
-  double bridge_sigma_m = 10.0;   ///< spread of that sampler's pairs [m]
-  std::uint32_t shortcuts = 200;  ///< smoothing tries per route; 0: none
-  double speed_mps = 1.25;        ///< speed of the means along a route [m/s]
+  std::string method = "swarmprm";  ///< name of a planning method that the planner's program has
+  double risk_alpha = 0.05;         ///< α of RiskLimit
+  double risk_delta_m = -0.2;       ///< δ of RiskLimit [m]
+  double speed_mps = 1.25;          ///< speed of the means along a route [m/s]
   /// swarmprm and rover: density cap [robots/m²]; 0: no cap. Empty, `auto` in the file: swarmprm
   /// plans at a density and a speed that the bodies can follow (body_limits.hpp), the others plan
   /// without a cap.
   std::optional<double> density_cap_per_m2;
-  double collocation_spacing_m = 10.0;              ///< rover, adoc: grid of the set C [m]
-  double collocation_sigma_m = 7.0710678118654755;  ///< … their Σ_c = σ² I
-  double transport_radius_m = 22.5;                 ///< … radius of Assumption 2, in W₂
-  std::uint32_t horizon = 3;                        ///< rover: h, in steps
-  double replan_period_s = 1.0;    ///< rover: period of plans from measured positions
-  double adoc_penalty = 20.0;      ///< adoc: cost of the share in obstacles
-  double crops_clearance_m = 0.5;  ///< crops: least distance of nodes to obstacles
-  double crops_power = 3.0;  ///< crops: p of w(q) = (Σ dist)ᵖ; 3 in the paper, 1 in its code
-  double crops_goal_radius_m = 1.0;  ///< crops: radius of the intermediate goals [m]
-  OptionValues options{};            ///< options that a registered method declares
+  OptionValues options{};  ///< options that the planning methods declare
 };
 
 /// Key `control`: the control method, and the options of the built-in ones.
 struct ControlSpec {
-  std::string method = "apf";  ///< its name; or crops, intermittent_diffusion
-  /// apf: keep the plan's times (plan), or travel the planned path at cruise speed (free).
-  std::string tracking = "plan";
-  double rate_hz = 10.0;            ///< rate of the control loop, 1/Δt
-  double cruise_mps = 1.45;         ///< largest desired speed along the path [m/s]
-  double look_ahead_s = 6.0;        ///< apf, crops: how far ahead on its path a robot aims
-  double pace_gain_hz = 0.3;        ///< apf: speed per metre behind the reference
-  double keep_clearance_m = 1.0;    ///< apf: clearance up to which corners are not cut
-  double density_push_mps = 0.0;    ///< apf: largest speed towards planned density; 0: off
-  double neighbour_gap_m = 1.0;     ///< apf: d₀, neighbours nearer than this repel [m]
-  double neighbour_push_mps = 0.6;  ///< apf: speed of that repulsion at contact
-  double obstacle_gap_m = 0.5;      ///< s₀, obstacles nearer repel (not crops)
-  double obstacle_push_mps = 1.0;   ///< speed of that repulsion at contact
-  double approach_gain_hz = 0.8;    ///< speed per metre to the end of the path
-  double stuck_after_s = 4.0;       ///< apf, crops: without progress for this long, it escapes
-  double escape_spread_m = 4.0;     ///< apf: largest σ per axis of an escape's target [m]
-  double escape_s = 5.0;            ///< apf, crops: longest duration of an escape
-  // intermittent_diffusion, Alg. 1 of its paper
-  double diffusion_strength_m2 = 0.01;    ///< G₀ [m²]
-  double diffusion_range_m = 0.0;         ///< R; 0: 10 robots.radius_m
-  double diffusion_tolerance_m2 = 0.045;  ///< F + G up to which a robot has arrived
-  double diffusion_gain_hz = 4.0;         ///< speed per gradient, as far as the step bound allows
-  double diffusion_flow_s = 2.5;          ///< longest gradient flow before diffusing (i_max steps)
-  double diffusion_noise_mps05 = 3.0;     ///< largest σ of the virtual diffusion [m/√s]
-  double diffusion_time_s = 10.0;         ///< its longest duration; 0: gradient descent alone
-  OptionValues options{};                 ///< options that a registered method declares
+  std::string method = "apf";  ///< name of a control method that the robots' program has
+  double rate_hz = 10.0;       ///< rate of the control loop, 1/Δt
+  double cruise_mps = 1.45;    ///< largest desired speed along the path [m/s]
+  OptionValues options{};      ///< options that the control methods declare
 };
 
 /// Key `safety`: the safety filter between every control method and the driver.

@@ -19,16 +19,19 @@ inline constexpr std::size_t kMaxMissionBytes = 16U << 20U;
 /// \param yaml text of the file
 /// \param name name of the file, for messages only
 /// \param directory where the bitmap of a goal is looked for
-/// \param catalogue components beside the built-in ones that the mission may name, and their keys
+/// \param catalogue components that the mission may name, and their keys, whose defaults are set
+///   where the file leaves them out. By default names and keys of components are accepted as they
+///   are: right for the mission of a run, which its launcher has checked.
 /// \return kBadInput with *all* violations, one per line, as `file:line:column: what is wrong;
 ///   what would be right`
 Result<Mission> parse_mission(std::string_view yaml, const std::string& name,
                               const std::filesystem::path& directory = {},
-                              const Catalogue& catalogue = {});
+                              const Catalogue& catalogue = open_catalogue());
 
 /// Reads and parses a mission file; its bitmaps are looked for beside it. Errors as of
 /// parse_mission(), kBadInput too if the file cannot be read.
-Result<Mission> load_mission(const std::filesystem::path& file, const Catalogue& catalogue = {});
+Result<Mission> load_mission(const std::filesystem::path& file,
+                             const Catalogue& catalogue = open_catalogue());
 
 /// The mission as YAML with every default written out, which parse_mission() reads back to an equal
 /// mission: a logged run does not depend on later defaults. Of options that components declare only

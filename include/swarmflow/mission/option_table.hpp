@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <concepts>
 #include <cstdint>
 #include <functional>
 #include <string>
@@ -59,8 +60,27 @@ class OptionTable {
     return *this;
   }
 
+  /// Adds the options of a struct that T is derived from: components that read the same keys share
+  /// their table.
+  template <class Base>
+  requires std::derived_from<T, Base> OptionTable& with(const OptionTable<Base>& shared) {
+    for (std::size_t i = 0; i < shared.specs().size(); ++i) {
+      specs_.push_back(shared.specs()[i]);
+      readers_.push_back(shared.readers()[i]);
+    }
+    return *this;
+  }
+
+  /// Adds a rule: the number of the option added last must not exceed that of this key.
+  OptionTable& at_most(std::string key) {
+    specs_.back().at_most = std::move(key);
+    return *this;
+  }
+
   /// The specs of all options, in the order of their calls.
   const std::vector<OptionSpec>& specs() const { return specs_; }
+  /// What reads each of them into the struct; for with().
+  const auto& readers() const { return readers_; }
 
   /// The struct with the values that are set, defaults for the others. Values are expected to be
   /// checked: a number that cannot be read counts as not set. Cost: a lookup per option.

@@ -45,6 +45,7 @@ struct OptionSpec {
   Range range{};                     ///< accepted values of a number or count
   std::vector<std::string> words{};  ///< accepted values of a choice
   std::string doc;                   ///< one line for help and documentation
+  std::string at_most{};             ///< key of the section that its number must not exceed, if any
   /// Whether all members are the same: only then may two components share a key.
   bool operator==(const OptionSpec&) const = default;
 };

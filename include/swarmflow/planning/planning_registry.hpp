@@ -6,11 +6,11 @@
 #include <memory>
 #include <vector>
 
-#include "swarmflow/planning/planning_method.hpp"
 #include "swarmflow/core/result.hpp"
 #include "swarmflow/mission/body_limits.hpp"
 #include "swarmflow/mission/catalogue.hpp"
 #include "swarmflow/mission/mission.hpp"
+#include "swarmflow/planning/planning_method.hpp"
 
 namespace swarm::planner {
 
@@ -22,11 +22,13 @@ enum class PlanningUse {
 
 /// What a factory may read to make a method.
 struct MethodContext {
-  /// The mission, all defaults filled in; valid during the call. The method's own options are in
-  /// mission.planner.options: OptionTable::read() gives them with their defaults.
+  /// The mission, all defaults filled in; valid during the call.
   const Mission& mission;
   SwarmLimits limits;  ///< density and speed of plans that the robots' bodies can follow
   PlanningUse use = PlanningUse::kInFlight;  ///< how many plans will be requested
+
+  /// The method's own options; OptionTable::read() gives them with their defaults.
+  const OptionValues& options() const { return mission.planner.options; }
 };
 
 /// A planning method as a mission names it by `planner.method`.
@@ -41,13 +43,16 @@ struct PlanningEntry {
 /// are registered in the same way.
 class PlanningRegistry {
  public:
-  /// Adds a method. \pre entry.make is set and the name is new; asserted
+  /// Adds a method. \pre entry.make is set, the name is new, and a key that another method has too
+  /// has the same spec; asserted
   void add(PlanningEntry entry);
 
   /// All methods, in the order of registration.
   const std::vector<PlanningEntry>& all() const { return entries_; }
   /// Names and options of all methods, for a Catalogue.
   Components specs() const;
+  /// What a planner program knows of a mission file: its methods, and any component of the robots.
+  Catalogue catalogue() const;
 
   /// Makes the method that the mission names.
   /// \return kBadInput for an unknown name, with the known ones in the message; otherwise the

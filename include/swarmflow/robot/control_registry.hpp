@@ -7,10 +7,10 @@
 #include <string_view>
 #include <vector>
 
-#include "swarmflow/robot/control_slot.hpp"
 #include "swarmflow/core/result.hpp"
 #include "swarmflow/mission/catalogue.hpp"
 #include "swarmflow/mission/mission.hpp"
+#include "swarmflow/robot/control_slot.hpp"
 
 namespace swarm::agent {
 
@@ -32,6 +32,9 @@ struct PreparedControl {
   /// ControlView::neighbours has no others, which saves time in dense regions. By default all
   /// robots within the communication radius are passed; the safety filter has its own distance.
   double reach_m = std::numeric_limits<double>::infinity();
+  /// Surface gap below which other robots push [m]: their states are received at the full rate at
+  /// least from this near.
+  double press_gap_m = 1.0;
   /// Whether ControlView::planned_density is read: then it is computed at every tick, once a
   /// process.
   bool reads_density = false;

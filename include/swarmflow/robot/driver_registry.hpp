@@ -8,10 +8,10 @@
 #include <string_view>
 #include <vector>
 
-#include "swarmflow/robot/driver.hpp"
 #include "swarmflow/core/ids.hpp"
 #include "swarmflow/mission/catalogue.hpp"
 #include "swarmflow/mission/mission.hpp"
+#include "swarmflow/robot/driver.hpp"
 
 namespace swarm::agent {
 
@@ -34,14 +34,10 @@ struct DriverContext {
 
 /// A driver as a mission names it by robots.model.
 struct DriverEntry {
-  ComponentSpec spec;  ///< name (the value of `robots.model`), documentation and options
+  ComponentSpec spec;  ///< name (the value of `robots.model`), documentation, options and lag
   /// Makes the driver of one robot; Driver::start() is called next. An error ends the program with
   /// its message.
   std::function<Result<std::unique_ptr<Driver>>(const DriverContext&)> make;
-  /// λ: longest time that a body takes to reach a commanded velocity [s], ≥ 0; the safety filter
-  /// brakes earlier by it. Empty: 0. The planner's limits (swarm_limits()) know only the λ of the
-  /// built-in models.
-  std::function<double(const BodySpec&)> lag_s{};
 };
 
 /// The drivers that a robot program has, by name. Built-in drivers and those of others are

@@ -5,16 +5,36 @@
 #include <utility>
 
 #include "planner_service/methods/shared/route_plan.hpp"
+#include "planner_service/methods/shared/shared_keys.hpp"
 #include "planner_service/stage_timer.hpp"
 
 namespace swarm::planner {
 
+namespace {
+
+/// What a mission may set of adoc.
+struct AdocKeys : CollocationKeys {
+  double penalty = 20.0;
+};
+
+const OptionTable<AdocKeys>& adoc_keys() {
+  static const auto table = OptionTable<AdocKeys>()
+                                .with(collocation_keys())
+                                .number("adoc_penalty", &AdocKeys::penalty, between(0, 1e6),
+                                        "of the share of a Gaussian that is in obstacles");
+  return table;
+}
+
+}  // namespace
+
+const std::vector<OptionSpec>& AdocMethod::keys() { return adoc_keys().specs(); }
+
 AdocOptions adoc_options(const Mission& mission) {
-  const PlannerSpec& spec = mission.planner;
+  const AdocKeys keys = adoc_keys().read(mission.planner.options);
   return {
-      .collocation = {.spacing_m = spec.collocation_spacing_m, .sigma_m = spec.collocation_sigma_m},
-      .transport_radius_m = spec.transport_radius_m,
-      .penalty = spec.adoc_penalty};
+      .collocation = {.spacing_m = keys.collocation_spacing_m, .sigma_m = keys.collocation_sigma_m},
+      .transport_radius_m = keys.transport_radius_m,
+      .penalty = keys.penalty};
 }
 
 AdocMethod::AdocMethod(const AdocOptions& options, const RiskLimit& risk, const LegSpeed& speed)

@@ -17,6 +17,7 @@ class AdocMethod final : public PlanningMethod {
  public:
   AdocMethod(const AdocOptions& options, const RiskLimit& risk, const LegSpeed& speed);
   static Result<std::unique_ptr<PlanningMethod>> make(const MethodContext& context);
+  static const std::vector<OptionSpec>& keys();  ///< of the mission's planner section
 
   Result<PlanResult> plan(const PlanRequest& request, const PlanContext& context) override;
   const RiskLimit& risk() const override { return risk_; }

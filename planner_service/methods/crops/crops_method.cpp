@@ -5,17 +5,44 @@
 #include <utility>
 
 #include "planner_service/methods/shared/route_plan.hpp"
+#include "planner_service/methods/shared/shared_keys.hpp"
 #include "planner_service/stage_timer.hpp"
 
 namespace swarm::planner {
 
+namespace {
+
+/// What a mission may set of crops.
+struct CropsKeys : RoadmapKeys {
+  double clearance_m = 0.5;
+  double power = 3.0;
+  double goal_radius_m = 1.0;
+};
+
+const OptionTable<CropsKeys>& crops_keys() {
+  static const auto table =
+      OptionTable<CropsKeys>()
+          .with(roadmap_keys())
+          .number("crops_clearance_m", &CropsKeys::clearance_m, between(0, 1000),
+                  "nodes nearer to an obstacle are discarded")
+          .number("crops_power", &CropsKeys::power, between(0, 10),
+                  "p of w(q) = (sum of dist)^p; 3 in the paper, 1 in its code")
+          .number("crops_goal_radius_m", &CropsKeys::goal_radius_m, between(0.1, 1000),
+                  "of the intermediate goals; the control method crops reads it too");
+  return table;
+}
+
+}  // namespace
+
+const std::vector<OptionSpec>& CropsMethod::keys() { return crops_keys().specs(); }
+
 CropsOptions crops_options(const Mission& mission) {
-  const PlannerSpec& spec = mission.planner;
-  return {.samples = spec.samples,
-          .connection_radius_m = spec.connection_radius_m,
-          .clearance_min_m = spec.crops_clearance_m,
-          .clearance_power = spec.crops_power,
-          .goal_radius_m = spec.crops_goal_radius_m};
+  const CropsKeys keys = crops_keys().read(mission.planner.options);
+  return {.samples = keys.samples,
+          .connection_radius_m = keys.connection_radius_m,
+          .clearance_min_m = keys.clearance_m,
+          .clearance_power = keys.power,
+          .goal_radius_m = keys.goal_radius_m};
 }
 
 CropsMethod::CropsMethod(const CropsOptions& options, const RiskLimit& risk, const LegSpeed& speed)

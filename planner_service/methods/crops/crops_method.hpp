@@ -6,9 +6,9 @@
 
 #include "planner_service/flow/route.hpp"
 #include "planner_service/methods/crops/crops_guide.hpp"
+#include "swarmflow/core/world.hpp"
 #include "swarmflow/planning/planning_method.hpp"
 #include "swarmflow/planning/planning_registry.hpp"
-#include "swarmflow/core/world.hpp"
 
 namespace swarm::planner {
 
@@ -21,6 +21,7 @@ class CropsMethod final : public PlanningMethod {
  public:
   CropsMethod(const CropsOptions& options, const RiskLimit& risk, const LegSpeed& speed);
   static Result<std::unique_ptr<PlanningMethod>> make(const MethodContext& context);
+  static const std::vector<OptionSpec>& keys();  ///< of the mission's planner section
 
   Result<PlanResult> plan(const PlanRequest& request, const PlanContext& context) override;
   const RiskLimit& risk() const override { return risk_; }

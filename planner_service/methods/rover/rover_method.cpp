@@ -8,6 +8,7 @@
 #include "planner_service/methods/rover/flow_groups.hpp"
 #include "planner_service/methods/rover/plan_excess.hpp"
 #include "planner_service/methods/shared/route_plan.hpp"
+#include "planner_service/methods/shared/shared_keys.hpp"
 #include "planner_service/stage_timer.hpp"
 
 namespace swarm::planner {
@@ -31,15 +32,34 @@ std::vector<std::size_t> led_to(const MeasuredSwarm& swarm) {
   return led;
 }
 
+/// What a mission may set of rover.
+struct RoverKeys : CollocationKeys {
+  std::uint32_t horizon = 3;
+  double replan_period_s = 1.0;
+};
+
+const OptionTable<RoverKeys>& rover_keys() {
+  static const auto table =
+      OptionTable<RoverKeys>()
+          .with(collocation_keys())
+          .count("horizon", &RoverKeys::horizon, between(1, 10), "h")
+          .number("replan_period_s", &RoverKeys::replan_period_s, between(0.1, 3600),
+                  "a plan from where the robots are each");
+  return table;
+}
+
 }  // namespace
+
+const std::vector<OptionSpec>& RoverMethod::keys() { return rover_keys().specs(); }
 
 RoverOptions rover_options(const Mission& mission) {
   const PlannerSpec& spec = mission.planner;
-  return {.graph = {.collocation = {.spacing_m = spec.collocation_spacing_m,
-                                    .sigma_m = spec.collocation_sigma_m},
-                    .transport_radius_m = spec.transport_radius_m,
+  const RoverKeys keys = rover_keys().read(spec.options);
+  return {.graph = {.collocation = {.spacing_m = keys.collocation_spacing_m,
+                                    .sigma_m = keys.collocation_sigma_m},
+                    .transport_radius_m = keys.transport_radius_m,
                     .risk = {.alpha = spec.risk_alpha, .delta_m = spec.risk_delta_m}},
-          .mpc = {.costs = {.horizon = spec.horizon},
+          .mpc = {.costs = {.horizon = keys.horizon},
                   .density_cap_per_m2 = spec.density_cap_per_m2.value_or(0.0),
                   .robots = static_cast<double>(mission.robots.count)},
           .speed_mps = spec.speed_mps};
@@ -49,8 +69,9 @@ RoverMethod::RoverMethod(const RoverOptions& options, Duration replan_period)
     : options_(options), replan_period_(replan_period) {}
 
 Result<std::unique_ptr<PlanningMethod>> RoverMethod::make(const MethodContext& context) {
-  return std::make_unique<RoverMethod>(rover_options(context.mission),
-                                       from_seconds(context.mission.planner.replan_period_s));
+  return std::make_unique<RoverMethod>(
+      rover_options(context.mission),
+      from_seconds(rover_keys().read(context.options()).replan_period_s));
 }
 
 PlanningTraits RoverMethod::traits() const {

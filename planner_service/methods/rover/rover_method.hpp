@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "planner_service/methods/rover/rover.hpp"
-#include "swarmflow/planning/planning_method.hpp"
-#include "swarmflow/planning/planning_registry.hpp"
 #include "swarmflow/core/mixture.hpp"
 #include "swarmflow/core/world.hpp"
+#include "swarmflow/planning/planning_method.hpp"
+#include "swarmflow/planning/planning_registry.hpp"
 
 namespace swarm::planner {
 
@@ -22,6 +22,7 @@ class RoverMethod final : public PlanningMethod {
  public:
   RoverMethod(const RoverOptions& options, Duration replan_period);
   static Result<std::unique_ptr<PlanningMethod>> make(const MethodContext& context);
+  static const std::vector<OptionSpec>& keys();  ///< of the mission's planner section
 
   Result<PlanResult> plan(const PlanRequest& request, const PlanContext& context) override;
   const RiskLimit& risk() const override { return options_.graph.risk; }

@@ -6,6 +6,7 @@
 
 #include "planner_service/methods/shared/route_plan.hpp"
 #include "planner_service/methods/swarmprm/swarmprm.hpp"
+#include "planner_service/methods/swarmprm/swarmprm_keys.hpp"
 #include "planner_service/roadmap/endpoints.hpp"
 #include "planner_service/stage_timer.hpp"
 
@@ -14,6 +15,8 @@ namespace swarm::planner {
 Result<std::unique_ptr<PlanningMethod>> SwarmPrmMethod::make(const MethodContext& context) {
   return std::make_unique<SwarmPrmMethod>(swarmprm_options(context));
 }
+
+const std::vector<OptionSpec>& SwarmPrmMethod::keys() { return swarmprm_keys().specs(); }
 
 PlanningTraits SwarmPrmMethod::traits() const {
   PlanningTraits traits{.risk_promise = RiskPromise::kEveryGaussian,

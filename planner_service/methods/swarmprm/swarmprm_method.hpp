@@ -5,9 +5,9 @@
 #include <optional>
 
 #include "planner_service/methods/swarmprm/swarmprm_options.hpp"
+#include "planner_service/roadmap/live_roadmap.hpp"
 #include "swarmflow/planning/planning_method.hpp"
 #include "swarmflow/planning/planning_registry.hpp"
-#include "planner_service/roadmap/live_roadmap.hpp"
 
 namespace swarm::planner {
 
@@ -17,6 +17,7 @@ class SwarmPrmMethod final : public PlanningMethod {
  public:
   explicit SwarmPrmMethod(const SwarmPrmOptions& options) : options_(options) {}
   static Result<std::unique_ptr<PlanningMethod>> make(const MethodContext& context);
+  static const std::vector<OptionSpec>& keys();  ///< of the mission's planner section
 
   Result<PlanResult> plan(const PlanRequest& request, const PlanContext& context) override;
   const RiskLimit& risk() const override { return options_.risk; }

@@ -6,8 +6,8 @@
 #include "planner_service/flow/plan_density.hpp"
 #include "planner_service/plan_checks.hpp"
 #include "planner_service/replan.hpp"
-#include "swarmflow/mission/mission.hpp"
 #include "swarm_core/risk/mixture_cvar.hpp"
+#include "swarmflow/mission/mission.hpp"
 #include "tests/unit/planner_service/planners.hpp"
 #include "tests/unit/planner_service/standin_scene.hpp"
 
@@ -25,7 +25,7 @@ Mission mission_of(const char* method) {
   mission.start = scene().start;
   mission.goal = scene().goal;
   mission.planner.method = method;
-  mission.planner.connection_radius_m = 20.0;
+  mission.planner.options.set("connection_radius_m", 20.0);
   return mission;
 }
 
@@ -81,7 +81,7 @@ TEST(Planner, KeepsToTheDensityCapInTime) {
   Rng rng(1);
 
   const auto timed = testing::plan_mission(mission, rng);
-  mission.planner.density_cap = "static";
+  mission.planner.options.set("density_cap", "static");
   const auto by_node = testing::plan_mission(mission, rng);
 
   ASSERT_TRUE(timed.has_value()) << timed.error().message;

@@ -92,6 +92,7 @@ TEST(PlanLimits, NameThePlaceAndTimeOfADensityThatIsNotCapped) {
 TEST(PlanLimits, LowerTheSpeedOfBodiesWithLagUnlessADensityIsAskedFor) {
   Mission mission = standin(100);
   mission.robots.model = "unicycle";
+  mission.robots.lag_s = declared_lag_s(mission.robots, {.accelerates = true, .turns = true});
   const SwarmLimits limits = swarm_limits(mission.robots, mission.safety, mission.control);
   const auto fastest_mps = [](const FlowPlan& plan) {
     double fastest = 0.0;
@@ -130,7 +131,7 @@ TEST(PlanLimits, RaiseTheCapToTheDensityOfStartAndGoal) {
 
 TEST(PlanLimits, KeepTheUncappedPlanWhereNoneIsFoundUnderACap) {
   Mission mission = standin(5000);
-  mission.planner.samples = 200;
+  mission.planner.options.set("samples", 200);
   SwarmPrmOptions options = testing::swarmprm_options_of(mission);
   options.limits.cap_per_m2 = 0.01;  // every component is denser by itself, and routes far denser
   Rng rng(1);

@@ -68,7 +68,9 @@ goal: [{mean_m: [50, 15], covariance_m2: [[1, 0], [0, 1]], weight: 1}]
 control: {method: drift, drift_mps: 0.75)";
 
 Result<Mission> mission(const std::string& more, const ControlRegistry& registry) {
-  Catalogue catalogue;
+  Catalogue catalogue = open_catalogue();
+  catalogue.robots_are_open = false;
+  catalogue.drivers = {{.name = "single_integrator", .doc = "", .options = {}}};
   catalogue.control_methods = registry.specs();
   return parse_mission(kMission + more + "}\n", "m.yaml", {}, catalogue);
 }
@@ -128,7 +130,9 @@ TEST(ControlRegistry, ChecksTheKeysOfItsMethodsWithLineAndColumn) {
 TEST(ControlRegistry, WritesTheKeysOfItsMethods) {
   const ControlRegistry registry = with_drift();
   const Mission before = *mission(", drift_fault: nan", registry);
-  Catalogue catalogue;
+  Catalogue catalogue = open_catalogue();
+  catalogue.robots_are_open = false;
+  catalogue.drivers = {{.name = "single_integrator", .doc = "", .options = {}}};
   catalogue.control_methods = registry.specs();
   const Mission after = *parse_mission(to_yaml(before), "again.yaml", {}, catalogue);
   EXPECT_EQ(after.control.options, before.control.options);

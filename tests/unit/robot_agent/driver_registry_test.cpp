@@ -4,8 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include "robot_agent/drivers/lag.hpp"
-
 namespace swarm::agent {
 namespace {
 
@@ -30,7 +28,6 @@ TEST(DriverRegistry, MakesTheBuiltInBodies) {
     const Measurement at = (*driver)->measure(kStart);
     EXPECT_EQ(at.position_m, Vec2(4, 5)) << name;
     EXPECT_TRUE(at.is_valid) << name;
-    EXPECT_EQ(entry->lag_s(mission.robots), lag_s(mission.robots)) << name;
   }
 }
 

@@ -10,8 +10,9 @@
 #include <gtest/gtest.h>
 
 #include "robot_agent/control/safety_filter.hpp"
-#include "robot_agent/drivers/lag.hpp"
 #include "robot_agent/drivers/simulated_robot.hpp"
+#include "swarmflow/mission/body_limits.hpp"
+#include "swarmflow/robot/driver_registry.hpp"
 
 namespace swarm::agent {
 namespace {
@@ -21,6 +22,9 @@ using std::chrono::milliseconds;
 BodySpec body(const std::string& model) {
   BodySpec b;
   b.model = model;
+  DriverRegistry drivers;
+  register_builtin_drivers(drivers);
+  b.lag_s = declared_lag_s(b, drivers.find(model)->spec.lag);
   return b;
 }
 
@@ -31,7 +35,7 @@ std::pair<double, double> fly(const BodySpec& spec, const World& world, std::vec
   const SafetyOptions options{.radius_m = spec.radius_m,
                               .speed_max_mps = spec.speed_max_mps,
                               .period = milliseconds(100),
-                              .lag_s = lag_s(spec)};
+                              .lag_s = body_lag_s(spec)};
   const std::size_t n = positions.size();
   SafetyFilter filter(world, options);
   SteadyTime now{};
@@ -100,9 +104,9 @@ TEST(LaggingBodies, StopBeforeAWallAtFullSpeed) {
 }
 
 TEST(LaggingBodies, TakeAsLongAsTheirLimitsSay) {
-  EXPECT_EQ(lag_s(body("single_integrator")), 0.0);
-  EXPECT_DOUBLE_EQ(lag_s(body("double_integrator")), 1.5 / 3.0);
-  EXPECT_NEAR(lag_s(body("unicycle")), 0.5 + 1.5708 / 3.0, 1e-4);
+  EXPECT_EQ(body_lag_s(body("single_integrator")), 0.0);
+  EXPECT_DOUBLE_EQ(body_lag_s(body("double_integrator")), 1.5 / 3.0);
+  EXPECT_NEAR(body_lag_s(body("unicycle")), 0.5 + 1.5708 / 3.0, 1e-4);
 }
 
 }  // namespace

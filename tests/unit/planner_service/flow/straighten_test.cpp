@@ -110,7 +110,7 @@ class StraightenedStandin : public ::testing::TestWithParam<std::uint64_t> {
     mission.world = scene_.world;
     mission.robots.count = 500;
     mission.planner.density_cap_per_m2 = kCap_per_m2;
-    mission.planner.shortcuts = shortcuts;
+    mission.planner.options.set("shortcuts", shortcuts);
     Rng rng(GetParam());
     mission.start = scene_.start;
     mission.goal = scene_.goal;

@@ -13,11 +13,16 @@
 
 #include "robot_agent/agent.hpp"
 #include "robot_agent/control/builtin_methods.hpp"
-#include "swarmflow/mission/mission_file.hpp"
+#include "robot_agent/control/intermittent_diffusion_keys.hpp"
 #include "swarm_core/mission/placement.hpp"
+#include "swarmflow/mission/mission_file.hpp"
 
 namespace swarm::agent {
 namespace {
+
+IntermittentDiffusionKeys keys_of(const Mission& mission) {
+  return intermittent_diffusion_keys().read(mission.control.options);
+}
 
 Mission letter_q() {
   return *load_mission(std::filesystem::path(SWARM_SOURCE_DIR) /
@@ -77,7 +82,7 @@ class Swarm {
 
   /// V = ΣF + ½ΣG [m²].
   double total_m2() {
-    const CotangentOptions repulsion{mission_.control.diffusion_strength_m2, range_m()};
+    const CotangentOptions repulsion{keys_of(mission_).strength_m2, range_m()};
     double sum = 0.0;
     for (std::size_t i = 0; i < positions_m_.size(); ++i) {
       hear(i);
@@ -99,7 +104,7 @@ class Swarm {
       for (std::size_t j = 0; j < i; ++j) {
         const double now = squared(positions_m_, i, j);
         if ((now < range_squared) == (squared(before_m_, i, j) < range_squared)) continue;
-        sum += std::abs(mission_.control.diffusion_strength_m2 /
+        sum += std::abs(keys_of(mission_).strength_m2 /
                         std::tan(0.5 * std::numbers::pi * now / range_squared));
       }
     }
@@ -139,7 +144,7 @@ class Swarm {
 TEST(IntermittentDiffusion, FormsALetterWhereGradientDescentStalls) {
   const Mission mission = letter_q();
   Mission plain = mission;
-  plain.control.diffusion_time_s = 0.0;
+  plain.control.options.set("diffusion_time_s", 0.0);
   constexpr std::uint64_t kSeed = 1;
   constexpr int kSteps = 6000;
   Swarm swarm(mission, kSeed);
@@ -147,7 +152,7 @@ TEST(IntermittentDiffusion, FormsALetterWhereGradientDescentStalls) {
 
   double error_m2 = std::numeric_limits<double>::infinity();
   double nearest_m = error_m2;
-  for (int i = 0; i < kSteps && error_m2 > mission.control.diffusion_tolerance_m2; ++i) {
+  for (int i = 0; i < kSteps && error_m2 > keys_of(mission).tolerance_m2; ++i) {
     swarm.step();
     error_m2 = swarm.error_m2();
     nearest_m = std::min(nearest_m, swarm.nearest_pair_m());
@@ -158,10 +163,10 @@ TEST(IntermittentDiffusion, FormsALetterWhereGradientDescentStalls) {
     least_m2 = std::min(least_m2, descent.error_m2());
   }
 
-  EXPECT_LE(error_m2, mission.control.diffusion_tolerance_m2);
+  EXPECT_LE(error_m2, keys_of(mission).tolerance_m2);
   EXPECT_GE(nearest_m, 2.0 * mission.robots.radius_m);
   EXPECT_GT(swarm.diffusions(), 0U);
-  EXPECT_GT(least_m2, mission.control.diffusion_tolerance_m2);
+  EXPECT_GT(least_m2, keys_of(mission).tolerance_m2);
   EXPECT_EQ(descent.diffusions(), 0U);
 }
 
@@ -215,8 +220,8 @@ TEST(IntermittentDiffusion, AgentsThatHearEachOtherByDeadReckoningComeToRest) {
 
 TEST(IntermittentDiffusion, StepsKeepTheBoundAndLoseEnergy) {
   Mission mission = letter_q();
-  mission.control.diffusion_time_s = 0.0;
-  mission.control.diffusion_gain_hz = 1000.0;  // the bound alone limits the step
+  mission.control.options.set("diffusion_time_s", 0.0);
+  mission.control.options.set("diffusion_gain_hz", 1000.0);  // the bound alone limits the step
   mission.control.cruise_mps = mission.robots.speed_max_mps = 100.0;
   Swarm swarm(mission, 3, false);  // and no filter turns it
 

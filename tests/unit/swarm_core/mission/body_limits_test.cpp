@@ -6,12 +6,15 @@
 
 #include <gtest/gtest.h>
 
+#include "swarm_launcher/builtin_catalogue.hpp"
+
 namespace swarm {
 namespace {
 
 RobotsSpec robots_of(const char* model) {
   RobotsSpec robots;
   robots.model = model;
+  robots.lag_s = declared_lag_s(robots, find_component(builtin_catalogue().drivers, model)->lag);
   return robots;
 }
 

@@ -10,6 +10,7 @@
 
 #include <gtest/gtest.h>
 
+#include "swarm_launcher/builtin_catalogue.hpp"
 #include "swarmflow/mission/mission_file.hpp"
 
 namespace swarm {
@@ -38,7 +39,7 @@ TEST_P(BrokenMission, IsRefusedAtTheMistake) {
   ASSERT_EQ(expect, "expect");
   ASSERT_FALSE(fragment.empty());
 
-  const auto mission = load_mission(GetParam());
+  const auto mission = load_mission(GetParam(), builtin_catalogue());
 
   ASSERT_FALSE(mission.has_value());
   EXPECT_EQ(mission.error().code, ErrorCode::kBadInput);

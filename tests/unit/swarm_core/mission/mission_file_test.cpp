@@ -10,11 +10,17 @@
 
 #include "swarm_core/mission/mission_fields.hpp"
 #include "swarm_core/mission/scene_change_file.hpp"
-#include "swarmflow/core/cvar.hpp"
 #include "swarm_core/risk/mixture_cvar.hpp"
+#include "swarm_launcher/builtin_catalogue.hpp"
+#include "swarmflow/core/cvar.hpp"
 
 namespace swarm {
 namespace {
+
+/// As our own programs read it.
+Result<Mission> parse(std::string_view yaml, const std::string& name) {
+  return parse_mission(yaml, name, {}, builtin_catalogue());
+}
 
 constexpr const char* kLeast = R"(version: 1
 world: {bounds_m: [0, 0, 20, 10]}
@@ -122,10 +128,10 @@ void expect_same(const Section& a, const Section& b,
   // The tables are all that reader and writer know: a member without a row would be lost.
   // Beside the table: texts, what may be automatic, options of components, and of robots the body
   // and the groups.
-  constexpr std::size_t kOthers = std::is_same_v<Section, PlannerSpec>   ? 5
+  constexpr std::size_t kOthers = std::is_same_v<Section, PlannerSpec>   ? 3
                                   : std::is_same_v<Section, RobotsSpec>  ? 2
-                                  : std::is_same_v<Section, ControlSpec> ? 3
-                                  : std::is_same_v<Section, BodySpec>    ? 2
+                                  : std::is_same_v<Section, ControlSpec> ? 2
+                                  : std::is_same_v<Section, BodySpec>    ? 3
                                                                          : 0;
   if constexpr (std::is_same_v<Section, CriteriaSpec>) {
     static_assert(sizeof(Section) == N * sizeof(std::optional<double>));
@@ -143,12 +149,13 @@ void expect_same(const Mission& a, const Mission& b) {
   expect_same(a.start, b.start);
   expect_same(a.goal, b.goal);
   EXPECT_EQ(a.planner.method, b.planner.method);
-  EXPECT_EQ(a.planner.sampler, b.planner.sampler);
-  EXPECT_EQ(a.planner.density_cap, b.planner.density_cap);
+  EXPECT_EQ(a.planner.options, b.planner.options);
   EXPECT_EQ(a.planner.density_cap_per_m2, b.planner.density_cap_per_m2);
   expect_same(a.robots, b.robots, mission_fields::kRobots);
   const auto expect_same_body = [](const BodySpec& one, const BodySpec& other) {
     EXPECT_EQ(one.model, other.model);
+    EXPECT_EQ(one.lag_s, other.lag_s);
+    EXPECT_EQ(one.options, other.options);
     expect_same(one, other, mission_fields::kBody);
   };
   expect_same_body(a.robots, b.robots);
@@ -158,7 +165,7 @@ void expect_same(const Mission& a, const Mission& b) {
     expect_same_body(a.robots.groups[i], b.robots.groups[i]);
   }
   EXPECT_EQ(a.control.method, b.control.method);
-  EXPECT_EQ(a.control.tracking, b.control.tracking);
+  EXPECT_EQ(a.control.options, b.control.options);
   expect_same(a.planner, b.planner, mission_fields::kPlanner);
   expect_same(a.control, b.control, mission_fields::kControl);
   expect_same(a.safety, b.safety, mission_fields::kSafety);
@@ -193,27 +200,29 @@ std::vector<std::filesystem::path> shipped_missions() {
 }
 
 TEST(MissionFile, FillsInTheDefaults) {
-  const auto mission = parse_mission(kLeast, "least");
+  const auto mission = parse(kLeast, "least");
 
   ASSERT_TRUE(mission.has_value()) << mission.error().message;
   expect_same(mission->robots, RobotsSpec{}, mission_fields::kRobots);
   expect_same<BodySpec>(mission->robots, BodySpec{}, mission_fields::kBody);
   expect_same(mission->link, LinkSpec{}, mission_fields::kLink);
   EXPECT_EQ(mission->planner.method, PlannerSpec{}.method);
+  EXPECT_EQ(mission->planner.options.number("samples"), 500.0);
+  EXPECT_EQ(*mission->control.options.find("tracking"), "plan");
   EXPECT_TRUE(mission->script.empty());
 }
 
 TEST(MissionFile, HasDefaultsInTheirOwnRanges) {
-  const auto mission = parse_mission(kLeast, "least");
+  const auto mission = parse(kLeast, "least");
   ASSERT_TRUE(mission.has_value());
 
-  const auto again = parse_mission(to_yaml(*mission), "again");
+  const auto again = parse(to_yaml(*mission), "again");
 
   ASSERT_TRUE(again.has_value()) << again.error().message;
 }
 
 TEST(MissionFile, ReadsEverySection) {
-  const auto mission = parse_mission(kFull, "full");
+  const auto mission = parse(kFull, "full");
 
   ASSERT_TRUE(mission.has_value()) << mission.error().message;
   EXPECT_EQ(mission->name, "full-1");
@@ -222,6 +231,9 @@ TEST(MissionFile, ReadsEverySection) {
   EXPECT_EQ(mission->robots.count, 7U);
   EXPECT_EQ(mission->start.components().size(), 2U);
   EXPECT_EQ(mission->control.rate_hz, 20.0);
+  EXPECT_EQ(mission->control.options.number("look_ahead_s"), 3.3);
+  EXPECT_EQ(mission->planner.options.number("samples"), 77.0);
+  EXPECT_EQ(*mission->planner.options.find("sampler"), "uniform");
   EXPECT_EQ(mission->launcher.respawn_agent_max, 2U);
   ASSERT_EQ(mission->script.size(), 9U);
   EXPECT_EQ(mission->criteria.w2_ratio_max, 1.15);
@@ -244,10 +256,10 @@ TEST(MissionFile, ReadsEverySection) {
 
 TEST(MissionFile, ReadsBackWhatItWrote) {
   for (const char* text : {kLeast, kFull}) {
-    const auto mission = parse_mission(text, "first");
+    const auto mission = parse(text, "first");
     ASSERT_TRUE(mission.has_value()) << mission.error().message;
 
-    const auto again = parse_mission(to_yaml(*mission), "again");
+    const auto again = parse(to_yaml(*mission), "again");
 
     ASSERT_TRUE(again.has_value()) << again.error().message << "\n" << to_yaml(*mission);
     expect_same(*mission, *again);
@@ -256,10 +268,9 @@ TEST(MissionFile, ReadsBackWhatItWrote) {
 
 TEST(MissionFile, ReadsADensityCapThatIsAutomatic) {
   const auto cap_of = [](const char* value) {
-    return parse_mission(std::string(kLeast) + "planner: {density_cap_per_m2: " + value + "}\n",
-                         "m.yaml");
+    return parse(std::string(kLeast) + "planner: {density_cap_per_m2: " + value + "}\n", "m.yaml");
   };
-  EXPECT_EQ(parse_mission(kLeast, "least")->planner.density_cap_per_m2, std::nullopt);
+  EXPECT_EQ(parse(kLeast, "least")->planner.density_cap_per_m2, std::nullopt);
   EXPECT_EQ(cap_of("auto")->planner.density_cap_per_m2, std::nullopt);
   EXPECT_EQ(cap_of("0")->planner.density_cap_per_m2, 0.0);
   EXPECT_EQ(cap_of("1.5")->planner.density_cap_per_m2, 1.5);
@@ -271,7 +282,7 @@ TEST(MissionFile, ReadsADensityCapThatIsAutomatic) {
 }
 
 TEST(MissionFile, ReportsAllViolationsInOrderOfTheFile) {
-  const auto mission = parse_mission(
+  const auto mission = parse(
       "version: 3\n"
       "world: {bounds_m: [0, 0, 20, 10]}\n"
       "robots: {count: 0, radius_m: x, wheels: 4}\n"
@@ -291,7 +302,7 @@ TEST(MissionFile, ReportsAllViolationsInOrderOfTheFile) {
 }
 
 TEST(MissionFile, KeepsAViolationOnOneLine) {
-  const auto mission = parse_mission(std::string(kLeast) + "name: \"a\\nb\\e[31m\"\n", "m");
+  const auto mission = parse(std::string(kLeast) + "name: \"a\\nb\\e[31m\"\n", "m");
 
   ASSERT_FALSE(mission.has_value());
   EXPECT_EQ(mission.error().message.find_first_of("\n\x1b"), std::string::npos);
@@ -314,7 +325,7 @@ TEST(MissionFile, SurvivesAliasBombs) {
     bomb += "]\n";
   }
 
-  EXPECT_FALSE(parse_mission(bomb, "bomb").has_value());
+  EXPECT_FALSE(parse(bomb, "bomb").has_value());
 }
 
 TEST(MissionFile, SurvivesDepthAndSizeBombs) {
@@ -330,9 +341,9 @@ TEST(MissionFile, SurvivesDepthAndSizeBombs) {
     bomb.reserve(large);
     while (bomb.size() + unit.size() <= large / 16) bomb += unit;
 
-    EXPECT_FALSE(parse_mission(bomb, "bomb").has_value()) << unit;
+    EXPECT_FALSE(parse(bomb, "bomb").has_value()) << unit;
   }
-  EXPECT_FALSE(parse_mission(std::string(large + 1, ' '), "too large").has_value());
+  EXPECT_FALSE(parse(std::string(large + 1, ' '), "too large").has_value());
 }
 
 TEST(MissionFile, BoundsTheNumberOfVertices) {
@@ -343,7 +354,7 @@ TEST(MissionFile, BoundsTheNumberOfVertices) {
   for (int i = 0; i < 10'001; ++i) obstacles += triangle;
   text.insert(text.find("10]") + 3, obstacles + "]}");
 
-  const auto mission = parse_mission(text, "many");
+  const auto mission = parse(text, "many");
 
   ASSERT_FALSE(mission.has_value());
   EXPECT_NE(mission.error().message.find("10001 items; must have between 0 and 10000"),
@@ -355,7 +366,7 @@ TEST(MissionFile, LoadsEveryShippedMission) {
   const auto files = shipped_missions();
   ASSERT_GE(files.size(), 2U);
   for (const auto& file : files) {
-    const auto mission = load_mission(file);
+    const auto mission = load_mission(file, builtin_catalogue());
 
     ASSERT_TRUE(mission.has_value()) << mission.error().message;
     EXPECT_EQ(mission->name, file.stem().string());
@@ -364,7 +375,7 @@ TEST(MissionFile, LoadsEveryShippedMission) {
 
 TEST(MissionFile, ShipsMissionsWhoseStartAndGoalKeepTheRiskPromise) {
   for (const auto& file : shipped_missions()) {
-    const auto mission = load_mission(file);
+    const auto mission = load_mission(file, builtin_catalogue());
     ASSERT_TRUE(mission.has_value()) << mission.error().message;
     const double k = cvar_coefficient(mission->planner.risk_alpha);
 

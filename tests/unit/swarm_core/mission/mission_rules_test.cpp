@@ -28,12 +28,27 @@ TEST(MissionRules, TieHearingToTheBrakingDistance) {
 
 TEST(MissionRules, NameTheKeysTheyTie) {
   Mission mission;
-  mission.planner.sigma_min_m = 9.0;
+  mission.planner.speed_mps = 9.0;
 
   const auto broken = broken_rules(mission);
 
   ASSERT_EQ(broken.size(), 1U);
-  EXPECT_EQ(broken[0].keys.front(), "planner.sigma_min_m");
+  EXPECT_EQ(broken[0].keys.front(), "planner.speed_mps");
+}
+
+TEST(MissionRules, CompareKeysOfComponentsWithDefaults) {
+  const Components methods{{.name = "m",
+                            .doc = "",
+                            .options = {{.key = "low_m", .fallback = "1", .at_most = "high_m"},
+                                        {.key = "high_m", .fallback = "3"}}}};
+  OptionValues values;
+  EXPECT_TRUE(broken_rules("planner", methods, values).empty());
+  values.set("high_m", 0.5);
+
+  const auto broken = broken_rules("planner", methods, values);
+
+  ASSERT_EQ(broken.size(), 1U);
+  EXPECT_EQ(broken[0].message, "planner.low_m is 1; must be <= planner.high_m (0.5)");
 }
 
 }  // namespace

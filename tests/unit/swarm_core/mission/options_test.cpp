@@ -1,11 +1,10 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-#include "swarmflow/mission/option_table.hpp"
-
 #include <gtest/gtest.h>
 
 #include "swarmflow/mission/catalogue.hpp"
 #include "swarmflow/mission/mission_file.hpp"
+#include "swarmflow/mission/option_table.hpp"
 
 namespace swarm {
 namespace {
@@ -43,14 +42,33 @@ TEST(OptionTable, ReadsWhatIsSet) {
   EXPECT_EQ(spiral.sense, "right");
 }
 
+TEST(OptionTable, SharesKeysWithOthers) {
+  struct Wide : Spiral {
+    double width_m = 2.0;
+  };
+  const auto wide = OptionTable<Wide>().with(table()).number("width_m", &Wide::width_m, positive(9),
+                                                             "of the turns");
+  OptionValues values;
+  values.set("turns", 7);
+  values.set("width_m", "+4");
+  ASSERT_EQ(wide.specs().size(), 4U);
+  EXPECT_EQ(wide.read(values).turns, 7U);
+  EXPECT_EQ(wide.read(values).gain_hz, 0.1);
+  EXPECT_EQ(wide.read(values).width_m, 4.0);
+}
+
 TEST(Catalogue, IsTheSameAfterJson) {
   Catalogue catalogue;
   catalogue.control_methods.push_back({"spiral", "Turns around its path", table().specs()});
+  catalogue.control_methods[0].options[0].at_most = "turns";
+  catalogue.drivers.push_back({"cart", "Rolls", {}, {.fixed_s = 0.2, .turns = true}});
   const auto read = catalogue_from_json(to_json(catalogue), "agent");
   ASSERT_TRUE(read);
   ASSERT_EQ(read->control_methods.size(), 1U);
   EXPECT_EQ(read->control_methods[0].name, "spiral");
-  EXPECT_EQ(read->control_methods[0].options, table().specs());
+  EXPECT_EQ(read->control_methods[0].options, catalogue.control_methods[0].options);
+  ASSERT_EQ(read->drivers.size(), 1U);
+  EXPECT_EQ(read->drivers[0].lag, catalogue.drivers[0].lag);
 }
 
 TEST(Catalogue, RefusesWhatIsNoDescription) {
@@ -79,8 +97,28 @@ TEST(OpenCatalogue, KeepsNamesAndKeysThatItDoesNotKnow) {
   EXPECT_EQ(again->robots.options, mission->robots.options);
 }
 
+TEST(Mission, HasTheLagOfItsDriversForProgramsWithoutThem) {
+  Catalogue drivers = open_catalogue();
+  drivers.drivers.push_back({"my_robot", "Rolls", {}, {.fixed_s = 0.25, .accelerates = true}});
+  const auto mission = parse_mission(kMission, "m.yaml", {}, drivers);
+  ASSERT_TRUE(mission) << mission.error().message;
+  EXPECT_EQ(mission->robots.lag_s, 0.25 + 1.5 / 3.0);
+
+  const auto planners = parse_mission(to_yaml(*mission), "m.yaml", {}, open_catalogue());
+  ASSERT_TRUE(planners) << planners.error().message;
+  EXPECT_EQ(planners->robots.lag_s, mission->robots.lag_s);
+}
+
+TEST(Mission, MayGiveTheLagItself) {
+  Catalogue drivers = open_catalogue();
+  drivers.drivers.push_back({"my_robot", "Rolls", {}, {.fixed_s = 0.25}});
+  std::string text = kMission;
+  text.replace(text.find("port: 7"), 7, "lag_s: 0.1");
+  EXPECT_EQ(parse_mission(text, "m.yaml", {}, drivers)->robots.lag_s, 0.1);
+}
+
 TEST(ClosedCatalogue, RefusesThem) {
-  EXPECT_FALSE(parse_mission(kMission, "m.yaml"));
+  EXPECT_FALSE(parse_mission(kMission, "m.yaml", {}, Catalogue{}));
 }
 
 }  // namespace

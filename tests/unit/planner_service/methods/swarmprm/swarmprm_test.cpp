@@ -259,16 +259,16 @@ TEST(Planner, SaysWhichComponentsNoRouteJoins) {
 TEST(Planner, OptionsComeFromTheMission) {
   Mission mission;
   PlannerSpec& spec = mission.planner;
-  spec.samples = 7;
-  spec.connection_radius_m = 8.0;
+  spec.options.set("samples", 7);
+  spec.options.set("connection_radius_m", 8.0);
   spec.risk_alpha = 0.09;
   spec.risk_delta_m = -1.0;
-  spec.sigma_min_m = 1.1;
-  spec.sigma_max_m = 1.2;
-  spec.rho_max = 0.13;
-  spec.bridge_share = 0.14;
-  spec.bridge_sigma_m = 1.5;
-  spec.shortcuts = 16;
+  spec.options.set("sigma_min_m", 1.1);
+  spec.options.set("sigma_max_m", 1.2);
+  spec.options.set("rho_max", 0.13);
+  spec.options.set("bridge_share", 0.14);
+  spec.options.set("bridge_sigma_m", 1.5);
+  spec.options.set("shortcuts", 16);
   spec.speed_mps = 0.7;
 
   const SwarmPrmOptions options = testing::swarmprm_options_of(mission);
