@@ -26,16 +26,12 @@ swarm_export(swarm_planner_program planning)
 swarm_export(swarm_observe observe)
 swarm_export(swarm_link bus)
 # What those are made of; their names are not for users.
-foreach(target IN ITEMS swarm_options swarm_shell swarm_gate swarm_idl_cdr swarm_agent
+foreach(target IN ITEMS swarm_options swarm_shell swarm_gate swarm_agent
         swarm_agent_inbox swarm_planner swarm_planner_inbox swarm_monitor_core swarm_recording)
   swarm_export(${target})
 endforeach()
-if(SWARM_WITH_FASTDDS)
-  swarm_export(swarm_idl_fastdds)
-endif()
 if(SWARM_WITH_CYCLONEDDS)
   swarm_export(swarm_link_cyclone)
-  swarm_export(swarm_idl_cyclone)
 endif()
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/Swarmflow)

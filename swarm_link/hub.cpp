@@ -5,63 +5,74 @@
 #include <utility>
 
 #include "swarm_core/base/assert.hpp"
-#include "swarm_link/typed_participant.hpp"
 
 namespace swarm::link {
 namespace {
 
-template <class M>
-class HubWriter final : public Writer<M> {
+class HubWriter final : public RawWriter {
  public:
-  explicit HubWriter(std::vector<WriterPtr<M>> writers) : writers_(std::move(writers)) {}
+  explicit HubWriter(std::vector<RawWriterPtr> writers) : writers_(std::move(writers)) {}
 
-  bool write(const M& message) override {
+  bool write(std::span<const std::byte> bytes) override {
     bool all = true;
-    for (const WriterPtr<M>& writer : writers_) all = writer->write(message) && all;
+    for (const RawWriterPtr& writer : writers_) all = writer->write(bytes) && all;
     return all;
   }
 
   int matched() const override {
     int matched = 0;
-    for (const WriterPtr<M>& writer : writers_) matched += writer->matched();
+    for (const RawWriterPtr& writer : writers_) matched += writer->matched();
     return matched;
   }
 
  private:
-  std::vector<WriterPtr<M>> writers_;
+  std::vector<RawWriterPtr> writers_;
 };
 
-template <class M>
-class HubReader final : public Reader<M> {
+class HubReader final : public RawReader {
  public:
-  explicit HubReader(std::vector<ReaderPtr<M>> readers) : readers_(std::move(readers)) {}
+  explicit HubReader(std::vector<RawReaderPtr> readers) : readers_(std::move(readers)) {}
 
-  std::size_t take(std::vector<M>& out) override {
+  std::size_t take(const Sink& sink) override {
     std::size_t taken = 0;
-    for (const ReaderPtr<M>& reader : readers_) taken += reader->take(out);
+    for (const RawReaderPtr& reader : readers_) taken += reader->take(sink);
     return taken;
   }
 
   int matched() const override {
     int matched = 0;
-    for (const ReaderPtr<M>& reader : readers_) matched += reader->matched();
+    for (const RawReaderPtr& reader : readers_) matched += reader->matched();
     return matched;
   }
 
-  std::uint64_t undecodable() const override {
-    std::uint64_t undecodable = 0;
-    for (const ReaderPtr<M>& reader : readers_) undecodable += reader->undecodable();
-    return undecodable;
-  }
-
  private:
-  std::vector<ReaderPtr<M>> readers_;
+  std::vector<RawReaderPtr> readers_;
 };
 
-class Hub final : public TypedParticipant<Hub> {
+class Hub final : public Participant {
  public:
   explicit Hub(std::vector<std::unique_ptr<Participant>> participants)
       : participants_(std::move(participants)) {}
+
+  Result<RawWriterPtr> make_writer(const RawTopic& topic) override {
+    std::vector<RawWriterPtr> writers;
+    for (const auto& participant : participants_) {
+      auto made = participant->make_writer(topic);
+      if (!made) return made;
+      writers.push_back(std::move(*made));
+    }
+    return std::make_unique<HubWriter>(std::move(writers));
+  }
+
+  Result<RawReaderPtr> make_reader(const RawTopic& topic) override {
+    std::vector<RawReaderPtr> readers;
+    for (const auto& participant : participants_) {
+      auto made = participant->make_reader(topic);
+      if (!made) return made;
+      readers.push_back(std::move(*made));
+    }
+    return std::make_unique<HubReader>(std::move(readers));
+  }
 
   void receive() override {
     for (const auto& participant : participants_) participant->receive();
@@ -75,29 +86,6 @@ class Hub final : public TypedParticipant<Hub> {
   }
 
  private:
-  friend class TypedParticipant<Hub>;
-  template <class M>
-  Result<WriterPtr<M>> writer(const Topic<M>& topic) {
-    std::vector<WriterPtr<M>> writers;
-    for (const auto& participant : participants_) {
-      auto made = participant->make_writer(topic);
-      if (!made) return made;
-      writers.push_back(std::move(*made));
-    }
-    return std::make_unique<HubWriter<M>>(std::move(writers));
-  }
-
-  template <class M>
-  Result<ReaderPtr<M>> reader(const Topic<M>& topic) {
-    std::vector<ReaderPtr<M>> readers;
-    for (const auto& participant : participants_) {
-      auto made = participant->make_reader(topic);
-      if (!made) return made;
-      readers.push_back(std::move(*made));
-    }
-    return std::make_unique<HubReader<M>>(std::move(readers));
-  }
-
   std::vector<std::unique_ptr<Participant>> participants_;
 };
 

@@ -121,24 +121,24 @@ Result<std::unique_ptr<Participant>> join_as_planner(const Meeting& meeting,
   return make_hub(std::move(hubs));
 }
 
-Result<std::unique_ptr<RawParticipant>> join_as_monitor(const Meeting& meeting,
-                                                        std::uint32_t agents,
-                                                        std::uint32_t number) {
+Result<std::unique_ptr<Participant>> join_as_monitor(const Meeting& meeting, std::uint32_t agents,
+                                                     std::uint32_t number) {
   FastDdsOptions options = member(meeting, "swarm_monitor", agent_index(meeting, agents + number));
   if (meeting.hubs > 0) {
     options.star = Star{.peers = {launcher_index(meeting, 0), planner_index(meeting, 0)},
                         .host = meeting.host};
   }
-  return make_fastdds_raw_participant(options);
+  options.cells_by_multicast = false;
+  return make_checked(options);
 }
 
 Result<Stage> join_as_stage(const Meeting& meeting) {
   FastDdsOptions options = member(meeting, "replay", launcher_index(meeting, 0));
   options.star = Star{.is_hub = true};
-  auto launcher = make_fastdds_raw_participant(options);
+  auto launcher = make_checked(options);
   if (!launcher) return tl::unexpected(launcher.error());
   options.index = planner_index(meeting, 0);
-  auto planner = make_fastdds_raw_participant(options);
+  auto planner = make_checked(options);
   if (!planner) return tl::unexpected(planner.error());
   return Stage{std::move(*launcher), std::move(*planner)};
 }

@@ -41,13 +41,12 @@ Result<std::unique_ptr<Participant>> join_as_planner(const Meeting& meeting,
                                                      std::uint32_t ownership_strength);
 
 /// For whoever looks on; `number`: of several. It is told of by launcher and planner alone.
-Result<std::unique_ptr<RawParticipant>> join_as_monitor(const Meeting& meeting,
-                                                        std::uint32_t agents,
-                                                        std::uint32_t number = 0);
+Result<std::unique_ptr<Participant>> join_as_monitor(const Meeting& meeting, std::uint32_t agents,
+                                                     std::uint32_t number = 0);
 
 /// The places of launcher and planner in a star of one hub each, for a replay.
 struct Stage {
-  std::unique_ptr<RawParticipant> launcher, planner;
+  std::unique_ptr<Participant> launcher, planner;
 };
 Result<Stage> join_as_stage(const Meeting& meeting);
 

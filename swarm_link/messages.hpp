@@ -2,98 +2,40 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "swarm_link/fields.hpp"
+#include "swarm_link/plan_message.hpp"
+#include "swarm_link/scene_message.hpp"
+#include "swarm_link/schema_version.hpp"
 #include "swarmflow/mission/phase.hpp"
 
 /// What travels on the bus, as plain structs without any vendor's types: field for field the
-/// structs of idl/swarm.idl, which documents them. Numbers here may be anything a peer sent; they
-/// are used only once they have passed the Gate (swarm_link/gate/gate.hpp).
+/// structs of idl/swarm.idl, which documents them, each with the list of its fields (fields.hpp).
+/// Numbers here may be anything a peer sent; they are used only once they have passed the Gate
+/// (swarm_link/gate/gate.hpp).
 namespace swarm::link {
 
-inline constexpr std::uint16_t kSchemaVersion = 4;
 inline constexpr std::size_t kMaxCellStates = 256;
+inline constexpr std::size_t kMaxStatusRobots = 100;
+inline constexpr std::size_t kMaxRefusalReasons = 16;
+inline constexpr std::size_t kMaxHistogramBins = 464;
+inline constexpr std::size_t kMaxEventCode = 64;
+inline constexpr std::size_t kMaxEventText = 512;
 
 /// Event::source of whoever is not a robot.
 inline constexpr std::uint32_t kPlannerSource = 0xFFFF'FFFF;
 inline constexpr std::uint32_t kLauncherSource = 0xFFFF'FFFE;
-/// SceneObstacleMessage::owner_robot_id of what is no robot's body.
-inline constexpr std::uint32_t kNoRobot = 0xFFFF'FFFF;
 
 using swarm::CommandKind;
 using swarm::MissionPhase;
 using swarm::RobotMode;
 
 enum class Severity : std::uint8_t { kInfo = 0, kWarning = 1, kError = 2 };
-
-struct PlanNodeMessage {
-  double mean_x_m = 0, mean_y_m = 0;
-  double covariance_xx_m2 = 0, covariance_xy_m2 = 0, covariance_yy_m2 = 0;
-  double time_s = 0, mass = 0;
-  bool operator==(const PlanNodeMessage&) const = default;
-};
-
-struct PlanLegMessage {
-  std::uint32_t from_node = 0, to_node = 0;
-  double mass = 0;
-  bool operator==(const PlanLegMessage&) const = default;
-};
-
-struct PlanEntryMessage {
-  std::uint16_t source = 0, share = 0;
-  bool operator==(const PlanEntryMessage&) const = default;
-};
-
-struct PlanMessage {
-  std::uint16_t schema_version = kSchemaVersion;
-  std::uint32_t version = 0;
-  std::uint64_t epoch = 0;
-  std::uint64_t scene_version = 0;
-  std::int64_t t0_utc_ns = 0;
-  double excess_m = 0;
-  std::vector<PlanNodeMessage> nodes{};
-  std::vector<PlanLegMessage> legs{};
-  std::vector<PlanEntryMessage> entries{};
-  bool operator==(const PlanMessage&) const = default;
-};
-
-struct PointMessage {
-  double x_m = 0, y_m = 0;
-  bool operator==(const PointMessage&) const = default;
-};
-
-struct SceneObstacleMessage {
-  std::uint32_t obstacle_id = 0;
-  std::uint32_t owner_robot_id = kNoRobot;
-  std::uint32_t vertices = 0;
-  PointMessage center{};
-  double radius_m = 0;
-  double velocity_x_mps = 0, velocity_y_mps = 0;
-  std::int64_t moving_from_utc_ns = 0, moving_until_utc_ns = 0;
-  bool operator==(const SceneObstacleMessage&) const = default;
-};
-
-struct GoalComponentMessage {
-  double mean_x_m = 0, mean_y_m = 0;
-  double covariance_xx_m2 = 0, covariance_xy_m2 = 0, covariance_yy_m2 = 0;
-  double weight = 0;
-  bool operator==(const GoalComponentMessage&) const = default;
-};
-
-struct SceneMessage {
-  std::uint16_t schema_version = kSchemaVersion;
-  std::uint64_t version = 0;
-  double risk_alpha = 0;
-  std::uint32_t next_id = 0;
-  std::vector<std::uint32_t> removed{};
-  std::vector<SceneObstacleMessage> obstacles{};
-  std::vector<PointMessage> vertices{};
-  std::vector<GoalComponentMessage> goal{};
-  bool operator==(const SceneMessage&) const = default;
-};
 
 struct HeartbeatMessage {
   std::uint16_t schema_version = kSchemaVersion;
@@ -106,6 +48,13 @@ struct HeartbeatMessage {
   double plan_time_s = 0;
   double plan_rate = 0;
   bool operator==(const HeartbeatMessage&) const = default;
+
+  using M = HeartbeatMessage;
+  static constexpr std::string_view kIdlName = "Heartbeat";
+  static constexpr FieldList<&M::schema_version, &M::phase, &M::version, &M::epoch,
+                             &M::sequence_number, &M::stamp_utc_ns, &M::mission_time_s,
+                             &M::plan_time_s, &M::plan_rate>
+      kFields{};
 };
 
 struct RobotStateMessage {
@@ -115,6 +64,12 @@ struct RobotStateMessage {
   double x_m = 0, y_m = 0, vx_mps = 0, vy_mps = 0;
   RobotMode mode = RobotMode::kWaiting;
   bool operator==(const RobotStateMessage&) const = default;
+
+  using M = RobotStateMessage;
+  static constexpr std::string_view kIdlName = "RobotState";
+  static constexpr FieldList<&M::robot_id, &M::sequence_number, &M::stamp_utc_ns, &M::x_m, &M::y_m,
+                             &M::vx_mps, &M::vy_mps, &M::mode>
+      kFields{};
 };
 
 struct CellStatesMessage {
@@ -122,6 +77,12 @@ struct CellStatesMessage {
   std::int32_t cell_x = 0, cell_y = 0;
   std::vector<RobotStateMessage> states{};
   bool operator==(const CellStatesMessage&) const = default;
+
+  using M = CellStatesMessage;
+  static constexpr std::string_view kIdlName = "CellStates";
+  static constexpr FieldList<&M::schema_version, &M::cell_x, &M::cell_y,
+                             up_to(kMaxCellStates, &M::states)>
+      kFields{};
 };
 
 struct CommandMessage {
@@ -130,12 +91,21 @@ struct CommandMessage {
   std::uint64_t command_id = 0;
   std::int64_t stamp_utc_ns = 0;
   bool operator==(const CommandMessage&) const = default;
+
+  using M = CommandMessage;
+  static constexpr std::string_view kIdlName = "Command";
+  static constexpr FieldList<&M::schema_version, &M::kind, &M::command_id, &M::stamp_utc_ns>
+      kFields{};
 };
 
 struct HistogramBinMessage {
   std::uint16_t bin = 0;
   std::uint32_t count = 0;
   bool operator==(const HistogramBinMessage&) const = default;
+
+  using M = HistogramBinMessage;
+  static constexpr std::string_view kIdlName = "HistogramBin";
+  static constexpr FieldList<&M::bin, &M::count> kFields{};
 };
 
 struct RobotStatusMessage {
@@ -151,6 +121,13 @@ struct RobotStatusMessage {
   std::uint32_t ticks = 0, late_ticks = 0;
   std::uint32_t states_sent = 0, states_received = 0;
   bool operator==(const RobotStatusMessage&) const = default;
+
+  using M = RobotStatusMessage;
+  static constexpr std::string_view kIdlName = "RobotStatus";
+  static constexpr FieldList<&M::robot_id, &M::mode, &M::arrived, &M::settled, &M::x_m, &M::y_m,
+                             &M::remaining_m, &M::lag_s, &M::nearest_gap_m, &M::neighbours_heard,
+                             &M::ticks, &M::late_ticks, &M::states_sent, &M::states_received>
+      kFields{};
 };
 
 struct StatusMessage {
@@ -166,6 +143,16 @@ struct StatusMessage {
   std::vector<std::uint32_t> refused{};          ///< by RefusalReason
   std::vector<HistogramBinMessage> state_age{};  ///< bins of Histogram that are not empty
   bool operator==(const StatusMessage&) const = default;
+
+  using M = StatusMessage;
+  static constexpr std::string_view kIdlName = "Status";
+  static constexpr bool kKeyed = true;
+  static constexpr FieldList<&M::first_robot_id, &M::schema_version, &M::process_id,
+                             &M::plan_version, &M::plan_epoch, &M::plan_scene_version,
+                             &M::stamp_utc_ns, &M::plan_time_s, up_to(kMaxStatusRobots, &M::robots),
+                             up_to(kMaxRefusalReasons, &M::refused),
+                             up_to(kMaxHistogramBins, &M::state_age)>
+      kFields{};
 };
 
 struct EventMessage {
@@ -176,6 +163,12 @@ struct EventMessage {
   std::string code{};  ///< stable, machine-readable, kebab-case; at most 64 characters
   std::string text{};  ///< for people; at most 512 characters
   bool operator==(const EventMessage&) const = default;
+
+  using M = EventMessage;
+  static constexpr std::string_view kIdlName = "Event";
+  static constexpr FieldList<&M::schema_version, &M::severity, &M::source, &M::stamp_utc_ns,
+                             up_to(kMaxEventCode, &M::code), up_to(kMaxEventText, &M::text)>
+      kFields{};
 };
 
 }  // namespace swarm::link

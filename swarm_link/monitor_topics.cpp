@@ -9,24 +9,19 @@ namespace {
 constexpr int kDepth = 10'000;
 
 template <class M>
-MonitorTopic topic(const char* recorded, const Topic<M>& topic, const char* type,
-                   bool keyed = false) {
-  return {recorded,
-          {.name = topic.name,
-           .type = std::string("swarm::wire::") + type,
-           .qos = topic.qos,
-           .keyed = keyed}};
+MonitorTopic topic(const char* recorded, const Topic<M>& topic) {
+  return {recorded, raw_topic(topic)};
 }
 
 }  // namespace
 
 std::vector<MonitorTopic> monitor_topics() {
-  std::vector<MonitorTopic> topics = {topic("swarm/plan", plan_topic(), "FlowPlan"),
-                                      topic("swarm/scene", scene_topic(), "Scene"),
-                                      topic("swarm/command", command_topic(), "Command"),
-                                      topic("swarm/heartbeat", heartbeat_topic(), "Heartbeat"),
-                                      topic("swarm/status", relayed_status_topic(), "Status", true),
-                                      topic("swarm/event", relayed_event_topic(), "Event")};
+  std::vector<MonitorTopic> topics = {topic("swarm/plan", plan_topic()),
+                                      topic("swarm/scene", scene_topic()),
+                                      topic("swarm/command", command_topic()),
+                                      topic("swarm/heartbeat", heartbeat_topic()),
+                                      topic("swarm/status", relayed_status_topic()),
+                                      topic("swarm/event", relayed_event_topic())};
   for (const char* type : {"Header", "Step", "Belief", "LinkStats", "Note"}) {
     std::string name = "blackbox/";
     for (const char* c = type; *c != 0; ++c) {
@@ -48,7 +43,7 @@ std::vector<MonitorTopic> monitor_topics() {
 MonitorTopic states_topic() {
   return {"swarm/cell",
           {.name = "swarm/relay/states",
-           .type = "swarm::wire::CellStates",
+           .type = type_name<CellStatesMessage>(),
            .qos = {.reliability = Reliability::kReliable, .depth = kDepth}}};
 }
 

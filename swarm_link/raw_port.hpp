@@ -4,51 +4,80 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "swarmflow/core/result.hpp"
+#include "swarm_link/cdr/layout.hpp"
 #include "swarm_link/topics.hpp"
 
-/// The bus for those who look on: samples as they are on the wire, of any type, not decoded.
+/// What a back of the bus has to provide: samples as bytes, whatever their type. Those who look on
+/// use it as it is.
 namespace swarm::link {
 
 struct RawTopic {
   std::string name{};
   std::string type{};  ///< "swarm::wire::FlowPlan"
   Qos qos{};
-  bool keyed = false;  ///< by its first member, an unsigned long
+  bool keyed = false;                   ///< by its first member, an unsigned long
+  std::size_t usual_bytes = 1U << 16U;  ///< room to begin with; larger samples pass as well
 };
 
+template <Message M>
+RawTopic raw_topic(const Topic<M>& topic) {
+  return {.name = topic.name,
+          .type = type_name<M>(),
+          .qos = topic.qos,
+          .keyed = keyed<M>(),
+          .usual_bytes = cdr::kEncapsulationBytes + cdr::most_bytes<M>()};
+}
+
+/// A sample that was received; its bytes are valid during the call.
+struct RawSample {
+  std::span<const std::byte> bytes{};  ///< CDR with its encapsulation
+  std::int64_t published_utc_ns = 0;   ///< by its writer's clock; 0 where a back has none
+};
+
+/// The same, kept.
 struct RawMessage {
-  std::vector<std::byte> bytes{};  ///< CDR with its encapsulation
-  std::int64_t said_utc_ns = 0;    ///< by its writer's clock
+  std::vector<std::byte> bytes{};
+  std::int64_t said_utc_ns = 0;
 };
 
+/// Sends samples of one topic. Destroying it unregisters the writer. Not thread-safe; may block for
+/// microseconds (socket send), never for a peer.
 class RawWriter {
  public:
   virtual ~RawWriter() = default;
-  virtual bool write(const RawMessage& message) = 0;
+  /// False when the back refused the sample; never throws.
+  virtual bool write(std::span<const std::byte> bytes) = 0;
+  /// Readers this writer is matched with at the moment.
   virtual int matched() const = 0;
 };
 
+/// Receives samples of one topic. Not thread-safe.
 class RawReader {
  public:
+  using Sink = std::function<void(const RawSample&)>;
+
   virtual ~RawReader() = default;
-  /// Appends what came since the last call, oldest first.
-  virtual std::size_t take(std::vector<RawMessage>& out) = 0;
+  /// Hands over every sample that arrived since the last call, oldest first; returns how many.
+  virtual std::size_t take(const Sink& sink) = 0;
   virtual int matched() const = 0;
+
+  /// Appends them.
+  std::size_t take(std::vector<RawMessage>& out) {
+    return take([&out](const RawSample& sample) {
+      out.push_back({.bytes = {sample.bytes.begin(), sample.bytes.end()},
+                     .said_utc_ns = sample.published_utc_ns});
+    });
+  }
 };
 
-/// As Participant; not to be mixed with one's types.
-class RawParticipant {
- public:
-  virtual ~RawParticipant() = default;
-  virtual Result<std::unique_ptr<RawWriter>> make_writer(const RawTopic& topic) = 0;
-  virtual Result<std::unique_ptr<RawReader>> make_reader(const RawTopic& topic) = 0;
-  virtual void receive() = 0;
-};
+using RawWriterPtr = std::unique_ptr<RawWriter>;
+using RawReaderPtr = std::unique_ptr<RawReader>;
 
 }  // namespace swarm::link

@@ -27,6 +27,18 @@ struct Qos {
   bool operator==(const Qos&) const = default;
 };
 
+/// Every message that has a topic.
+template <Message... M>
+struct MessageList {};
+using AllMessages = MessageList<CommandMessage, PlanMessage, SceneMessage, HeartbeatMessage,
+                                CellStatesMessage, StatusMessage, EventMessage>;
+
+/// "swarm::wire::FlowPlan", by which the vendors know a message.
+template <Message M>
+std::string type_name() {
+  return "swarm::wire::" + std::string(M::kIdlName);
+}
+
 /// A topic of message type M.
 template <class M>
 struct Topic {

@@ -16,10 +16,6 @@ Result<std::unique_ptr<Participant>> make_fastdds_participant(const FastDdsOptio
   return absent();
 }
 
-Result<std::unique_ptr<RawParticipant>> make_fastdds_raw_participant(const FastDdsOptions&) {
-  return absent();
-}
-
 Result<std::unique_ptr<DiscoveryServer>> make_discovery_server(std::uint32_t, std::uint16_t) {
   return absent();
 }

@@ -8,11 +8,12 @@
 #include <utility>
 #include <vector>
 
+#include <dds/dds.h>
+#include <dds/ddsi/ddsi_serdata.h>
+#include <dds/ddsi/ddsi_sertype.h>
 #include <fmt/format.h>
 
-#include "swarm_link/cyclone/conversion.hpp"
-#include "swarm_link/typed_participant.hpp"
-#include "swarm_link/wire_bounds.hpp"
+#include "swarm_link/cyclone/byte_type.hpp"
 
 namespace swarm::link {
 namespace cyclone {
@@ -100,16 +101,12 @@ QosPtr translate(const Qos& qos, std::uint32_t ownership_strength) {
   return out;
 }
 
-template <class M>
-class CycloneWriter final : public Writer<M> {
+class CycloneWriter final : public RawWriter {
  public:
   CycloneWriter(Entity topic, Entity writer)
       : topic_(std::move(topic)), writer_(std::move(writer)) {}
 
-  bool write(const M& message) override {
-    if (!fits_wire(message)) return false;
-    return dds_write(writer_.get(), &fill(message)) == DDS_RETCODE_OK;
-  }
+  bool write(Bytes bytes) override { return dds_write(writer_.get(), &bytes) == DDS_RETCODE_OK; }
 
   int matched() const override {
     dds_publication_matched_status_t status{};
@@ -118,44 +115,32 @@ class CycloneWriter final : public Writer<M> {
   }
 
  private:
-  const typename Wire<M>::Type& fill(const M& message) {
-    if constexpr (std::is_same_v<M, EventMessage>) {
-      EventMessage cut = message;
-      cut_strings(cut);
-      return wire_.fill(cut);
-    } else {
-      return wire_.fill(message);
-    }
-  }
-
   Entity topic_;  // outlives the writer: members go in reverse order
   Entity writer_;
-  Wire<M> wire_;
 };
 
-template <class M>
-class CycloneReader final : public Reader<M> {
+class CycloneReader final : public RawReader {
  public:
   CycloneReader(Entity topic, Entity reader)
       : topic_(std::move(topic)), reader_(std::move(reader)) {}
 
-  std::size_t take(std::vector<M>& out) override {
+  std::size_t take(const Sink& sink) override {
     constexpr std::size_t kAtOnce = 64;
-    const std::size_t before = out.size();
-    std::array<void*, kAtOnce> samples;
+    std::array<ddsi_serdata*, kAtOnce> samples;
     std::array<dds_sample_info_t, kAtOnce> infos;
+    std::size_t taken = 0;
     for (;;) {
-      samples[0] = nullptr;  // lend us yours
-      const dds_return_t taken =
-          dds_take(reader_.get(), samples.data(), infos.data(), kAtOnce, kAtOnce);
-      if (taken <= 0) break;
-      for (std::size_t i = 0; i < static_cast<std::size_t>(taken); ++i) {
-        if (!infos[i].valid_data) continue;  // a writer went away
-        Wire<M>::read(*static_cast<const typename Wire<M>::Type*>(samples[i]), out.emplace_back());
+      const dds_return_t came =
+          dds_takecdr(reader_.get(), samples.data(), kAtOnce, infos.data(), DDS_ANY_STATE);
+      if (came <= 0) return taken;
+      for (std::size_t i = 0; i < static_cast<std::size_t>(came); ++i) {
+        if (infos[i].valid_data) {  // else a writer went away
+          sink({.bytes = bytes_of(*samples[i]), .published_utc_ns = infos[i].source_timestamp});
+          ++taken;
+        }
+        ddsi_serdata_unref(samples[i]);
       }
-      dds_return_loan(reader_.get(), samples.data(), taken);
     }
-    return out.size() - before;
   }
 
   int matched() const override {
@@ -164,54 +149,50 @@ class CycloneReader final : public Reader<M> {
     return static_cast<int>(status.current_count);
   }
 
-  std::uint64_t undecodable() const override { return 0; }
-
  private:
   Entity topic_;
   Entity reader_;
 };
 
-class CycloneParticipant final : public TypedParticipant<CycloneParticipant> {
+class CycloneParticipant final : public Participant {
  public:
   CycloneParticipant(CycloneOptions options, std::shared_ptr<Entity> domain, Entity participant)
       : options_(std::move(options)),
         domain_(std::move(domain)),
         participant_(std::move(participant)) {}
 
-  void receive() override {}  // the vendor's threads do
-
-  Result<void> self_check() const override { return {}; }  // nothing fails in silence here
-
- private:
-  friend class TypedParticipant<CycloneParticipant>;
-  template <class M>
-  Result<Entity> topic(const Topic<M>& t) const {
-    // Without QoS: what its readers and writers say counts, and a topic must not be made twice with
-    // different ones.
-    Entity made(dds_create_topic(participant_.get(), Wire<M>::descriptor(), t.name.c_str(), nullptr,
-                                 nullptr));
-    if (made.get() < 0) return refused("topic", t.name, made.get());
-    return made;
-  }
-
-  template <class M>
-  Result<WriterPtr<M>> writer(const Topic<M>& t) {
+  Result<RawWriterPtr> make_writer(const RawTopic& t) override {
     auto made_topic = topic(t);
     if (!made_topic) return tl::unexpected(made_topic.error());
     const QosPtr qos = translate(t.qos, options_.ownership_strength);
     Entity made(dds_create_writer(participant_.get(), made_topic->get(), qos.get(), nullptr));
     if (made.get() < 0) return refused("writer", t.name, made.get());
-    return std::make_unique<CycloneWriter<M>>(std::move(*made_topic), std::move(made));
+    return std::make_unique<CycloneWriter>(std::move(*made_topic), std::move(made));
   }
 
-  template <class M>
-  Result<ReaderPtr<M>> reader(const Topic<M>& t) {
+  Result<RawReaderPtr> make_reader(const RawTopic& t) override {
     auto made_topic = topic(t);
     if (!made_topic) return tl::unexpected(made_topic.error());
     const QosPtr qos = translate(t.qos, options_.ownership_strength);
     Entity made(dds_create_reader(participant_.get(), made_topic->get(), qos.get(), nullptr));
     if (made.get() < 0) return refused("reader", t.name, made.get());
-    return std::make_unique<CycloneReader<M>>(std::move(*made_topic), std::move(made));
+    return std::make_unique<CycloneReader>(std::move(*made_topic), std::move(made));
+  }
+
+  void receive() override {}  // the vendor's threads do
+
+  Result<void> self_check() const override { return {}; }  // nothing fails in silence here
+
+ private:
+  Result<Entity> topic(const RawTopic& t) const {
+    ddsi_sertype* type = make_byte_type(t.type, t.keyed);
+    // Without QoS: what its readers and writers ask for counts, and a topic must not be made twice
+    // with different ones.
+    Entity made(dds_create_topic_sertype(participant_.get(), t.name.c_str(), &type, nullptr,
+                                         nullptr, nullptr));
+    if (made.get() >= 0) return made;
+    ddsi_sertype_unref(type);
+    return refused("topic", t.name, made.get());
   }
 
   tl::unexpected<Error> refused(const char* what, const std::string& topic,

@@ -28,8 +28,7 @@ struct CycloneOptions {
 };
 
 /// Joins a domain. All participants of a process in a domain must have the same index, peers and
-/// interface. Cyclone's own threads receive; take() hands over what they have. What does not decode
-/// is dropped by the vendor, uncounted.
+/// interface. Cyclone's own threads receive; take() hands over what they have.
 Result<std::unique_ptr<Participant>> make_cyclone_participant(const CycloneOptions& options);
 
 }  // namespace swarm::link

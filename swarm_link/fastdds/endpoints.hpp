@@ -2,58 +2,35 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdint>
 #include <memory>
 #include <string>
 #include <utility>
-#include <vector>
 
-#include <fastdds/dds/publisher/DataWriter.hpp>
 #include <fastdds/dds/publisher/Publisher.hpp>
-#include <fastdds/dds/subscriber/DataReader.hpp>
-#include <fastdds/dds/subscriber/SampleInfo.hpp>
 #include <fastdds/dds/subscriber/Subscriber.hpp>
 
-#include "swarm_link/fastdds/guarded_type.hpp"
 #include "swarm_link/fastdds/loopback_transport.hpp"
+#include "swarm_link/fastdds/raw_type.hpp"
 #include "swarm_link/fastdds/topic_registry.hpp"
-#include "swarm_link/port.hpp"
+#include "swarm_link/raw_port.hpp"
 
 namespace swarm::link::fastdds {
 
-template <class M>
-class FastDdsWriter final : public Writer<M> {
+class FastDdsWriter final : public RawWriter {
  public:
   FastDdsWriter(eprosima::fastdds::dds::Publisher& publisher,
                 eprosima::fastdds::dds::DataWriter* writer, TopicRegistry& topics,
                 std::string topic)
       : publisher_(publisher), writer_(writer), topics_(topics), topic_(std::move(topic)) {}
-
-  ~FastDdsWriter() override {
-    publisher_.delete_datawriter(writer_);
-    topics_.release(topic_);
-  }
-
-  bool write(const M& message) override {
-    try {
-      return cdr::to_wire(message, wire_) && writer_->write(&wire_);
-    } catch (const std::exception&) {
-      return false;
-    }
-  }
-
-  int matched() const override {
-    eprosima::fastdds::dds::PublicationMatchedStatus status;
-    writer_->get_publication_matched_status(status);
-    return status.current_count;
-  }
+  ~FastDdsWriter() override;
+  bool write(std::span<const std::byte> bytes) override;
+  int matched() const override;
 
  private:
   eprosima::fastdds::dds::Publisher& publisher_;
   eprosima::fastdds::dds::DataWriter* writer_;
   TopicRegistry& topics_;
   std::string topic_;
-  typename cdr::WireOf<M>::Type wire_;  // kept for its memory
 };
 
 /// A reader's hold on the multicast group it listens to.
@@ -74,8 +51,7 @@ class GroupMembership {
   bool joined_;
 };
 
-template <class M>
-class FastDdsReader final : public Reader<M> {
+class FastDdsReader final : public RawReader {
  public:
   FastDdsReader(eprosima::fastdds::dds::Subscriber& subscriber,
                 eprosima::fastdds::dds::DataReader* reader, TopicRegistry& topics,
@@ -85,44 +61,17 @@ class FastDdsReader final : public Reader<M> {
         topics_(topics),
         topic_(std::move(topic)),
         group_(std::move(group)) {}
-
-  ~FastDdsReader() override {
-    subscriber_.delete_datareader(reader_);
-    topics_.release(topic_);
-  }
-
-  std::size_t take(std::vector<M>& out) override {
-    const auto before = out.size();
-    const auto undecodable_before = undecodable_in_thread;
-    try {
-      eprosima::fastdds::dds::SampleInfo info;
-      while (reader_->take_next_sample(&wire_, &info) == ReturnCode_t::RETCODE_OK) {
-        if (!info.valid_data) continue;  // a writer went away
-        cdr::from_wire(wire_, out.emplace_back());
-      }
-    } catch (const std::exception&) {
-      ++undecodable_in_thread;
-    }
-    undecodable_ += undecodable_in_thread - undecodable_before;
-    return out.size() - before;
-  }
-
-  int matched() const override {
-    eprosima::fastdds::dds::SubscriptionMatchedStatus status;
-    reader_->get_subscription_matched_status(status);
-    return status.current_count;
-  }
-
-  std::uint64_t undecodable() const override { return undecodable_; }
+  ~FastDdsReader() override;
+  std::size_t take(const Sink& sink) override;
+  int matched() const override;
 
  private:
   eprosima::fastdds::dds::Subscriber& subscriber_;
   eprosima::fastdds::dds::DataReader* reader_;
   TopicRegistry& topics_;
   std::string topic_;
-  std::unique_ptr<GroupMembership> group_;  // null: hears at the participant's own address
-  typename cdr::WireOf<M>::Type wire_;      // kept for its memory
-  std::uint64_t undecodable_ = 0;
+  std::unique_ptr<GroupMembership> group_;  // null: receives at the participant's own address
+  ByteSample sample_;                       // kept for its memory
 };
 
 }  // namespace swarm::link::fastdds

@@ -4,6 +4,8 @@
 
 #include <exception>
 #include <optional>
+#include <set>
+#include <string>
 #include <utility>
 
 #include <fmt/format.h>
@@ -11,8 +13,6 @@
 #include "swarm_link/fastdds/endpoints.hpp"
 #include "swarm_link/fastdds/entities.hpp"
 #include "swarm_link/fastdds/entity_qos.hpp"
-#include "swarm_link/fastdds/raw_endpoints.hpp"
-#include "swarm_link/typed_participant.hpp"
 #include "swarm_link/udp_socket.hpp"
 
 namespace swarm::link {
@@ -29,55 +29,32 @@ auto guarded(const char* kind, const std::string& topic, Make make) -> decltype(
   }
 }
 
-class FastDdsParticipant final : public TypedParticipant<FastDdsParticipant> {
+class FastDdsParticipant final : public Participant {
  public:
-  explicit FastDdsParticipant(std::unique_ptr<Entities> entities) : entities_(std::move(entities)) {
-    register_type<PlanMessage>();
-    register_type<SceneMessage>();
-    register_type<HeartbeatMessage>();
-    register_type<CellStatesMessage>();
-    register_type<CommandMessage>();
-    register_type<StatusMessage>();
-    register_type<EventMessage>();
-  }
+  explicit FastDdsParticipant(std::unique_ptr<Entities> entities)
+      : entities_(std::move(entities)) {}
 
-  void receive() override { entities_->receive(); }
-
-  Result<void> self_check() const override { return entities_->self_check(); }
-
- private:
-  friend class TypedParticipant<FastDdsParticipant>;
-  template <class M>
-  void register_type() {
-    entities_->register_type(eprosima::fastdds::dds::TypeSupport(new GuardedType<M>()));
-  }
-
-  template <class M>
-  static std::string type_name() {
-    return GuardedType<M>().getName();
-  }
-
-  template <class M>
-  Result<WriterPtr<M>> writer(const Topic<M>& topic) {
-    return guarded("writer", topic.name, [&]() -> Result<WriterPtr<M>> {
-      const auto made = entities_->make_writer(topic.name, type_name<M>(), topic.qos);
+  Result<RawWriterPtr> make_writer(const RawTopic& topic) override {
+    return guarded("writer", topic.name, [&]() -> Result<RawWriterPtr> {
+      register_type(topic);
+      const auto made = entities_->make_writer(topic.name, topic.type, topic.qos);
       if (!made) return tl::unexpected(made.error());
-      return std::make_unique<FastDdsWriter<M>>(entities_->publisher(), *made, entities_->topics(),
-                                                topic.name);
+      return std::make_unique<FastDdsWriter>(entities_->publisher(), *made, entities_->topics(),
+                                             topic.name);
     });
   }
 
-  template <class M>
-  Result<ReaderPtr<M>> reader(const Topic<M>& topic) {
-    return guarded("reader", topic.name, [&]() -> Result<ReaderPtr<M>> {
+  Result<RawReaderPtr> make_reader(const RawTopic& topic) override {
+    return guarded("reader", topic.name, [&]() -> Result<RawReaderPtr> {
+      register_type(topic);
       std::optional<eprosima::fastrtps::rtps::Locator_t> group;
       if (topic.qos.crowd && multicast_) group = group_of(entities_->options().domain, topic.name);
-      const auto made = entities_->make_reader(topic.name, type_name<M>(), topic.qos, group);
+      const auto made = entities_->make_reader(topic.name, topic.type, topic.qos, group);
       if (!made) return tl::unexpected(made.error());
       auto membership =
           group ? std::make_unique<GroupMembership>(entities_->sockets(), *group) : nullptr;
       const bool deaf = membership && !membership->joined();
-      auto reader = std::make_unique<FastDdsReader<M>>(
+      auto reader = std::make_unique<FastDdsReader>(
           entities_->subscriber(), *made, entities_->topics(), topic.name, std::move(membership));
       if (deaf) {
         return fail(ErrorCode::kEnvironment,
@@ -87,46 +64,21 @@ class FastDdsParticipant final : public TypedParticipant<FastDdsParticipant> {
     });
   }
 
-  std::unique_ptr<Entities> entities_;
-  bool multicast_ = entities_->options().receive_at_tick &&
-                    entities_->options().cells_by_multicast &&
-                    carries_multicast(entities_->options().interface);  // else by unicast
-};
-
-class FastDdsRawParticipant final : public RawParticipant {
- public:
-  explicit FastDdsRawParticipant(std::unique_ptr<Entities> entities)
-      : entities_(std::move(entities)) {}
-
-  Result<std::unique_ptr<RawWriter>> make_writer(const RawTopic& topic) override {
-    return guarded("writer", topic.name, [&]() -> Result<std::unique_ptr<RawWriter>> {
-      register_type(topic);
-      const auto made = entities_->make_writer(topic.name, topic.type, topic.qos);
-      if (!made) return tl::unexpected(made.error());
-      return std::make_unique<FastDdsRawWriter>(entities_->publisher(), *made, entities_->topics(),
-                                                topic.name);
-    });
-  }
-
-  Result<std::unique_ptr<RawReader>> make_reader(const RawTopic& topic) override {
-    return guarded("reader", topic.name, [&]() -> Result<std::unique_ptr<RawReader>> {
-      register_type(topic);
-      const auto made = entities_->make_reader(topic.name, topic.type, topic.qos);
-      if (!made) return tl::unexpected(made.error());
-      return std::make_unique<FastDdsRawReader>(entities_->subscriber(), *made, entities_->topics(),
-                                                topic.name);
-    });
-  }
-
   void receive() override { entities_->receive(); }
+
+  Result<void> self_check() const override { return entities_->self_check(); }
 
  private:
   void register_type(const RawTopic& topic) {
-    entities_->register_type(
-        eprosima::fastdds::dds::TypeSupport(new RawType(topic.type, topic.keyed)));
+    if (!types_.insert(topic.type).second) return;
+    entities_->register_type(eprosima::fastdds::dds::TypeSupport(new RawType(topic)));
   }
 
   std::unique_ptr<Entities> entities_;
+  std::set<std::string> types_;  // that are registered
+  bool multicast_ = entities_->options().receive_at_tick &&
+                    entities_->options().cells_by_multicast &&
+                    carries_multicast(entities_->options().interface);  // else by unicast
 };
 
 }  // namespace
@@ -136,14 +88,6 @@ Result<std::unique_ptr<Participant>> make_fastdds_participant(const FastDdsOptio
   auto entities = fastdds::Entities::make(options);
   if (!entities) return tl::unexpected(entities.error());
   return std::make_unique<fastdds::FastDdsParticipant>(std::move(*entities));
-}
-
-Result<std::unique_ptr<RawParticipant>> make_fastdds_raw_participant(
-    const FastDdsOptions& options) {
-  auto entities = fastdds::Entities::make(options);
-  if (!entities) return tl::unexpected(entities.error());
-  if (const auto hears = (*entities)->self_check(); !hears) return tl::unexpected(hears.error());
-  return std::make_unique<fastdds::FastDdsRawParticipant>(std::move(*entities));
 }
 
 }  // namespace swarm::link

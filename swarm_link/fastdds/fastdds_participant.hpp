@@ -8,10 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "swarmflow/core/result.hpp"
 #include "swarm_link/faulty_path.hpp"
 #include "swarm_link/port.hpp"
-#include "swarm_link/raw_port.hpp"
+#include "swarmflow/core/result.hpp"
 
 /// The Fast DDS back. This header is vendor-free; the vendor's headers stay inside this folder.
 namespace swarm::link {
@@ -64,8 +63,5 @@ Result<std::unique_ptr<DiscoveryServer>> make_discovery_server(std::uint32_t dom
 
 /// Joins a run, by its discovery server or in a star; UDP on one interface, no shared memory.
 Result<std::unique_ptr<Participant>> make_fastdds_participant(const FastDdsOptions& options);
-
-/// The same for samples as they are. Fails when it could not hear.
-Result<std::unique_ptr<RawParticipant>> make_fastdds_raw_participant(const FastDdsOptions& options);
 
 }  // namespace swarm::link

@@ -78,7 +78,7 @@ class GroupChannel final : public StateChannel, private DatagramSink {
   std::size_t publish(std::span<const RobotStateMessage> states) override {
     std::size_t sent = 0;
     for (const CellStatesMessage& batch : batches_.sort(states)) {
-      if (!cdr_.encode(batch, payload_)) continue;
+      if (!encode(batch, payload_)) continue;
       encode_rtps(prefix_, ++sequence_number_, payload_, datagram_);
       const sockaddr_in to = group_of(options_.domain, {batch.cell_x, batch.cell_y});
       if (::sendto(sender_, datagram_.data(), datagram_.size(), 0,
@@ -127,7 +127,7 @@ class GroupChannel final : public StateChannel, private DatagramSink {
 
   void datagram(std::span<std::byte> bytes, const sockaddr_in&) override {
     const auto payload = decode_rtps(bytes);
-    if (payload && cdr_.decode(*payload, taking_->emplace_back())) return;
+    if (payload && decode(*payload, taking_->emplace_back())) return;
     if (payload) taking_->pop_back();
     ++undecodable_;
   }
@@ -135,7 +135,6 @@ class GroupChannel final : public StateChannel, private DatagramSink {
   GroupChannelOptions options_;
   CellInterest interest_;
   CellBatches batches_;
-  Codec<CellStatesMessage> cdr_;
   GuidPrefix prefix_;
   std::uint64_t sequence_number_ = 0;
   in_addr interface_;

@@ -50,7 +50,7 @@ class SocketTap final : public GroupTap, private DatagramSink {
       (*sink_)(*payload);
       return;
     }
-    if (payload && taking_ != nullptr && cdr_.decode(*payload, taking_->emplace_back())) return;
+    if (payload && taking_ != nullptr && decode(*payload, taking_->emplace_back())) return;
     if (payload && taking_ != nullptr) taking_->pop_back();
     ++undecodable_;
   }
@@ -62,7 +62,6 @@ class SocketTap final : public GroupTap, private DatagramSink {
   }
 
   int fd_;
-  Codec<CellStatesMessage> cdr_;
   DatagramDrain drain_;
   std::vector<CellStatesMessage>* taking_ = nullptr;
   const RawSink* sink_ = nullptr;

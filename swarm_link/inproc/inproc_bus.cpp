@@ -4,62 +4,48 @@
 
 #include <map>
 #include <string>
-#include <tuple>
+#include <utility>
 
 #include "swarm_link/inproc/inproc_channel.hpp"
-#include "swarm_link/typed_participant.hpp"
 
 namespace swarm::link {
 
 using inproc::Channel;
 
-// Channels live as long as their endpoints: cell topics come and go.
 struct InprocBus::Impl {
-  template <class M>
-  using Channels = std::map<std::string, std::weak_ptr<Channel<M>>>;
-
-  template <class M>
-  std::shared_ptr<Channel<M>> channel(const std::string& name) {
-    auto& channels = std::get<Channels<M>>(all);
-    auto& entry = channels[name];
+  /// Those of a name and type. They live as long as their endpoints: cell topics come and go.
+  std::shared_ptr<Channel> channel(const RawTopic& topic) {
+    auto& entry = channels[{topic.name, topic.type}];
     auto channel = entry.lock();
     if (!channel) {
-      channel = std::make_shared<Channel<M>>();
+      channel = std::make_shared<Channel>();
       entry = channel;
       std::erase_if(channels, [](const auto& other) { return other.second.expired(); });
     }
     return channel;
   }
 
-  std::tuple<Channels<PlanMessage>, Channels<SceneMessage>, Channels<HeartbeatMessage>,
-             Channels<CellStatesMessage>, Channels<CommandMessage>, Channels<StatusMessage>,
-             Channels<EventMessage>>
-      all;
+  std::map<std::pair<std::string, std::string>, std::weak_ptr<Channel>> channels;
 };
 
 namespace {
 
 template <class Impl>
-class InprocParticipant final : public TypedParticipant<InprocParticipant<Impl>> {
+class InprocParticipant final : public Participant {
  public:
   InprocParticipant(Impl& bus, std::uint32_t strength) : bus_(bus), strength_(strength) {}
+
+  Result<RawWriterPtr> make_writer(const RawTopic& topic) override {
+    return std::make_unique<inproc::InprocWriter>(bus_.channel(topic), topic, strength_);
+  }
+  Result<RawReaderPtr> make_reader(const RawTopic& topic) override {
+    return std::make_unique<inproc::InprocReader>(bus_.channel(topic), topic.qos);
+  }
 
   void receive() override {}
   Result<void> self_check() const override { return {}; }
 
  private:
-  friend class TypedParticipant<InprocParticipant>;
-  template <class M>
-  WriterPtr<M> writer(const Topic<M>& topic) {
-    return std::make_unique<inproc::InprocWriter<M>>(bus_.template channel<M>(topic.name),
-                                                     topic.qos, strength_);
-  }
-  template <class M>
-  ReaderPtr<M> reader(const Topic<M>& topic) {
-    return std::make_unique<inproc::InprocReader<M>>(bus_.template channel<M>(topic.name),
-                                                     topic.qos);
-  }
-
   Impl& bus_;
   std::uint32_t strength_;
 };

@@ -3,69 +3,72 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <deque>
 #include <map>
 #include <memory>
+#include <span>
 #include <utility>
 #include <vector>
 
-#include "swarm_link/port.hpp"
-#include "swarm_link/wire_bounds.hpp"
+#include "swarm_link/raw_port.hpp"
 
 namespace swarm::link::inproc {
 
-/// Instance a message belongs to: histories and ownership are kept per instance.
-template <class M>
-std::uint32_t instance_of(const M&) {
-  return 0;
-}
-inline std::uint32_t instance_of(const StatusMessage& m) { return m.first_robot_id; }
+/// A sample on its way, shared by all who keep it. Histories and ownership are kept per instance.
+struct Sample {
+  std::shared_ptr<const std::vector<std::byte>> bytes;
+  std::uint32_t instance = 0;
+};
 
-/// Keep-last history: at most `depth` messages per instance, oldest first.
-template <class M>
+/// The key of a keyed topic: the first member. \pre the bytes are little-endian, as ours are
+inline std::uint32_t instance_of(std::span<const std::byte> bytes) {
+  std::uint32_t key = 0;
+  std::memcpy(&key, bytes.data() + cdr::kEncapsulationBytes, sizeof key);
+  return key;
+}
+
+/// Keep-last history: at most `depth` samples per instance, oldest first.
 class History {
  public:
   explicit History(int depth) : depth_(depth) {}
 
-  void push(M message) {
-    const auto instance = instance_of(message);
-    auto& count = counts_[instance];
+  void push(Sample sample) {
+    auto& count = counts_[sample.instance];
     if (count == depth_) {
-      messages_.erase(std::find_if(messages_.begin(), messages_.end(),
-                                   [&](const M& kept) { return instance_of(kept) == instance; }));
+      samples_.erase(std::find_if(samples_.begin(), samples_.end(), [&](const Sample& kept) {
+        return kept.instance == sample.instance;
+      }));
       --count;
     }
-    messages_.push_back(std::move(message));
+    samples_.push_back(std::move(sample));
     ++count;
   }
 
-  std::size_t move_to(std::vector<M>& out) {
-    const auto size = messages_.size();
-    std::move(messages_.begin(), messages_.end(), std::back_inserter(out));
-    messages_.clear();
+  std::size_t hand_over(const RawReader::Sink& sink) {
     counts_.clear();
-    return size;
+    const std::deque<Sample> all = std::exchange(samples_, {});
+    for (const Sample& sample : all) sink({.bytes = *sample.bytes});
+    return all.size();
   }
 
-  const std::deque<M>& messages() const { return messages_; }
+  const std::deque<Sample>& samples() const { return samples_; }
 
  private:
   int depth_;
-  std::deque<M> messages_;
+  std::deque<Sample> samples_;
   std::map<std::uint32_t, int> counts_;
 };
 
-template <class M>
 class InprocWriter;
-template <class M>
 class InprocReader;
 
 /// All endpoints of one topic, in order of their making.
-template <class M>
 struct Channel {
-  std::vector<InprocWriter<M>*> writers;
-  std::vector<InprocReader<M>*> readers;
+  std::vector<InprocWriter*> writers;
+  std::vector<InprocReader*> readers;
 };
 
 /// DDS's rule: the writer offers at least what the reader asks for.
@@ -77,65 +80,43 @@ inline bool compatible(const Qos& offered, const Qos& asked) {
           asked.durability == Durability::kVolatile);
 }
 
-template <class M>
-class InprocReader final : public Reader<M> {
+class InprocReader final : public RawReader {
  public:
-  InprocReader(std::shared_ptr<Channel<M>> channel, const Qos& qos)
+  InprocReader(std::shared_ptr<Channel> channel, const Qos& qos)
       : channel_(std::move(channel)), qos_(qos), history_(qos.depth) {
     channel_->readers.push_back(this);
     if (qos.durability == Durability::kTransientLocal) catch_up();
   }
   ~InprocReader() override { std::erase(channel_->readers, this); }
 
-  std::size_t take(std::vector<M>& out) override { return history_.move_to(out); }
+  std::size_t take(const Sink& sink) override { return history_.hand_over(sink); }
 
-  int matched() const override {
-    return static_cast<int>(std::count_if(
-        channel_->writers.begin(), channel_->writers.end(),
-        [&](const InprocWriter<M>* writer) { return compatible(writer->qos(), qos_); }));
-  }
-
-  std::uint64_t undecodable() const override { return 0; }
+  int matched() const override;
 
   const Qos& qos() const { return qos_; }
 
-  void deliver(const InprocWriter<M>& from, const M& message) {
-    if (!compatible(from.qos(), qos_)) return;
-    if (qos_.ownership == Ownership::kExclusive) {
-      auto& owner = owners_[instance_of(message)];
-      if (owner != nullptr && owner != &from && from.strength() <= owner->strength()) return;
-      owner = &from;
-    }
-    history_.push(message);
-  }
-
-  void writer_gone(const InprocWriter<M>& writer) {
+  void deliver(const InprocWriter& from, const Sample& sample);
+  void writer_gone(const InprocWriter& writer) {
     std::erase_if(owners_, [&](const auto& entry) { return entry.second == &writer; });
   }
 
  private:
-  // Strongest writer first, so that with exclusive ownership the others stay silent.
-  void catch_up() {
-    auto writers = channel_->writers;
-    std::stable_sort(writers.begin(), writers.end(),
-                     [](const auto* a, const auto* b) { return a->strength() > b->strength(); });
-    for (const auto* writer : writers) {
-      if (writer->qos().durability != Durability::kTransientLocal) continue;
-      for (const auto& message : writer->history()) deliver(*writer, message);
-    }
-  }
+  void catch_up();
 
-  std::shared_ptr<Channel<M>> channel_;
+  std::shared_ptr<Channel> channel_;
   Qos qos_;
-  History<M> history_;
-  std::map<std::uint32_t, const InprocWriter<M>*> owners_;
+  History history_;
+  std::map<std::uint32_t, const InprocWriter*> owners_;
 };
 
-template <class M>
-class InprocWriter final : public Writer<M> {
+class InprocWriter final : public RawWriter {
  public:
-  InprocWriter(std::shared_ptr<Channel<M>> channel, const Qos& qos, std::uint32_t strength)
-      : channel_(std::move(channel)), qos_(qos), strength_(strength), history_(qos.depth) {
+  InprocWriter(std::shared_ptr<Channel> channel, const RawTopic& topic, std::uint32_t strength)
+      : channel_(std::move(channel)),
+        qos_(topic.qos),
+        keyed_(topic.keyed),
+        strength_(strength),
+        history_(topic.qos.depth) {
     channel_->writers.push_back(this);
   }
   ~InprocWriter() override {
@@ -143,30 +124,19 @@ class InprocWriter final : public Writer<M> {
     for (auto* reader : channel_->readers) reader->writer_gone(*this);
   }
 
-  bool write(const M& message) override {
-    if (!fits_wire(message)) return false;
-    M copy = message;
-    cut_strings(copy);
-    for (auto* reader : channel_->readers) reader->deliver(*this, copy);
-    if (qos_.durability == Durability::kTransientLocal) history_.push(std::move(copy));
-    return true;
-  }
-
-  int matched() const override {
-    return static_cast<int>(std::count_if(
-        channel_->readers.begin(), channel_->readers.end(),
-        [&](const InprocReader<M>* reader) { return compatible(qos_, reader->qos()); }));
-  }
+  bool write(std::span<const std::byte> bytes) override;
+  int matched() const override;
 
   const Qos& qos() const { return qos_; }
   std::uint32_t strength() const { return strength_; }
-  const std::deque<M>& history() const { return history_.messages(); }
+  const std::deque<Sample>& history() const { return history_.samples(); }
 
  private:
-  std::shared_ptr<Channel<M>> channel_;
+  std::shared_ptr<Channel> channel_;
   Qos qos_;
+  bool keyed_;
   std::uint32_t strength_;
-  History<M> history_;
+  History history_;
 };
 
 }  // namespace swarm::link::inproc

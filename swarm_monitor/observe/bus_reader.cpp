@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "swarm_link/cdr/codec.hpp"
 #include "swarm_link/event_words.hpp"
 
 namespace swarm::monitor {
@@ -40,15 +41,14 @@ void BusReader::take(const TappedSample& sample) {
 }
 
 template <class M>
-bool BusReader::decode(link::Codec<M>& codec, const TappedSample& sample, M& out) {
-  auto* bytes = reinterpret_cast<std::byte*>(const_cast<unsigned char*>(sample.bytes.data()));
-  const bool decoded = codec.decode({bytes, sample.bytes.size()}, out);
+bool BusReader::decode(const TappedSample& sample, M& out) {
+  const bool decoded = link::decode(std::as_bytes(sample.bytes), out);
   if (!decoded) gate_.set_undecodable(++undecodable_);
   return decoded;
 }
 
 void BusReader::take_states(const TappedSample& sample) {
-  if (!decode(states_codec_, sample, states_) || !gate_.batch(states_)) return;
+  if (!decode(sample, states_) || !gate_.batch(states_)) return;
   for (const link::RobotStateMessage& state : states_.states) {
     if (!gate_.state(state, sample.heard)) continue;
     observer_.on_state({.robot = RobotId(state.robot_id),
@@ -62,7 +62,7 @@ void BusReader::take_states(const TappedSample& sample) {
 }
 
 void BusReader::take_status(const TappedSample& sample) {
-  if (!decode(status_codec_, sample, status_) || !gate_.status(status_, sample.heard)) return;
+  if (!decode(sample, status_) || !gate_.status(status_, sample.heard)) return;
   for (const link::RobotStatusMessage& status : status_.robots) {
     observer_.on_status({.robot = RobotId(status.robot_id),
                          .received = sample.heard,
@@ -82,7 +82,7 @@ void BusReader::take_status(const TappedSample& sample) {
 
 void BusReader::take_plan(const TappedSample& sample) {
   link::PlanMessage message;
-  if (!decode(plan_codec_, sample, message)) return;
+  if (!decode(sample, message)) return;
   auto plan = gate_.plan(message, sample.heard);
   if (!plan) return;
   plan_ = std::move(*plan);
@@ -94,7 +94,7 @@ void BusReader::take_plan(const TappedSample& sample) {
 
 void BusReader::take_scene(const TappedSample& sample) {
   link::SceneMessage message;
-  if (!decode(scene_codec_, sample, message)) return;
+  if (!decode(sample, message)) return;
   const auto scene = gate_.scene(message, sample.heard);
   // Version 0 is the mission file's, which observers know from the beginning.
   if (scene && scene->version != 0) observer_.on_scene(*scene);
@@ -102,7 +102,7 @@ void BusReader::take_scene(const TappedSample& sample) {
 
 void BusReader::take_heartbeat(const TappedSample& sample) {
   link::HeartbeatMessage message;
-  if (!decode(heartbeat_codec_, sample, message) || !gate_.heartbeat(message, sample.heard)) return;
+  if (!decode(sample, message) || !gate_.heartbeat(message, sample.heard)) return;
   observer_.on_clock({.phase = message.phase,
                       .mission_time_s = message.mission_time_s,
                       .plan_time_s = message.plan_time_s,
@@ -113,12 +113,12 @@ void BusReader::take_heartbeat(const TappedSample& sample) {
 void BusReader::take_command(const TappedSample& sample) {
   // Nothing of a command is reported but that it was refused; what it does, heartbeats report.
   link::CommandMessage message;
-  if (decode(command_codec_, sample, message)) (void)gate_.command(message, sample.heard);
+  if (decode(sample, message)) (void)gate_.command(message, sample.heard);
 }
 
 void BusReader::take_event(const TappedSample& sample) {
   link::EventMessage message;
-  if (!decode(event_codec_, sample, message) || !gate_.event(message)) return;
+  if (!decode(sample, message) || !gate_.event(message)) return;
   observer_.on_event({.received = sample.heard,
                       .source = link::source_name(message.source),
                       .severity = std::string(link::to_string(message.severity)),

@@ -4,11 +4,10 @@
 
 #include <cstdint>
 
-#include "swarmflow/mission/mission.hpp"
-#include "swarm_link/cdr/codec.hpp"
 #include "swarm_link/gate/gate.hpp"
-#include "swarmflow/observe/observer.hpp"
 #include "swarm_monitor/recording/bus_tap.hpp"
+#include "swarmflow/mission/mission.hpp"
+#include "swarmflow/observe/observer.hpp"
 
 namespace swarm::monitor {
 
@@ -25,7 +24,7 @@ class BusReader {
 
  private:
   template <class M>
-  bool decode(link::Codec<M>& codec, const TappedSample& sample, M& out);
+  bool decode(const TappedSample& sample, M& out);
   void take_states(const TappedSample& sample);
   void take_status(const TappedSample& sample);
   void take_plan(const TappedSample& sample);
@@ -38,14 +37,6 @@ class BusReader {
   Observer& observer_;
   FlowPlan plan_;
   std::uint64_t undecodable_ = 0;
-
-  link::Codec<link::CellStatesMessage> states_codec_;
-  link::Codec<link::StatusMessage> status_codec_;
-  link::Codec<link::PlanMessage> plan_codec_;
-  link::Codec<link::SceneMessage> scene_codec_;
-  link::Codec<link::HeartbeatMessage> heartbeat_codec_;
-  link::Codec<link::CommandMessage> command_codec_;
-  link::Codec<link::EventMessage> event_codec_;
   link::CellStatesMessage states_;  // kept for their memory
   link::StatusMessage status_;
 };

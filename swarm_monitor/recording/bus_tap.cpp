@@ -10,10 +10,10 @@
 #include "swarm_core/base/clock.hpp"
 #include "swarm_core/blackbox/record_codec.hpp"
 #include "swarm_core/mcap/idl_text.hpp"
-#include "swarmflow/mission/mission_file.hpp"
 #include "swarm_link/groups/group_tap.hpp"
 #include "swarm_link/monitor_topics.hpp"
 #include "swarm_link/run_meeting.hpp"
+#include "swarmflow/mission/mission_file.hpp"
 
 namespace swarm::monitor {
 namespace {
@@ -23,13 +23,25 @@ constexpr int kLeastDepth = 256;
 /// A writer's clock that is this far off is not believed.
 constexpr Duration kMostDelay = std::chrono::seconds(2);
 
-/// What a type of idl/swarm.idl is made of, itself last.
-std::vector<std::string_view> structs_of(std::string_view type) {
-  if (type == "FlowPlan") return {"PlanNode", "PlanLeg", "PlanEntry", type};
-  if (type == "Scene") return {"Point", "SceneObstacle", "GoalComponent", type};
-  if (type == "CellStates") return {"RobotState", type};
-  if (type == "Status") return {"HistogramBin", "RobotStatus", type};
-  return {type};
+/// Appends the structs of idl/swarm.idl that a T is made of, itself last.
+template <class T>
+void add_structs(std::vector<std::string_view>& structs) {
+  if constexpr (link::kIsSequence<T>) {
+    add_structs<typename T::value_type>(structs);
+  } else if constexpr (link::Message<T>) {
+    link::for_each_field<T>(
+        [&](auto field) { add_structs<typename decltype(field)::Type>(structs); });
+    if (std::find(structs.begin(), structs.end(), T::kIdlName) == structs.end()) {
+      structs.push_back(T::kIdlName);
+    }
+  }
+}
+
+template <class... M>
+std::vector<std::string_view> structs_of(link::MessageList<M...>, const std::string& type) {
+  std::vector<std::string_view> structs;
+  ((type == link::type_name<M>() ? add_structs<M>(structs) : void()), ...);
+  return structs;
 }
 
 mcap::Schema schema_of(const std::string& type) {
@@ -38,14 +50,13 @@ mcap::Schema schema_of(const std::string& type) {
       return {.name = type, .encoding = "omgidl", .data = mcap::blackbox_idl(kind.structs)};
     }
   }
-  constexpr std::string_view kModule = "swarm::wire::";
-  const auto structs = structs_of(std::string_view(type).substr(kModule.size()));
+  const auto structs = structs_of(link::AllMessages(), type);
   return {.name = type, .encoding = "omgidl", .data = mcap::wire_idl(structs)};
 }
 
 class RunTap final : public BusTap {
  public:
-  explicit RunTap(std::unique_ptr<link::RawParticipant> participant)
+  explicit RunTap(std::unique_ptr<link::Participant> participant)
       : participant_(std::move(participant)) {}
 
   Result<void> listen(link::RawTopic topic, std::uint32_t recorded) {
@@ -97,7 +108,7 @@ class RunTap final : public BusTap {
     return {reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size()};
   }
 
-  std::unique_ptr<link::RawParticipant> participant_;
+  std::unique_ptr<link::Participant> participant_;
   std::unique_ptr<link::GroupTap> groups_;  // null: states go by topics
   std::vector<std::pair<std::uint32_t, std::unique_ptr<link::RawReader>>> readers_;
   std::vector<link::RawMessage> messages_;

@@ -6,10 +6,10 @@
 
 #include "swarm_core/base/clock.hpp"
 #include "swarm_core/mcap/writer.hpp"
-#include "swarmflow/mission/mission_file.hpp"
 #include "swarm_core/shell/run_directory.hpp"
 #include "swarm_link/cdr/codec.hpp"
 #include "swarm_monitor/recording/bus_tap.hpp"
+#include "swarmflow/mission/mission_file.hpp"
 
 namespace swarm::monitor {
 namespace {
@@ -46,7 +46,6 @@ Result<RecordResult> record_bus(const RecordOptions& options) {
   }
 
   link::StreamMeter meter(mission->robots.count);
-  link::Codec<link::CellStatesMessage> codec;
   link::CellStatesMessage states;
   const UtcTime began = utc_now();
   UtcTime heard_at = began, flushed_at = began;
@@ -58,8 +57,7 @@ Result<RecordResult> record_bus(const RecordOptions& options) {
       heard_at = sample.heard;
       if (sample.topic != states_index()) return;
       // Only to count what is missing; the file holds the bytes.
-      auto* bytes = reinterpret_cast<std::byte*>(const_cast<unsigned char*>(sample.bytes.data()));
-      if (!codec.decode({bytes, sample.bytes.size()}, states)) return;
+      if (!link::decode(std::as_bytes(sample.bytes), states)) return;
       for (const auto& state : states.states) meter.hear(state, sample.heard);
     });
     const UtcTime now = utc_now();

@@ -53,9 +53,7 @@ class Cast {
   }
 
   bool say(std::uint32_t topic, std::span<const unsigned char> bytes) {
-    const auto* begin = reinterpret_cast<const std::byte*>(bytes.data());
-    message_.bytes.assign(begin, begin + bytes.size());
-    return writers_[topic]->write(message_);
+    return writers_[topic]->write(std::as_bytes(bytes));
   }
 
   void receive() {
@@ -66,7 +64,6 @@ class Cast {
  private:
   link::Stage stage_;
   std::vector<std::unique_ptr<link::RawWriter>> writers_;
-  link::RawMessage message_;
 };
 
 Result<void> write_attachments(const Score& score, const std::filesystem::path& dir) {

@@ -28,8 +28,9 @@ bool may_include_vendor(const std::string& file) {
       file == "swarm_link/cyclone/cyclone_participant.hpp") {
     return false;  // their public faces
   }
-  return file.starts_with("swarm_link/cdr/") || file.starts_with("swarm_link/fastdds/") ||
-         file.starts_with("swarm_link/cyclone/") || file.starts_with("tests/conformance/hostile/");
+  return file.starts_with("swarm_link/fastdds/") || file.starts_with("swarm_link/cyclone/") ||
+         file.starts_with("tests/conformance/hostile/") ||
+         file.starts_with("tests/conformance/idl/");
 }
 
 std::vector<std::string> includes_of(const fs::path& file) {

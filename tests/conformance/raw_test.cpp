@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Those who look on: samples as they are, of launcher and planner of a run and of a replay.
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <thread>
 
@@ -33,9 +34,8 @@ StatusMessage status_of(std::uint32_t robot, std::uint32_t ticks) {
 
 template <class M>
 std::vector<std::byte> bytes_of(const M& message) {
-  Codec<M> codec;
   std::vector<std::byte> bytes;
-  EXPECT_TRUE(codec.encode(message, bytes));
+  EXPECT_TRUE(encode(message, bytes));
   bytes.resize((bytes.size() + 3) / 4 * 4);  // as DDS carries it
   return bytes;
 }
@@ -47,8 +47,7 @@ MonitorTopic topic_named(const std::string& recorded) {
 }
 
 /// What a reader has heard so far, by when it was said.
-std::vector<RawMessage> heard(RawParticipant& participant, RawReader& reader,
-                              std::size_t expected) {
+std::vector<RawMessage> heard(Participant& participant, RawReader& reader, std::size_t expected) {
   std::vector<RawMessage> messages;
   EXPECT_TRUE(eventually([&] {
     participant.receive();
@@ -97,7 +96,7 @@ TEST(Raw, SaysAgainWhatWasHeard) {
   PlanMessage plan{.version = 3, .epoch = 4};
   plan.nodes.resize(2000);
   RawMessage message{.bytes = bytes_of(plan)};
-  ASSERT_TRUE(plans->write(message));
+  ASSERT_TRUE(plans->write(message.bytes));
   ASSERT_TRUE(eventually([&] {
     monitor->receive();
     stage.launcher->receive();
@@ -105,7 +104,7 @@ TEST(Raw, SaysAgainWhatWasHeard) {
     return statuses->matched() == 1 && status_reader->matched() == 1;
   }));
   RawMessage status{.bytes = bytes_of(status_of(5, 9))};
-  ASSERT_TRUE(statuses->write(status));
+  ASSERT_TRUE(statuses->write(status.bytes));
 
   const auto heard_status = heard(*monitor, *status_reader, 1);
   EXPECT_EQ(heard_status.front().bytes, status.bytes);
@@ -124,7 +123,7 @@ TEST(Raw, RefusesWhatIsNoSample) {
   const Meeting meeting{.domain = test_domain(), .hubs = 1};
   const auto stage = join_as_stage(meeting).value();
   const auto writer = stage.launcher->make_writer(topic_named("swarm/event").wire).value();
-  EXPECT_FALSE(writer->write({.bytes = {std::byte{0}}}));
+  EXPECT_FALSE(writer->write(std::array{std::byte{0}}));
 }
 
 }  // namespace

@@ -215,14 +215,14 @@ class MonitorReceiver final : public Receiver {
  private:
   template <class M>
   static bool encode(const M& message, std::vector<std::byte>& bytes) {
-    return Codec<M>().encode(message, bytes);
+    return link::encode(message, bytes);
   }
   /// Our own encoder makes no batch that is too long: the last state is appended to its bytes.
   static bool encode(CellStatesMessage batch, std::vector<std::byte>& bytes) {
     constexpr std::size_t kCountAt = 16, kStateBytes = 56;
     const auto count = static_cast<std::uint32_t>(batch.states.size());
     batch.states.resize(std::min(batch.states.size(), kMaxCellStates));
-    if (!Codec<CellStatesMessage>().encode(batch, bytes)) return false;
+    if (!link::encode(batch, bytes)) return false;
     for (std::size_t i = batch.states.size(); i < count; ++i) {
       const std::vector<std::byte> last(bytes.end() - kStateBytes, bytes.end());
       bytes.insert(bytes.end(), last.begin(), last.end());

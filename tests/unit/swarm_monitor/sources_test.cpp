@@ -7,14 +7,15 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "swarm_link/cdr/codec.hpp"
 #include "swarm_core/mcap/writer.hpp"
-#include "swarmflow/mission/mission_file.hpp"
 #include "swarm_link/to_message.hpp"
 #include "swarm_monitor/recording/replay.hpp"
 #include "swarm_monitor/view/live_source.hpp"
 #include "swarm_monitor/view/recorded_source.hpp"
 #include "swarm_monitor/view/remote_control.hpp"
 #include "swarm_monitor/view/top_text.hpp"
+#include "swarmflow/mission/mission_file.hpp"
 #include "synthetic_run.hpp"
 
 namespace swarm::monitor {
@@ -58,9 +59,8 @@ class FakeTap final : public BusTap {
  public:
   template <class M>
   void say(const std::string& topic, const M& message, UtcTime heard) {
-    link::Codec<M> codec;
     std::vector<std::byte> bytes;
-    ASSERT_TRUE(codec.encode(message, bytes));
+    ASSERT_TRUE(link::encode(message, bytes));
     const auto* begin = reinterpret_cast<const unsigned char*>(bytes.data());
     samples_.push_back({topic_named(topic), heard, {begin, begin + bytes.size()}});
   }

@@ -1,0 +1,83 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+#include "swarm_link/cdr/layout.hpp"
+
+namespace swarm::link::cdr {
+
+/// The part of a text that travels: up to its bound, and to its first zero, which ends it in CDR.
+inline std::string_view travelling(std::string_view text, std::size_t bound) {
+  text = text.substr(0, bound);
+  return text.substr(0, text.find('\0'));
+}
+
+/// Room enough for a message as it is; its sequences may be longer than their bounds.
+template <Message M>
+std::size_t room_for(const M& message) {
+  std::size_t room = 0;
+  for_each_field<M>([&](auto field) {
+    using F = decltype(field);
+    using T = typename F::Type;
+    room += most_bytes < T, kIsText<T> ? F::kBound : 0 > ();
+    if constexpr (kIsSequence<T>) {
+      static_assert(!kIsSequence<typename T::value_type> && !kIsText<typename T::value_type>);
+      room += (message.*F::kMember).size() * most_bytes<typename T::value_type>();
+    }
+  });
+  return room;
+}
+
+/// Puts values where CDR has them, in the byte order of this machine. Whoever makes it makes room:
+/// room_for() and kSlack more.
+class Encoder {
+ public:
+  /// Padding is written as a whole number of the size that follows it.
+  static constexpr std::size_t kSlack = 8;
+
+  explicit Encoder(std::byte* begin) : begin_(begin) {}
+  std::size_t size() const { return at_; }
+
+  template <std::size_t Bound = 0, class T>
+  void put(const T& value) {
+    if constexpr (Message<T>) {
+      for_each_field<T>([&](auto field) {
+        using F = decltype(field);
+        put<F::kBound>(value.*F::kMember);
+      });
+    } else if constexpr (kIsSequence<T>) {
+      put(static_cast<std::uint32_t>(value.size()));
+      for (const auto& element : value) put(element);
+    } else if constexpr (kIsText<T>) {
+      put_text(travelling(value, Bound));
+    } else {
+      static_assert(std::is_arithmetic_v<T> || std::is_enum_v<T>);
+      if constexpr (sizeof(T) > 1) {
+        std::memset(begin_ + at_, 0, sizeof(T));
+        at_ = aligned(at_, sizeof(T));
+      }
+      std::memcpy(begin_ + at_, &value, sizeof(T));
+      at_ += sizeof(T);
+    }
+  }
+
+ private:
+  void put_text(std::string_view text) {
+    put(static_cast<std::uint32_t>(text.size() + 1));
+    std::memcpy(begin_ + at_, text.data(), text.size());
+    at_ += text.size();
+    begin_[at_++] = std::byte{0};
+  }
+
+  std::byte* begin_;
+  std::size_t at_ = 0;
+};
+
+}  // namespace swarm::link::cdr

@@ -1,0 +1,67 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+
+#include "swarm_link/fields.hpp"
+
+/// How much room values take in plain CDR (XCDR1): each number at a multiple of its size, counted
+/// behind the encapsulation; before a sequence or text its length.
+namespace swarm::link::cdr {
+
+inline constexpr std::size_t kEncapsulationBytes = 4;
+inline constexpr std::size_t kLengthBytes = sizeof(std::uint32_t);
+
+constexpr std::size_t aligned(std::size_t at, std::size_t size) {
+  return (at + size - 1) & ~(size - 1);
+}
+
+/// Bytes a T takes at least: what a received length is checked against before room is made.
+template <class T>
+constexpr std::size_t least_bytes() {
+  if constexpr (Message<T>) {
+    std::size_t sum = 0;
+    for_each_field<T>([&](auto field) { sum += least_bytes<typename decltype(field)::Type>(); });
+    return sum;
+  } else if constexpr (kIsSequence<T> || kIsText<T>) {
+    return kLengthBytes;
+  } else {
+    return sizeof(T);
+  }
+}
+
+/// Where a T ends that begins at `at`, its sequences and texts as long as their bounds allow.
+template <class T, std::size_t Bound = 0>
+constexpr std::size_t most_end(std::size_t at);
+
+/// Bytes a T takes at most, wherever it begins.
+template <class T, std::size_t Bound = 0>
+constexpr std::size_t most_bytes() {
+  std::size_t most = 0;
+  for (std::size_t begin = 0; begin < 8; ++begin) {
+    most = std::max(most, most_end<T, Bound>(begin) - begin);
+  }
+  return most;
+}
+
+template <class T, std::size_t Bound>
+constexpr std::size_t most_end(std::size_t at) {
+  if constexpr (Message<T>) {
+    for_each_field<T>([&](auto field) {
+      using F = decltype(field);
+      at = most_end<typename F::Type, F::kBound>(at);
+    });
+    return at;
+  } else if constexpr (kIsSequence<T>) {
+    return aligned(at, kLengthBytes) + kLengthBytes + Bound * most_bytes<typename T::value_type>();
+  } else if constexpr (kIsText<T>) {
+    return aligned(at, kLengthBytes) + kLengthBytes + Bound + 1;
+  } else {
+    return aligned(at, sizeof(T)) + sizeof(T);
+  }
+}
+
+}  // namespace swarm::link::cdr

@@ -1,0 +1,79 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "swarm_link/cdr/codec.hpp"
+#include "swarm_link/raw_port.hpp"
+
+/// Writers and readers of messages: the same over every back.
+namespace swarm::link {
+
+/// Sends messages of one topic, as RawWriter.
+template <class M>
+class Writer {
+ public:
+  virtual ~Writer() = default;
+  /// False when the message is beyond the contract, or the back refused it; never throws.
+  virtual bool write(const M& message) = 0;
+  /// Readers this writer is matched with at the moment.
+  virtual int matched() const = 0;
+};
+
+/// Receives messages of one topic. Not thread-safe.
+template <class M>
+class Reader {
+ public:
+  virtual ~Reader() = default;
+  /// Appends every message that arrived since the last call, oldest first; returns how many.
+  /// Samples that do not decode are dropped and counted in undecodable().
+  virtual std::size_t take(std::vector<M>& out) = 0;
+  virtual int matched() const = 0;
+  virtual std::uint64_t undecodable() const = 0;
+};
+
+template <class M>
+using WriterPtr = std::unique_ptr<Writer<M>>;
+template <class M>
+using ReaderPtr = std::unique_ptr<Reader<M>>;
+
+template <Message M>
+class EncodingWriter final : public Writer<M> {
+ public:
+  explicit EncodingWriter(RawWriterPtr raw) : raw_(std::move(raw)) {}
+  bool write(const M& message) override { return encode(message, bytes_) && raw_->write(bytes_); }
+  int matched() const override { return raw_->matched(); }
+
+ private:
+  RawWriterPtr raw_;
+  std::vector<std::byte> bytes_;  // kept for its memory
+};
+
+template <Message M>
+class DecodingReader final : public Reader<M> {
+ public:
+  explicit DecodingReader(RawReaderPtr raw) : raw_(std::move(raw)) {}
+
+  std::size_t take(std::vector<M>& out) override {
+    const std::size_t before = out.size();
+    raw_->take([this, &out](const RawSample& sample) {
+      if (decode(sample.bytes, out.emplace_back())) return;
+      out.pop_back();
+      ++undecodable_;
+    });
+    return out.size() - before;
+  }
+  int matched() const override { return raw_->matched(); }
+  std::uint64_t undecodable() const override { return undecodable_; }
+
+ private:
+  RawReaderPtr raw_;
+  std::uint64_t undecodable_ = 0;
+};
+
+}  // namespace swarm::link

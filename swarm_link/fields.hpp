@@ -1,0 +1,93 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+/// What a message is made of, listed once beside its members. The bytes on the wire, the bounds and
+/// the JSON of a message follow from its list: nothing else names its fields.
+namespace swarm::link {
+
+/// A sequence or text with its bound in the IDL.
+template <class M, class T>
+struct BoundedMember {
+  T M::*member;
+  std::size_t bound;
+};
+template <class M, class T>
+consteval BoundedMember<M, T> up_to(std::size_t bound, T M::*member) {
+  return {member, bound};
+}
+
+/// `static constexpr FieldList<&M::a, up_to(5, &M::b)> kFields{}` of message M, in the order of the
+/// IDL. Beside it stands `kIdlName`, the struct's name in idl/swarm.idl, and in a message that has
+/// its first field as key `kKeyed`.
+template <auto... Entries>
+struct FieldList {};
+
+/// "x_m" of &M::x_m, as the compiler spells it: a name that is written once cannot be wrong.
+template <auto Member>
+constexpr std::string_view member_name() {
+  std::string_view text = __PRETTY_FUNCTION__;
+  text.remove_prefix(text.find("Member = ") + 9);
+  text = text.substr(0, text.find_first_of(";]"));
+  return text.substr(text.rfind(':') + 1);
+}
+
+template <auto Entry>
+struct Field;
+template <class M, class T, T M::*Member>
+struct Field<Member> {
+  using Type = T;
+  static constexpr T M::*kMember = Member;
+  static constexpr std::size_t kBound = 0;
+  static constexpr std::string_view kName = member_name<Member>();
+};
+template <class M, class T, BoundedMember<M, T> Bounded>
+struct Field<Bounded> {
+  using Type = T;
+  static constexpr T M::*kMember = Bounded.member;
+  static constexpr std::size_t kBound = Bounded.bound;
+  static constexpr std::string_view kName = member_name<Bounded.member>();
+};
+
+template <class T>
+concept Message = requires {
+  T::kFields;
+};
+template <class T>
+constexpr bool kIsSequence = false;
+template <class T>
+constexpr bool kIsSequence<std::vector<T>> = true;
+template <class T>
+constexpr bool kIsText = std::is_same_v<T, std::string>;
+
+/// Calls visit(Field<...>()) for each field of M, in order, as long as it returns true.
+template <Message M, class Visit>
+constexpr bool all_fields(Visit visit) {
+  return [&]<auto... Entries>(FieldList<Entries...>) { return (visit(Field<Entries>()) && ...); }
+  (M::kFields);
+}
+template <Message M, class Visit>
+constexpr void for_each_field(Visit visit) {
+  [&]<auto... Entries>(FieldList<Entries...>) { (visit(Field<Entries>()), ...); }
+  (M::kFields);
+}
+
+/// Whether samples are kept apart by the first field.
+template <Message M>
+constexpr bool keyed() {
+  if constexpr (requires { M::kKeyed; }) {
+    return M::kKeyed;
+  } else {
+    return false;
+  }
+}
+
+}  // namespace swarm::link
