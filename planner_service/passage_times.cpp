@@ -18,12 +18,12 @@ double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(
 
 // Where on the way from a to b, 0 to 1, it crosses the segment.
 std::optional<double> crossing(const Vec2& a_m, const Vec2& b_m, const Passage& passage) {
-  const Vec2 way_m = b_m - a_m;
+  const Vec2 path_m = b_m - a_m;
   const Vec2 gate_m = passage.to_m - passage.from_m;
-  const double turn = cross(way_m, gate_m);
+  const double turn = cross(path_m, gate_m);
   if (turn == 0.0) return std::nullopt;
   const double along = cross(passage.from_m - a_m, gate_m) / turn;
-  const double across = cross(passage.from_m - a_m, way_m) / turn;
+  const double across = cross(passage.from_m - a_m, path_m) / turn;
   // A way that ends on the segment has crossed it, one that begins there has not.
   if (along <= 0.0 || along > 1.0 || across < 0.0 || across > 1.0) return std::nullopt;
   return along;
@@ -111,8 +111,8 @@ class Group {
       if (moves && from_m == start_m_) leaves.add(from.time, mass);
       if (moves && is_goal(to_m)) arrives.add(to.time, mass);
       if (moves || !is_goal(to_m)) {
-        const MissionTime way((to_m - from_m).norm() / speed_mps);
-        result.waits_on_average += mass / result.share * (to.time - from.time - way);
+        const MissionTime path((to_m - from_m).norm() / speed_mps);
+        result.waits_on_average += mass / result.share * (to.time - from.time - path);
       }
       if (!passage) continue;
       if (const auto along = crossing(from_m, to_m, *passage)) {

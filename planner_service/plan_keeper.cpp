@@ -13,7 +13,7 @@ namespace {
 
 // After a start the launcher's scene is due at once; a bus that does not bring it must not keep a
 // mission from flying.
-constexpr Duration kScenePatience = std::chrono::seconds(3);
+constexpr Duration kSceneTimeout = std::chrono::seconds(3);
 // Robots that stand for this long are stuck; escapes of their own have not helped by then.
 constexpr Duration kStuckAfter = std::chrono::seconds(8);
 // … and so many of them are reason to lead the swarm another way.
@@ -57,9 +57,9 @@ Result<void> PlanKeeper::plan_first() {
 }
 
 bool PlanKeeper::take_scene(Scene scene) {
-  if (scene_heard_ && scene.version <= scene_.version) return false;
+  if (scene_received_ && scene.version <= scene_.version) return false;
   scene_ = std::move(scene);
-  scene_heard_ = true;
+  scene_received_ = true;
   for (const SceneObstacle& o : scene_.obstacles) {
     if (o.owner) robots_.forget(*o.owner);
   }
@@ -126,7 +126,7 @@ void PlanKeeper::try_again(SteadyTime now, UtcTime utc, Step& step) {
 }
 
 void PlanKeeper::keep_planned(SteadyTime now, UtcTime utc, Step& step) {
-  if (!scene_heard_ && now - begun_at_ < kScenePatience) return;
+  if (!scene_received_ && now - begun_at_ < kSceneTimeout) return;
   const bool published = version_ > 0;
   if (phase_ != MissionPhase::kReady && !published && is_waiting_for_robots(now)) return;
   if (scene_.version == 0 && !published && !is_in_flight_elsewhere(now)) {
@@ -134,10 +134,10 @@ void PlanKeeper::keep_planned(SteadyTime now, UtcTime utc, Step& step) {
     tried_at_ = now;
     return;
   }
-  const bool news = !published || scene_.version != planned_scene_;
+  const bool is_new = !published || scene_.version != planned_scene_;
   const bool tried = failed_scene_ == scene_.version;
   const bool due = now - tried_at_ >= kReplanPeriod;
-  if ((news && (!tried || due)) || (scene_.moves(utc) && due) || is_step_due(now)) {
+  if ((is_new && (!tried || due)) || (scene_.moves(utc) && due) || is_step_due(now)) {
     try_again(now, utc, step);
   }
 }
@@ -149,7 +149,7 @@ void PlanKeeper::avoid_jams(SteadyTime now, UtcTime utc, Step& step) {
   if (stuck.empty() || static_cast<double>(stuck.size()) < kStuckShare * mission_.robots.count) {
     return;
   }
-  robots_.forgive(now);
+  robots_.reset_stuck_timers(now);
   const Vec2& at_m = stuck[stuck.size() / 2].position_m;
   if (!planner_.method().on_congestion(at_m)) return;
   step.notices.push_back(
@@ -196,7 +196,7 @@ void PlanKeeper::catch_up(SteadyTime now) {
 void PlanKeeper::report_clock(SteadyTime now, Step& step) {
   std::vector<RobotId> fresh;  // not reported before, for this plan
   for (const RobotId robot : governor_.hopeless()) {
-    if (hopeless_told_.insert(robot).second) fresh.push_back(robot);
+    if (hopeless_reported_.insert(robot).second) fresh.push_back(robot);
   }
   if (!fresh.empty()) {
     std::string names;
@@ -213,15 +213,15 @@ void PlanKeeper::report_clock(SteadyTime now, Step& step) {
   const bool is_slow = governor_.rate() < 1.0 && phase_ == MissionPhase::kRunning;
   if (!is_slow) full_rate_at_ = now;
   const bool is_slow_for_long = is_slow && now - full_rate_at_ >= kSlowFor;
-  if (is_slow_for_long && !slow_told_) {
-    slow_told_ = true;
+  if (is_slow_for_long && !slow_reported_) {
+    slow_reported_ = true;
     step.notices.push_back(
         {false, "plan-clock-slow",
          fmt::format("the plan waits for the swarm: rate {:.2f}, a lag of "
                      "{:.1f} s at quantile {}",
                      governor_.rate(), governor_.lag_s(), mission_.plan_clock.lag_quantile)});
-  } else if (!is_slow && slow_told_) {
-    slow_told_ = false;
+  } else if (!is_slow && slow_reported_) {
+    slow_reported_ = false;
     step.notices.push_back({false, "plan-clock-full", "the plan's clock runs at full rate again"});
   }
 }
@@ -233,7 +233,7 @@ void PlanKeeper::keep_clock(SteadyTime now, UtcTime utc, Step& step) {
     catch_up(now);
     std::vector<RobotLag> lags;
     for (const ReportedRobot& robot : robots_.fresh(now)) {
-      if (!says_lag(robot)) continue;
+      if (!reports_lag(robot)) continue;
       lags.push_back({robot.robot, robot.lag_s, robot.arrived});
     }
     governor_.judge(lags);
@@ -241,11 +241,11 @@ void PlanKeeper::keep_clock(SteadyTime now, UtcTime utc, Step& step) {
   }
   const PlanClock clock = governor_.reading(utc);
   // A jump, after a restart, is worth a reading as well.
-  const bool jumped = std::abs(clock_told_.plan_time_at_s(utc) - clock.plan_time_s) > 0.05;
-  if (clock.plan_version == clock_told_.plan_version && clock.rate == clock_told_.rate && !jumped) {
+  const bool jumped = std::abs(clock_reported_.plan_time_at_s(utc) - clock.plan_time_s) > 0.05;
+  if (clock.plan_version == clock_reported_.plan_version && clock.rate == clock_reported_.rate && !jumped) {
     return;
   }
-  clock_told_ = clock;
+  clock_reported_ = clock;
   step.clock = clock;
 }
 

@@ -30,16 +30,16 @@ class PlanKeeper {
   /// The plan of the mission file. The same mission and seed give the same flow.
   Result<void> plan_first();
 
-  /// The keeper is on the bus from now on: what it has not heard yet may still come.
+  /// The keeper is on the bus from now on: what it has not received yet may still come.
   void begin(SteadyTime now) { begun_at_ = now; }
 
   void set_phase(MissionPhase phase) { phase_ = phase; }
   /// False if it is not newer than the present one.
   bool take_scene(Scene scene);
   /// \pre the id is below the number of robots
-  void hear(const ReportedRobot& robot, bool moving, SteadyTime now) {
+  void receive(const ReportedRobot& robot, bool moving, SteadyTime now) {
     // What a robot sent before it fell may come after its body became an obstacle.
-    if (!has_body(scene_, robot.robot)) robots_.hear(robot, moving, now);
+    if (!has_body(scene_, robot.robot)) robots_.receive(robot, moving, now);
   }
 
   /// What happened, for the event log; the text is one line.
@@ -80,7 +80,7 @@ class PlanKeeper {
   void publish(SteadyTime now, Step& step);
   void keep_clock(SteadyTime now, UtcTime utc, Step& step);
   void catch_up(SteadyTime now);
-  bool says_lag(const ReportedRobot& robot) const;
+  bool reports_lag(const ReportedRobot& robot) const;
   void report_clock(SteadyTime now, Step& step);
 
   const Mission& mission_;
@@ -90,7 +90,7 @@ class PlanKeeper {
   RobotWatch robots_;
   MissionPhase phase_ = MissionPhase::kReady;
   Scene scene_;
-  bool scene_heard_ = false;
+  bool scene_received_ = false;
   Replan newest_;
   std::uint32_t version_ = 0;  // 0 = nothing published
   std::uint64_t planned_scene_ = 0;
@@ -99,11 +99,11 @@ class PlanKeeper {
   SteadyTime begun_at_;
   SteadyTime tried_at_;  // to plan anew
   ClockGovernor governor_;
-  PlanClock clock_told_;     // of the last step that had one
+  PlanClock clock_reported_;     // of the last step that had one
   SteadyTime judged_at_;     // the robots' lags
   SteadyTime full_rate_at_;  // when the clock last ran at full rate
-  bool slow_told_ = false;
-  std::set<RobotId> hopeless_told_;
+  bool slow_reported_ = false;
+  std::set<RobotId> hopeless_reported_;
 };
 
 }  // namespace swarm::planner

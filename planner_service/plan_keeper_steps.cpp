@@ -12,7 +12,7 @@ namespace swarm::planner {
 namespace {
 
 // A planner that comes back in mid-flight waits this long for robots it does not hear.
-constexpr Duration kHearPatience = std::chrono::milliseconds(1500);
+constexpr Duration kReportTimeout = std::chrono::milliseconds(1500);
 // With a plan at each period a status is a plan or two old.
 constexpr std::uint32_t kPlansBack = 3;
 
@@ -35,18 +35,18 @@ bool PlanKeeper::is_in_flight(SteadyTime now) const {
 /// The robots follow a later plan than the first, which a planner before this one made.
 bool PlanKeeper::is_in_flight_elsewhere(SteadyTime now) const {
   if (version_ > 0) return false;
-  const std::vector<ReportedRobot> heard = robots_.fresh(now);
-  return std::any_of(heard.begin(), heard.end(),
+  const std::vector<ReportedRobot> received = robots_.fresh(now);
+  return std::any_of(received.begin(), received.end(),
                      [](const ReportedRobot& r) { return r.plan_version > 1; });
 }
 
 bool PlanKeeper::is_waiting_for_robots(SteadyTime now) const {
-  return !robots_.heard_all(now) && now - begun_at_ < kHearPatience;
+  return !robots_.received_all(now) && now - begun_at_ < kReportTimeout;
 }
 
 /// With their places in the plan in force.
 std::vector<ReportedRobot> PlanKeeper::placed(std::vector<ReportedRobot> robots) const {
-  if (!method().traits().uses_places || version_ == 0) return robots;
+  if (!method().traits().uses_positions || version_ == 0) return robots;
   const FlowPlan& plan = newest_.planned.plan;
   const Mixture& goal = scene_.goal ? *scene_.goal : mission_.goal;
   const MissionTime at(governor_.plan_time_s());
@@ -61,7 +61,7 @@ std::vector<ReportedRobot> PlanKeeper::placed(std::vector<ReportedRobot> robots)
       source = newest_.entries[id].source;
       share = newest_.entries[id].draw_share();
     }
-    const FlowPlace place = place_in_flow(plan, source, share, at);
+    const FlowPosition place = position_in_flow(plan, source, share, at);
     robot.goal = component_at(goal, plan.nodes()[place.sink].gaussian.mean_m());
     robot.leg = place.leg;
   }
@@ -70,7 +70,7 @@ std::vector<ReportedRobot> PlanKeeper::placed(std::vector<ReportedRobot> robots)
 
 /// A robot that follows an older plan says nothing of this one, unless each goes on from where the
 /// one before has led: then a status may be a few plans old.
-bool PlanKeeper::says_lag(const ReportedRobot& robot) const {
+bool PlanKeeper::reports_lag(const ReportedRobot& robot) const {
   if (robot.plan_version > version_) return false;
   return version_ - robot.plan_version <= (method().replan_period() ? kPlansBack : 0);
 }

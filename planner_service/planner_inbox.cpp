@@ -13,7 +13,7 @@ void PlannerInbox::receive(UtcTime now) {
   commands_.clear();
   readers_.command->take(commands_);
   for (const link::CommandMessage& command : commands_) {
-    if (gate_.command(command, now)) obey(command);
+    if (gate_.command(command, now)) apply(command);
   }
   scenes_.clear();
   new_scenes_.clear();
@@ -29,7 +29,7 @@ void PlannerInbox::receive(UtcTime now) {
                         readers_.status->undecodable());
 }
 
-void PlannerInbox::obey(const link::CommandMessage& command) {
+void PlannerInbox::apply(const link::CommandMessage& command) {
   const MissionPhase before = phase_;
   phase_ = phase_after(phase_, command.kind);
   if (before == MissionPhase::kReady && phase_ == MissionPhase::kRunning) {

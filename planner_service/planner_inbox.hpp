@@ -41,7 +41,7 @@ class PlannerInbox {
   const link::RefusalCounters& refused() const { return gate_.refused(); }
 
  private:
-  void obey(const link::CommandMessage& command);
+  void apply(const link::CommandMessage& command);
 
   Readers readers_;
   link::Gate gate_;

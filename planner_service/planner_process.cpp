@@ -124,7 +124,7 @@ void PlannerProcess::Impl::receive(SteadyTime now) {
   for (Scene& scene : inbox->scenes()) keeper->take_scene(std::move(scene));
   for (const link::StatusMessage& status : inbox->statuses()) {
     for (const link::RobotStatusMessage& robot : status.robots) {
-      keeper->hear({.robot = RobotId(robot.robot_id),
+      keeper->receive({.robot = RobotId(robot.robot_id),
                     .position_m = {robot.x_m, robot.y_m},
                     .arrived = robot.arrived,
                     .lag_s = robot.lag_s,

@@ -20,7 +20,7 @@ struct Replan {
 };
 
 /// Plans anew from where the robots are: the measured mixture of their groups is the start. Each
-/// robot is told the group it is in and its share there, so that the counts on all legs come out
+/// robot is given the group it is in and its share there, so that the counts on all legs come out
 /// right to within one robot for every source with a split, as at the start of a mission; drawing
 /// by id alone would not: the robots of a group are no fair sample of all ids. Robots that did not
 /// report enter anywhere. \pre ids are below `robot_count`

@@ -22,7 +22,7 @@ bool is_near_source(const FlowPlan& plan, std::uint32_t source, const Vec2& posi
 }
 
 constexpr double kAtRest_mps = 0.05;
-constexpr double kSettling_m = 4.0;  // nearer to the end than this a turn aside would only stir
+constexpr double kFinalApproach_m = 4.0;  // nearer to the end than this a turn aside would only stir
 constexpr double kMeanOver_s = 2.0;
 
 }  // namespace
@@ -37,43 +37,43 @@ Agent::Agent(const World& world, Shared<AgentOptions> options, const AgentIdenti
       mean_share_(std::min(1.0, to_seconds(options_->safety.period) / kMeanOver_s)),
       neighbours_(options_.part(&AgentOptions::neighbours)),
       filter_(world, options_.part(&AgentOptions::safety)),
-      say_(options_.part(&AgentOptions::say)),
+      send_policy_(options_.part(&AgentOptions::send)),
       method_(options_->control.make()),
       moved_(self.underway),
-      way_{.share = self.share} {}
+      followed_route_{.share = self.share} {}
 
 void Agent::accept_plan(const FlowPlan& plan, const Vec2& position_m,
                         std::optional<PlanEntry> entry, std::optional<double> plan_time_s) {
-  if (has_route_ && plan.digest() == way_.plan_digest) return;
+  if (has_route_ && plan.digest() == followed_route_.plan_digest) return;
   const RouteOptions& o = options_->route;
   Route route = entry && is_near_source(plan, entry->source, position_m)
                     ? route_from_source(plan, entry->source, entry->share, position_m, *world_, o)
                 : moved_ || entry
-                    ? route_from_here(plan, way_.share, position_m, *world_, o, plan_time_s)
-                    : route_from_start(plan, way_.share, position_m, *world_, o);
-  keep_place(route, position_m);
+                    ? route_from_here(plan, followed_route_.share, position_m, *world_, o, plan_time_s)
+                    : route_from_start(plan, followed_route_.share, position_m, *world_, o);
+  keep_slot(route, position_m);
   method_.begin(plan, route, *world_);
-  way_.goal = route.goal;
-  way_.end_m = route.path.vertices_m().back();
-  way_.end_s = route.schedule.end_s();
+  followed_route_.goal = route.goal;
+  followed_route_.end_m = route.path.vertices_m().back();
+  followed_route_.end_s = route.schedule.end_s();
   has_route_ = true;
-  way_.plan_digest = plan.digest();
-  way_.begin_m = route.path.at(0.0);
+  followed_route_.plan_digest = plan.digest();
+  followed_route_.begin_m = route.path.at(0.0);
   arrived_ = false;
 }
 
 /// A robot that is in its goal already keeps the place it was going to there: new plans would
 /// stir those who wait for the last ones. It goes there in the time of the new plan.
-void Agent::keep_place(Route& route, const Vec2& position_m) const {
+void Agent::keep_slot(Route& route, const Vec2& position_m) const {
   constexpr double kSame_m = 1e-6;
-  const bool same_goal = has_route_ && (route.goal.mean_m() - way_.goal.mean_m()).norm() < kSame_m;
+  const bool same_goal = has_route_ && (route.goal.mean_m() - followed_route_.goal.mean_m()).norm() < kSame_m;
   if (!same_goal || !route.goal.contains_99(position_m)) return;
-  if (!world_->segment_is_free(position_m, way_.end_m, options_->route.radius_m)) return;
+  if (!world_->segment_is_free(position_m, followed_route_.end_m, options_->route.radius_m)) return;
   // In no more time than it had left: each plan would put its arrival off else.
   const auto before = method_.tracking();
-  const double left_s = before ? std::max(1.0, way_.end_s - before->plan_time_s) : way_.end_s;
+  const double left_s = before ? std::max(1.0, followed_route_.end_s - before->plan_time_s) : followed_route_.end_s;
   const double end_s = std::min(route.schedule.end_s(), left_s);
-  route.path = Polyline({position_m, way_.end_m});
+  route.path = Polyline({position_m, followed_route_.end_m});
   route.schedule = arrived_ ? Schedule({{0.0, route.path.length_m()}})
                             : Schedule({{0.0, 0.0}, {end_s, route.path.length_m()}});
 }
@@ -87,27 +87,27 @@ RobotMode Agent::decide_mode(const AgentInput& input) const {
 }
 
 AgentOutput Agent::tick(const AgentInput& input, Rng& rng) {
-  const Neighbourhood hood = neighbours_.at(input.now, input.position_m);
+  const Neighbourhood neighbourhood = neighbours_.at(input.now, input.position_m);
   const ControlView view{.now = input.now,
                          .position_m = input.position_m,
-                         .neighbours = hood.all,
+                         .neighbours = neighbourhood.all,
                          .world = *world_,
-                         .close = hood.close,
+                         .close = neighbourhood.close,
                          .plan_time = input.plan_time,
                          .planned_density = input.planned_density};
   if (has_route_ && input.phase != MissionPhase::kReady) arrived_ = method_.has_arrived(view);
   AgentOutput out;
   out.mode = decide_mode(input);
   moved_ = moved_ || out.mode == RobotMode::kMoving;
-  out.believed = view.neighbours;
+  out.estimated = view.neighbours;
   out.neighbours = static_cast<std::uint16_t>(std::min<std::size_t>(neighbours_.known(), 0xFFFF));
   out.remaining_m = has_route_ ? method_.remaining_m() : 0.0;
 
   if (out.mode != RobotMode::kStopped) {
     const bool drives = out.mode == RobotMode::kMoving || out.mode == RobotMode::kArrived;
-    const Vec2 wished = drives ? method_.wish(view, arrived_, rng) : method_.hold(view);
-    const bool gives_way = out.mode == RobotMode::kMoving && out.remaining_m > kSettling_m;
-    out.velocity_mps = filter_.filter(input.position_m, wished, view.close, gives_way);
+    const Vec2 desired = drives ? method_.desired_velocity(view, arrived_, rng) : method_.hold(view);
+    const bool gives_way = out.mode == RobotMode::kMoving && out.remaining_m > kFinalApproach_m;
+    out.velocity_mps = filter_.filter(input.position_m, desired, view.close, gives_way);
   }
   if (has_route_) out.tracking = method_.tracking();
   // With noise in what it measures a robot never stands; where it goes nowhere, it rests.
@@ -115,15 +115,15 @@ AgentOutput Agent::tick(const AgentInput& input, Rng& rng) {
   out.settled = out.mode == RobotMode::kArrived &&
                 std::min(out.velocity_mps.norm(), mean_mps_.norm()) < kAtRest_mps;
 
-  out.told_mps = input.velocity_mps.value_or(out.velocity_mps);
-  const SayInput word{.now = input.now,
+  out.reported_mps = input.velocity_mps.value_or(out.velocity_mps);
+  const SendInput state{.now = input.now,
                       .position_m = input.position_m,
-                      .velocity_mps = out.told_mps,
-                      .listeners = filter_.listeners(input.position_m, out.told_mps, view.close),
+                      .velocity_mps = out.reported_mps,
+                      .listeners = filter_.listeners(input.position_m, out.reported_mps, view.close),
                       .link = neighbours_.link()};
-  out.nearest_gap_m = word.listeners.nearest_gap_m;
-  out.say = say_.must_say(word);
-  if (out.say) say_.said(word);
+  out.nearest_gap_m = state.listeners.nearest_gap_m;
+  out.send = send_policy_.must_send(state);
+  if (out.send) send_policy_.record_sent(state);
   return out;
 }
 

@@ -11,7 +11,7 @@
 #include "swarmflow/robot/route.hpp"
 #include "robot_agent/control/safety_filter.hpp"
 #include "robot_agent/neighbour_table.hpp"
-#include "robot_agent/say_policy.hpp"
+#include "robot_agent/send_policy.hpp"
 #include "swarmflow/core/random.hpp"
 #include "swarm_core/base/shared.hpp"
 #include "swarmflow/mission/mission.hpp"
@@ -44,7 +44,7 @@ struct AgentInput {
   Vec2 position_m = Vec2::Zero();  ///< measured
   MissionPhase phase = MissionPhase::kReady;
   bool planner_alive = false;
-  /// Measured, of a body that does not have the velocity it is told at once.
+  /// Measured, of a body that does not have the velocity it is given at once.
   std::optional<Vec2> velocity_mps{};
   std::optional<PlanTime> plan_time{};  ///< of the plan accepted last; empty: no clock is known
   const PlannedDensity* planned_density = nullptr;  ///< then; needed by density_push_mps > 0
@@ -52,9 +52,9 @@ struct AgentInput {
 
 struct AgentOutput {
   Vec2 velocity_mps = Vec2::Zero();  ///< to command; valid for two control periods
-  Vec2 told_mps = Vec2::Zero();      ///< the velocity to tell the neighbours
+  Vec2 reported_mps = Vec2::Zero();      ///< the velocity to tell the neighbours
   RobotMode mode = RobotMode::kWaiting;
-  bool say = false;          ///< tell the neighbours the new state now
+  bool send = false;          ///< tell the neighbours the new state now
   bool settled = false;      ///< arrived and at rest
   double remaining_m = 0.0;  ///< of the own way
   double nearest_gap_m =
@@ -62,7 +62,7 @@ struct AgentOutput {
   std::uint16_t neighbours = 0;
   std::optional<TimeTracking>
       tracking{};                         ///< empty for a robot that does not keep the plan's times
-  std::span<const Neighbour> believed{};  ///< those within reach; valid until the next tick
+  std::span<const Neighbour> estimated{};  ///< those within reach; valid until the next tick
 };
 
 /// One robot: turns the flow, the map and what it hears of its neighbours into its velocity, alone.
@@ -80,7 +80,7 @@ class Agent {
                    std::optional<PlanEntry> entry = std::nullopt,
                    std::optional<double> plan_time_s = std::nullopt);
 
-  NeighbourTable::Outcome hear(const NeighbourReport& report, const Vec2& own_position_m,
+  NeighbourTable::Outcome receive(const NeighbourReport& report, const Vec2& own_position_m,
                                Duration late = {}) {
     return neighbours_.take(report, own_position_m, late);
   }
@@ -89,14 +89,14 @@ class Agent {
 
   /// For whoever ticks many robots in turn: bring what a tick looks at into the cache, first the
   /// agent itself, then what it points to.
-  void prefetch() const { swarm::prefetch(this, sizeof(*this) - sizeof(way_)); }
+  void prefetch() const { swarm::prefetch(this, sizeof(*this) - sizeof(followed_route_)); }
   void prefetch_neighbours() const { neighbours_.prefetch(); }
 
   bool has_route() const { return has_route_; }
   /// Index of the goal (sink of the plan) this robot is at or goes to. \pre has_route()
   std::uint32_t goal(const Vec2& position_m) const { return method_.goal(position_m); }
   /// Where the present way begins. \pre has_route()
-  const Vec2& way_begin_m() const { return way_.begin_m; }
+  const Vec2& route_begin_m() const { return followed_route_.begin_m; }
   /// Plan time by which it is behind its reference position; negative if ahead; 0 once arrived.
   double lag_s() const { return has_route_ && !arrived_ ? method_.lag_s() : 0.0; }
   /// Why the control method is not called any more; empty while it works. A robot without one
@@ -106,7 +106,7 @@ class Agent {
   std::uint32_t escapes() const { return method_.escapes(); }
 
  private:
-  void keep_place(Route& route, const Vec2& position_m) const;
+  void keep_slot(Route& route, const Vec2& position_m) const;
   RobotMode decide_mode(const AgentInput& input) const;
 
   const World* world_;
@@ -114,14 +114,14 @@ class Agent {
   double mean_share_;  // of a tick, in mean_mps_
   NeighbourTable neighbours_;
   SafetyFilter filter_;
-  SayPolicy say_;
+  SendPolicy send_policy_;
   GuardedMethod method_;
   Vec2 mean_mps_ = Vec2::Zero();  // of the commanded velocity
   bool has_route_ = false;
   bool arrived_ = false;
   bool moved_ = false;
   /// What only a new plan is compared with: last.
-  struct Way {
+  struct FollowedRoute {
     double share;
     std::uint64_t plan_digest = 0;
     Vec2 begin_m = Vec2::Zero();
@@ -129,7 +129,7 @@ class Agent {
     double end_s = 0.0;  // of the schedule
     Gaussian goal{};
   };
-  Way way_;
+  FollowedRoute followed_route_;
 };
 
 }  // namespace swarm::agent

@@ -55,7 +55,7 @@ Result<Shared<AgentOptions>> agent_options(const Mission& mission, RobotId robot
   const ControlSpec& c = mission.control;
   const LinkSpec& l = mission.link;
   const Duration period = from_seconds(1.0 / c.rate_hz);
-  const double hear_m = body.hear_radius_m > 0.0 ? body.hear_radius_m : l.hear_radius_m;
+  const double communication_radius_m = body.communication_radius_m > 0.0 ? body.communication_radius_m : l.communication_radius_m;
   const ControlEntry* entry = registry.find(c.method);
   if (entry == nullptr) {
     return fail(ErrorCode::kBadInput, fmt::format("control.method is {}; this program has {}",
@@ -65,7 +65,7 @@ Result<Shared<AgentOptions>> agent_options(const Mission& mission, RobotId robot
   if (!control) return tl::unexpected(control.error());
   const double near_m = close_m(mission, body, control->press_gap_m);
   const double matters_m =
-      std::isinf(control->reach_m) ? hear_m : std::max(near_m, control->reach_m);
+      std::isinf(control->reach_m) ? communication_radius_m : std::max(near_m, control->reach_m);
   return Shared<AgentOptions>(AgentOptions{
       .control = std::move(*control),
       .route = {.radius_m = body.radius_m},
@@ -80,7 +80,7 @@ Result<Shared<AgentOptions>> agent_options(const Mission& mission, RobotId robot
                  .follow_share = mission.safety.follow_share},
       .neighbours = {.radius_m = body.radius_m,
                      .fleet = Fleet(mission.robots),
-                     .keep_radius_m = hear_m,
+                     .communication_radius_m = communication_radius_m,
                      .reach_m = matters_m,
                      .close_m = near_m,
                      .reach_growth_mps = 2.0 * body.speed_max_mps * mission.safety.stale_gain /
@@ -89,7 +89,7 @@ Result<Shared<AgentOptions>> agent_options(const Mission& mission, RobotId robot
                      .period = period,
                      .expected_silence = from_seconds(l.send_interval_max_s) + 2 * period,
                      .forget_after = from_seconds(mission.timing.neighbour_forget_s)},
-      .say = {.error_m = l.send_error_m,
+      .send = {.error_m = l.send_error_m,
               .interval_max = from_seconds(l.send_interval_max_s),
               .near_m = l.send_near_m,
               .period = period},

@@ -6,7 +6,7 @@
 
 #include "robot_agent/control/safety_filter.hpp"
 #include "robot_agent/neighbour_table.hpp"
-#include "robot_agent/say_policy.hpp"
+#include "robot_agent/send_policy.hpp"
 #include "swarm_core/base/shared.hpp"
 #include "swarmflow/core/result.hpp"
 #include "swarmflow/mission/body_limits.hpp"
@@ -22,7 +22,7 @@ struct AgentOptions {
   RouteOptions route;
   SafetyOptions safety;
   NeighbourOptions neighbours;
-  SayOptions say;
+  SendOptions send;
 };
 
 /// The options of a robot of a mission, and of any other with its body.

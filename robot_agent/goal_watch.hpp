@@ -32,15 +32,15 @@ class GoalWatch {
       nearest_m_ = left_m;
       progress_at_ = now;
     }
-    const bool crowded = left_m < kCrowded_m && now - progress_at_ > kCrowdedAfter;
-    return arrived_ = inside && (left_m < kNear_m || crowded);
+    const bool dense = left_m < kDense_m && now - progress_at_ > kDenseAfter;
+    return arrived_ = inside && (left_m < kNear_m || dense);
   }
 
  private:
   static constexpr double kNear_m = 1.0;
-  static constexpr double kCrowded_m = 4.0;
+  static constexpr double kDense_m = 4.0;
   static constexpr double kProgress_m = 0.1;
-  static constexpr Duration kCrowdedAfter = std::chrono::seconds(3);
+  static constexpr Duration kDenseAfter = std::chrono::seconds(3);
 
   Gaussian goal_;
   Vec2 end_m_ = Vec2::Zero();

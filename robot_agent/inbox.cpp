@@ -14,14 +14,14 @@ constexpr Duration kLatePlausible = std::chrono::seconds(1);
 }  // namespace
 
 Inbox::Inbox(Readers readers, link::StateChannel& states, const link::WireLimits& limits,
-             const MissionWatch& mission, Duration planner_silence, double hear_radius_m)
+             const MissionWatch& mission, Duration planner_silence, double communication_radius_m)
     : readers_(std::move(readers)),
       states_(states),
       limits_(limits),
       mission_(mission),
       plan_time_(planner_silence),
       gate_({.limits = limits}),
-      heard_cells_(hear_radius_m) {}
+      received_cells_(communication_radius_m) {}
 
 void Inbox::receive_plans(UtcTime utc_now) {
   plans_.clear();
@@ -86,7 +86,7 @@ void Inbox::receive_fixed_topics(SteadyTime now, UtcTime utc_now) {
 }
 
 void Inbox::begin_states() {
-  heard_.clear();
+  received_.clear();
   batches_.clear();
   states_.take(batches_);
 }
@@ -104,7 +104,7 @@ void Inbox::receive_state(const link::RobotStateMessage& state, SteadyTime stead
     age = waited;
   }
   age = std::max(age, Duration::zero());
-  heard_.push_back({.report = {.robot = RobotId(state.robot_id),
+  received_.push_back({.report = {.robot = RobotId(state.robot_id),
                                .sequence = state.sequence_number,
                                .as_of = steady_now - age,
                                .position_m = {state.x_m, state.y_m},

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "robot_agent/agent.hpp"
-#include "robot_agent/heard_cells.hpp"
+#include "robot_agent/received_cells.hpp"
 #include "robot_agent/mission_watch.hpp"
 #include "robot_agent/neighbour_table.hpp"
 #include "robot_agent/plan_time_watch.hpp"
@@ -45,9 +45,9 @@ struct NewPlan {
 /// on domain objects.
 class Inbox {
  public:
-  /// No robot listens farther than `hear_radius_m`.
+  /// No robot listens farther than `communication_radius_m`.
   Inbox(Readers readers, link::StateChannel& states, const link::WireLimits& limits,
-        const MissionWatch& mission, Duration planner_silence, double hear_radius_m);
+        const MissionWatch& mission, Duration planner_silence, double communication_radius_m);
 
   /// Takes what arrived. `own(id)` names the guard of a robot of this process, or nullptr. Robots
   /// of one process hear each other over the bus like everyone else; a robot skips its own echo.
@@ -62,11 +62,11 @@ class Inbox {
       }
     }
     received_before_ = steady_now;
-    heard_cells_.sort(heard_);
+    received_cells_.sort(received_);
   }
 
-  /// What was heard of robots near a place, and maybe of some that are not.
-  const HeardCells& heard() const { return heard_cells_; }
+  /// What was received robots near a place, and maybe of some that are not.
+  const ReceivedCells& received() const { return received_cells_; }
 
   /// The newest plan, once, when one arrived.
   std::optional<NewPlan> take_plan() { return std::exchange(new_plan_, std::nullopt); }
@@ -111,8 +111,8 @@ class Inbox {
   std::int64_t stop_stamp_utc_ns_ = 0;
   std::uint32_t skewed_ = 0;
   std::optional<SteadyTime> received_before_;
-  std::vector<HeardState> heard_;
-  HeardCells heard_cells_;
+  std::vector<ReceivedState> received_;
+  ReceivedCells received_cells_;
   std::vector<link::PlanMessage> plans_;
   std::vector<link::SceneMessage> scenes_;
   std::vector<link::HeartbeatMessage> heartbeats_;

@@ -16,30 +16,30 @@ namespace swarm::agent {
 /// at any time and more than once.
 class MissionWatch {
  public:
-  /// `settle`: so long a planner must be heard again after a silence. Whoever was cut off from it
+  /// `resume_delay`: so long a planner must be received again after a silence. Whoever was cut off from it
   /// was from others, and hears them, too, before it moves.
-  explicit MissionWatch(Duration planner_silence, Duration settle = Duration::zero())
-      : planner_silence_(planner_silence), settle_(settle) {}
+  explicit MissionWatch(Duration planner_silence, Duration resume_delay = Duration::zero())
+      : planner_silence_(planner_silence), resume_delay_(resume_delay) {}
 
   void on_command(CommandKind kind) { phase_ = phase_after(phase_, kind); }
 
   void on_heartbeat(SteadyTime now) {
-    if (!heard_ || now - heard_at_ > planner_silence_) back_at_ = now;
-    heard_ = true;
-    heard_at_ = now;
+    if (!received_ || now - received_at_ > planner_silence_) back_at_ = now;
+    received_ = true;
+    received_at_ = now;
   }
 
   MissionPhase phase() const { return phase_; }
   bool planner_alive(SteadyTime now) const {
-    return heard_ && now - heard_at_ <= planner_silence_ && now - back_at_ >= settle_;
+    return received_ && now - received_at_ <= planner_silence_ && now - back_at_ >= resume_delay_;
   }
 
  private:
   Duration planner_silence_;
-  Duration settle_;
+  Duration resume_delay_;
   MissionPhase phase_ = MissionPhase::kReady;
-  bool heard_ = false;
-  SteadyTime heard_at_;
+  bool received_ = false;
+  SteadyTime received_at_;
   SteadyTime back_at_;  // heard without a silence since
 };
 

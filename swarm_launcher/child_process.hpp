@@ -21,7 +21,7 @@ void become_urgent();
 
 /// Starts a program with stdout and stderr appended to `log`. The child
 ///  - is in a process group of its own, so that Ctrl-C at the terminal reaches the launcher alone,
-///  - is told to end (SIGTERM) by the kernel when the launcher dies, so that nothing is orphaned,
+///  - is given to end (SIGTERM) by the kernel when the launcher dies, so that nothing is orphaned,
 ///  - is a little less urgent than the launcher (nice 5), which must not be starved by hundreds of
 ///  them.
 /// Call it from the thread that lives as long as the launcher: the kernel watches that thread.

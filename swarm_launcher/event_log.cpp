@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "swarm_link/event_words.hpp"
+#include "swarm_link/event_names.hpp"
 
 namespace swarm::launcher {
 

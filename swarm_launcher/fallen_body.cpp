@@ -22,13 +22,13 @@ double travel_m(const BodySpec& body, double speed_mps, double command_mps, doub
 
 }  // namespace
 
-std::optional<LastKnown> last_known(std::span<const blackbox::Step> steps, const Mission& mission) {
+std::optional<LastKnown> last_known(std::span<const robot_log::Step> steps, const Mission& mission) {
   if (steps.empty()) return std::nullopt;
-  const blackbox::Step& last = steps.back();
+  const robot_log::Step& last = steps.back();
   LastKnown known{
       .at = last.stamp, .position_m = last.position_m, .command_mps = last.velocity_mps};
   if (steps.size() < 2) return known;
-  const blackbox::Step& before = steps[steps.size() - 2];
+  const robot_log::Step& before = steps[steps.size() - 2];
   const double between_s = to_seconds(last.stamp - before.stamp);
   if (between_s > 0.0 && between_s <= kPeriodsOfATick / mission.control.rate_hz) {
     known.speed_mps = (last.position_m - before.position_m).norm() / between_s;
@@ -56,8 +56,8 @@ Circle circle_of_fallen(const LastKnown& known, UtcTime silent_since, const Miss
     const double gained_mps = period_s * body.acceleration_max_mps2;
     const double command_mps = known.command_mps->norm();
     const double speed_mps = known.speed_mps ? *known.speed_mps + gained_mps : body.speed_max_mps;
-    const bool stands = known.speed_mps && *known.speed_mps == 0.0 && command_mps == 0.0;
-    if (!stands) {
+    const bool is_stopped = known.speed_mps && *known.speed_mps == 0.0 && command_mps == 0.0;
+    if (!is_stopped) {
       circle.radius_m +=
           travel_m(body, std::min(speed_mps, body.speed_max_mps), command_mps, command_s);
     }

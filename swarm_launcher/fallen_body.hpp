@@ -5,7 +5,7 @@
 #include <optional>
 #include <span>
 
-#include "swarm_core/blackbox/record.hpp"
+#include "swarm_core/robot_log/record.hpp"
 #include "swarmflow/mission/mission.hpp"
 #include "swarmflow/mission/scene.hpp"
 
@@ -23,7 +23,7 @@ struct LastKnown {
 };
 
 /// By the last steps of a robot's log, newest last. Nothing if there are none.
-std::optional<LastKnown> last_known(std::span<const blackbox::Step> steps, const Mission& mission);
+std::optional<LastKnown> last_known(std::span<const robot_log::Step> steps, const Mission& mission);
 
 /// Where a robot's body is that is not received since a time: a circle that covers its positions
 /// from the last known one to where its driver stops it. A command is valid for two control

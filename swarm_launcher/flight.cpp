@@ -52,11 +52,11 @@ Result<void> vendors_fit(const FlightOptions& options, Channel channel) {
 }  // namespace
 
 Flight::Flight(FlightOptions options, FlightObserver* observer, std::filesystem::path dir,
-               link::DomainLock lock, ChannelChoice channel, std::uint32_t hubs)
+               link::DomainLock lock, ChannelChoice channel, std::uint32_t relays)
     : options_(std::move(options)),
       observer_(observer),
       channel_(std::move(channel)),
-      hubs_(hubs),
+      relays_(relays),
       dir_(std::move(dir)),
       lock_(std::move(lock)),
       events_(dir_ / shell::kEventsFile) {}
@@ -96,9 +96,9 @@ Result<std::unique_ptr<Flight>> Flight::make(FlightOptions options, FlightObserv
   if (const auto fits = vendors_fit(options, channel->channel); !fits) {
     return tl::unexpected(fits.error());
   }
-  const std::uint32_t hubs = channel->channel == Channel::kGroups ? link::hubs_for(agents) : 0;
+  const std::uint32_t relays = channel->channel == Channel::kGroups ? link::relays_for(agents) : 0;
   auto lock =
-      link::DomainLock::take(options.how.domain, link::participants_for({.hubs = hubs}, agents));
+      link::DomainLock::take(options.how.domain, link::participants_for({.relays = relays}, agents));
   if (!lock) return tl::unexpected(lock.error());
   const auto dir = shell::make_run_dir(options.how.out, options.mission.name);
   if (!dir) return tl::unexpected(dir.error());
@@ -107,7 +107,7 @@ Result<std::unique_ptr<Flight>> Flight::make(FlightOptions options, FlightObserv
     return tl::unexpected(written.error());
   }
   auto flight = std::unique_ptr<Flight>(
-      new Flight(std::move(options), observer, *dir, std::move(*lock), std::move(*channel), hubs));
+      new Flight(std::move(options), observer, *dir, std::move(*lock), std::move(*channel), relays));
   if (const auto joined = flight->join(); !joined) return tl::unexpected(joined.error());
   return flight;
 }
@@ -117,19 +117,19 @@ Flight::~Flight() {
 }
 
 Result<void> Flight::join() {
-  link::DiscoveryAddress meeting_place;
-  if (hubs_ == 0) {
+  link::DiscoveryAddress discovery_address;
+  if (relays_ == 0) {
     auto server = link::make_discovery_server(lock_.domain(), 0);
     if (!server) return tl::unexpected(server.error());
     server_ = std::move(*server);
-    meeting_place = server_->address();
+    discovery_address = server_->address();
   }
   const shell::RunInfo run{
       .domain = lock_.domain(),
-      .discovery_host = meeting_place.host,
-      .discovery_port = meeting_place.port,
+      .discovery_host = discovery_address.host,
+      .discovery_port = discovery_address.port,
       .agents = (options_.mission.robots.count + options_.per_process - 1) / options_.per_process,
-      .hubs = hubs_,
+      .relays = relays_,
       .cyclone_launcher = options_.how.cyclone_launcher,
       .cyclone_planner = options_.how.cyclone_planner,
       .host = options_.how.interface,
@@ -170,19 +170,19 @@ Result<void> Flight::join() {
                         .launcher = options_.mission.launcher,
                         .script = options_.mission.script},
       std::chrono::steady_clock::now());
-  const std::string told =
+  const std::string text =
       fmt::format("robot states go by {}: {}", to_string(channel_.channel), channel_.reason);
-  note(link::Severity::kInfo, "channel", told);
-  std::fprintf(stderr, "%s\n", told.c_str());
+  note(link::Severity::kInfo, "channel", text);
+  std::fprintf(stderr, "%s\n", text.c_str());
   raise_open_files();
   for (const std::string& shortcoming : shortcomings(
            read_host_limits(),
-           {.agents = run.agents, .robots_per_process = options_.per_process, .hubs = hubs_})) {
+           {.agents = run.agents, .robots_per_process = options_.per_process, .relays = relays_})) {
     note(link::Severity::kWarning, "host-limits", shortcoming);
     std::fprintf(stderr, "%s\n", shortcoming.c_str());
   }
   reported_.resize(options_.mission.robots.count);
-  view_ = SwarmView(options_.mission.robots.count, options_.mission.link.hear_radius_m);
+  view_ = SwarmView(options_.mission.robots.count, options_.mission.link.communication_radius_m);
   monitors_.emplace(options_.how.monitors, dir_);
   if (auto started = monitors_->start(); !started) return started;
   if (options_.how.by_gateway > 0) {
@@ -250,7 +250,7 @@ Result<void> Flight::act(const Action& action) {
     send(command->kind);
   } else if (const auto* scene = std::get_if<ChangeScene>(&action)) {
     if (const auto changed = change(scene->change); !changed) {
-      progress_.say("the script's change was refused: " + changed.error().message);
+      progress_.print("the script's change was refused: " + changed.error().message);
     }
   } else if (const auto* signal = std::get_if<SignalProcess>(&action)) {
     for (const auto& [pid, process] : children_) {
@@ -348,19 +348,19 @@ Result<Measurements> Flight::fly() {
     for (const Action& action : supervisor_->step(now)) {
       if (auto done = act(action); !done) return tl::unexpected(done.error());
     }
-    if (const auto address = monitors_->view_address()) progress_.say("view: " + *address);
+    if (const auto address = monitors_->view_address()) progress_.print("view: " + *address);
     if (observer_ != nullptr) observer_->on_step(*this, now);
     show(now);
     std::this_thread::sleep_for(kStep);
   }
   monitors_->finish();
-  bring_boxes_home();
+  collect_robot_logs();
   rusage own = {};
   ::getrusage(RUSAGE_SELF, &own);
   measurements_.cpu_s += static_cast<double>(own.ru_utime.tv_sec + own.ru_stime.tv_sec) +
                          1e-6 * static_cast<double>(own.ru_utime.tv_usec + own.ru_stime.tv_usec);
   measurements_.discovery_s = supervisor_->discovery_s();
-  measurements_.hearing_s = supervisor_->hearing_s();
+  measurements_.neighbour_discovery_s = supervisor_->neighbour_discovery_s();
   measurements_.refused_by_launcher = inbox_->refused().total();
   measurements_.outcome = supervisor_->outcome();
   measurements_.channel = channel_.channel;

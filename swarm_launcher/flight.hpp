@@ -78,7 +78,7 @@ class Flight {
 
  private:
   Flight(FlightOptions options, FlightObserver* observer, std::filesystem::path dir,
-         link::DomainLock lock, ChannelChoice channel, std::uint32_t hubs);
+         link::DomainLock lock, ChannelChoice channel, std::uint32_t relays);
 
   Result<void> join();
   Result<void> act(const Action& action);
@@ -86,7 +86,7 @@ class Flight {
   Result<void> open_to_hosts(const shell::RunInfo& run);
   void log(const LogEvent& event);
   void note(link::Severity severity, const std::string& code, const std::string& text);
-  void bring_boxes_home();
+  void collect_robot_logs();
   void send(CommandKind kind);
   Result<std::string> change(const SceneChange& change);
   void add_bodies(std::span<const RobotId> robots);
@@ -101,7 +101,7 @@ class Flight {
   FlightOptions options_;
   FlightObserver* observer_;
   ChannelChoice channel_;
-  std::uint32_t hubs_;
+  std::uint32_t relays_;
   std::filesystem::path dir_;
   link::DomainLock lock_;
   EventLog events_;

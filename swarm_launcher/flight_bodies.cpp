@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include "swarm_core/base/clock.hpp"
-#include "swarm_core/blackbox/blackbox_file.hpp"
+#include "swarm_core/robot_log/robot_log_file.hpp"
 #include "swarm_core/mission/scene_bodies.hpp"
 #include "swarm_launcher/flight.hpp"
 
@@ -13,7 +13,7 @@ namespace swarm::launcher {
 /// The robot log has the last tick of a robot of this host; the last status is up to a second old.
 std::optional<LastKnown> Flight::last_known_of(RobotId robot) const {
   const std::optional<LastKnown>& reported = reported_.at(robot.value());
-  const auto steps = blackbox::last_steps(blackbox::file_of(dir_, robot));
+  const auto steps = robot_log::last_steps(robot_log::file_of(dir_, robot));
   if (!steps) return reported;
   const auto logged = last_known(*steps, options_.mission);
   return !logged || (reported && reported->at > logged->at) ? reported : logged;

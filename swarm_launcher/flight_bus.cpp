@@ -24,7 +24,7 @@ void Flight::note(link::Severity severity, const std::string& code, const std::s
 
 void Flight::log(const LogEvent& event) {
   note(event.warning ? link::Severity::kWarning : link::Severity::kInfo, event.code, event.text);
-  if (event.warning) progress_.say(event.text);
+  if (event.warning) progress_.print(event.text);
 }
 
 void Flight::read_bus(SteadyTime now) {
@@ -42,7 +42,7 @@ void Flight::read_bus(SteadyTime now) {
       if (hosts_) hosts_->on_status(RobotId(robot.robot_id), now);
       supervisor_->on_status(RobotId(robot.robot_id),
                              {.has_plan = status.plan_version > 0,
-                              .hears_neighbours = view_.hears_neighbours(robot.robot_id),
+                              .receives_neighbours = view_.receives_neighbours(robot.robot_id),
                               .mode = robot.mode,
                               .settled = robot.settled,
                               .scene_version = status.plan_scene_version,

@@ -13,7 +13,7 @@ namespace swarm::launcher {
 namespace {
 
 constexpr Duration kStep = std::chrono::milliseconds(20);
-constexpr Duration kBoxesPatience = std::chrono::minutes(3);
+constexpr Duration kLogsTimeout = std::chrono::minutes(3);
 
 }  // namespace
 
@@ -36,17 +36,17 @@ Result<void> Flight::open_to_hosts(const shell::RunInfo& run) {
 }
 
 /// The audit needs what happened to the robots of other hosts.
-void Flight::bring_boxes_home() {
-  const auto until = std::chrono::steady_clock::now() + kBoxesPatience;
+void Flight::collect_robot_logs() {
+  const auto until = std::chrono::steady_clock::now() + kLogsTimeout;
   while (hosts_ && !hosts_->collect() && std::chrono::steady_clock::now() < until) {
-    progress_.show("ending", fmt::format("{} black boxes on their way", hosts_->missing_boxes()));
+    progress_.show("ending", fmt::format("{} robot logs under way", hosts_->missing_logs()));
     std::this_thread::sleep_for(kStep);
   }
-  if (hosts_ && hosts_->missing_boxes() > 0) {
+  if (hosts_ && hosts_->missing_logs() > 0) {
     log({.warning = true,
          .code = "boxes-missing",
          .text =
-             fmt::format("{} black boxes of other hosts did not come", hosts_->missing_boxes())});
+             fmt::format("{} robot logs of other hosts did not come", hosts_->missing_logs())});
   }
 }
 

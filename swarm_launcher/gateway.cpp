@@ -19,7 +19,7 @@
 namespace swarm::launcher {
 namespace {
 
-constexpr Duration kPatience = std::chrono::milliseconds(5);
+constexpr Duration kTimeout = std::chrono::milliseconds(5);
 constexpr int kMostRestarts = 10;
 
 }  // namespace
@@ -44,7 +44,7 @@ Result<ExitCode> run_gateway(const GatewayCommandOptions& options) {
   while (
       shell::stop_requests() == 0 &&
       (options.parent_pid == 0 || static_cast<std::uint32_t>(::getppid()) == options.parent_pid)) {
-    (*gateway)->relay(kPatience, utc_now());
+    (*gateway)->relay(kTimeout, utc_now());
   }
   using link::RefusalReason;
   const link::RefusalCounters& refused = (*gateway)->refused();

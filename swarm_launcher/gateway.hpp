@@ -19,7 +19,7 @@ struct GatewayCommandOptions {
 };
 
 /// `swarm_launcher gateway`: carries the robot states of a run between groups and topics until it
-/// is told to stop.
+/// is given to stop.
 Result<ExitCode> run_gateway(const GatewayCommandOptions& options);
 
 /// The gateway process of a flight, started again whenever it ends.

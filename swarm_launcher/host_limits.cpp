@@ -14,12 +14,12 @@ namespace {
 // Measured: an agent of one robot holds 54 files, with 5 m cells around it joined, and four
 // threads.
 constexpr std::uint64_t kFilesAnAgent = 80;
-constexpr std::uint64_t kFilesARobot = 1;  // its black box
-constexpr std::uint64_t kFilesAHub = 16;
+constexpr std::uint64_t kFilesARobot = 1;  // its robot log
+constexpr std::uint64_t kFilesARelay = 16;
 constexpr std::uint64_t kThreadsAnAgent = 4;
 constexpr std::uint64_t kThreadsOfOthers = 200;
 /// With fewer processes priorities hardly matter.
-constexpr std::uint32_t kCrowd = 100;
+constexpr std::uint32_t kManyAgents = 100;
 
 std::uint64_t limit_of(__rlimit_resource resource) {
   rlimit limit{};
@@ -47,7 +47,7 @@ void raise_open_files() {
 std::vector<std::string> shortcomings(const HostLimits& limits, const RunSize& run) {
   std::vector<std::string> list;
   const std::uint64_t files = std::max(kFilesAnAgent + kFilesARobot * run.robots_per_process,
-                                       kFilesAnAgent + kFilesAHub * run.hubs);
+                                       kFilesAnAgent + kFilesARelay * run.relays);
   if (limits.open_files < files) {
     list.push_back(
         fmt::format("a process may open {} files and needs about {}: run 'ulimit -n {}' before",
@@ -60,7 +60,7 @@ std::vector<std::string> shortcomings(const HostLimits& limits, const RunSize& r
         "host several robots in a process (--per-process)",
         limits.threads, threads, 2 * threads));
   }
-  if (limits.autogroup && run.agents > kCrowd) {
+  if (limits.autogroup && run.agents > kManyAgents) {
     list.emplace_back(
         "the kernel shares out the CPU by session first, whatever the priorities: another "
         "session's "

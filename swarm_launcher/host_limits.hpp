@@ -17,13 +17,13 @@ struct HostLimits {
 HostLimits read_host_limits();
 
 /// Lets this process and the children it will have open as many files as the machine allows: a
-/// process of a thousand robots has a thousand black boxes, and shells grant 1024.
+/// process of a thousand robots has a thousand robot logs, and shells grant 1024.
 void raise_open_files();
 
 struct RunSize {
   std::uint32_t agents = 0;  ///< processes
   std::uint32_t robots_per_process = 1;
-  std::uint32_t hubs = 0;
+  std::uint32_t relays = 0;
 };
 
 /// What falls short for a run of this size, each with how to mend it. Nothing here is certain to

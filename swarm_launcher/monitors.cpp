@@ -16,7 +16,7 @@ namespace swarm::launcher {
 namespace {
 
 constexpr Duration kStep = std::chrono::milliseconds(20);
-constexpr Duration kPatience = std::chrono::seconds(5);
+constexpr Duration kTimeout = std::chrono::seconds(5);
 constexpr std::size_t kMaxLogBytes = 1U << 20U;
 
 }  // namespace
@@ -42,12 +42,12 @@ Result<void> Monitors::start() {
 }
 
 std::optional<std::string> Monitors::view_address() {
-  if (!options_.view || told_) return std::nullopt;
+  if (!options_.view || reported_) return std::nullopt;
   const auto log = shell::read_file(run_dir_ / shell::kLogsFolder / "view.log", kMaxLogBytes);
   if (!log || !log->starts_with("http") || log->find('\n') == std::string::npos) {
     return std::nullopt;
   }
-  told_ = true;
+  reported_ = true;
   return log->substr(0, log->find('\n'));
 }
 
@@ -61,7 +61,7 @@ std::optional<std::string> Monitors::on_exit(pid_t pid) {
 
 void Monitors::finish() {
   for (const auto& [pid, what] : running_) ::kill(pid, SIGINT);
-  const auto until = std::chrono::steady_clock::now() + kPatience;
+  const auto until = std::chrono::steady_clock::now() + kTimeout;
   while (!running_.empty() && std::chrono::steady_clock::now() < until) {
     std::erase_if(running_, [](const auto& child) {
       int status = 0;

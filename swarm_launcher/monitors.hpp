@@ -20,7 +20,7 @@ struct MonitorOptions {
 };
 
 /// The swarm_monitor processes that look on at a run for its launcher. Nothing of the flight
-/// depends on them: one that dies is told of and not started again.
+/// depends on them: one that dies is given of and not started again.
 class Monitors {
  public:
   Monitors(MonitorOptions options, std::filesystem::path run_dir)
@@ -44,7 +44,7 @@ class Monitors {
   MonitorOptions options_;
   std::filesystem::path run_dir_;
   std::map<pid_t, std::string> running_;  // by what they do
-  bool told_ = false;
+  bool reported_ = false;
 };
 
 }  // namespace swarm::launcher

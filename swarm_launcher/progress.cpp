@@ -33,7 +33,7 @@ void Progress::show(const std::string& headline, const std::string& details) {
   headline_ = headline;
 }
 
-void Progress::say(const std::string& line) {
+void Progress::print(const std::string& line) {
   clear();
   std::fprintf(stderr, "%s\n", line.c_str());
 }
@@ -43,7 +43,7 @@ std::string headline_of(const Supervisor& supervisor) {
     case Supervisor::Stage::kStarting:
       return fmt::format("starting {} processes", supervisor.processes());
     case Supervisor::Stage::kGathering:
-      return "waiting for all robots to be heard";
+      return "waiting for all robots to be received";
     case Supervisor::Stage::kRunning:
       return fmt::format("mission {}", to_string(supervisor.phase()));
     case Supervisor::Stage::kEnding:

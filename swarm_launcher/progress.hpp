@@ -19,7 +19,7 @@ class Progress {
 
   void show(const std::string& headline, const std::string& details);
   /// A message of its own, above the live line.
-  void say(const std::string& line);
+  void print(const std::string& line);
 
  private:
   void clear();

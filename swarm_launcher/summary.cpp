@@ -104,7 +104,7 @@ Result<ExitCode> summarise(const std::filesystem::path& run_dir, const Measureme
   summary["channel"] = measured.channel ? to_string(*measured.channel) : "lock-step";
   if (measured.wall_s) summary["wall_s"] = *measured.wall_s;
   if (measured.ns_per_agent_step) summary["ns_per_agent_step"] = *measured.ns_per_agent_step;
-  summary["hearing_s"] = measured.hearing_s < 0.0 ? Json() : Json(measured.hearing_s);
+  summary["hearing_s"] = measured.neighbour_discovery_s < 0.0 ? Json() : Json(measured.neighbour_discovery_s);
   summary["refused_by_launcher"] = measured.refused_by_launcher;
   const PlansExcess excess = plans_excess(run_dir);
   summary["plan_excess_m"] = excess.largest_m;

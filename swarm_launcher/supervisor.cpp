@@ -11,16 +11,16 @@
 namespace swarm::launcher {
 namespace {
 
-constexpr Duration kStartPatience = std::chrono::seconds(5);
+constexpr Duration kStartTimeout = std::chrono::seconds(5);
 constexpr Duration kRespawnDelay = std::chrono::milliseconds(300);
 constexpr Duration kStopRepeat = std::chrono::milliseconds(100);
 constexpr std::uint32_t kStopRepeats = 15;
-constexpr Duration kStopPatience = std::chrono::seconds(5);
+constexpr Duration kStopTimeout = std::chrono::seconds(5);
 /// At the rim of a crowded goal a robot may be pushed out again: everyone stays for as long as
 /// this.
 constexpr Duration kStay = std::chrono::seconds(2);
 /// Arrived robots may never come to rest in a dense crowd; then this long is enough.
-constexpr Duration kSettlePatience = std::chrono::seconds(10);
+constexpr Duration kConvergeTimeout = std::chrono::seconds(10);
 
 std::uint32_t process_count(const SupervisorOptions& options) {
   return 1 + (options.robots + options.per_process - 1) / options.per_process;
@@ -87,7 +87,7 @@ std::pair<RobotId, std::uint32_t> Supervisor::robots_of(ProcessIndex process) co
 void Supervisor::on_status(RobotId robot, const RobotReport& report) {
   Robot& r = robots_.at(robot.value());
   r.report = report;
-  r.heard = true;
+  r.received = true;
   // What a process sent before it died may come after we know that it died.
   if (!r.silent_since || report.sent_at <= *r.silent_since) return;
   r.silent_since.reset();
@@ -119,7 +119,7 @@ void Supervisor::on_exit(ProcessIndex process, const ProcessExit& exit, SteadyTi
   const auto [first, count] = robots_of(process);
   if (is_remote(process) && stage_ != Stage::kRunning) {  // another host may still come
     p.started = false;
-    for (std::uint32_t r = first.value(); r < first.value() + count; ++r) robots_[r].heard = false;
+    for (std::uint32_t r = first.value(); r < first.value() + count; ++r) robots_[r].received = false;
     return;
   }
 
@@ -148,7 +148,7 @@ void Supervisor::on_exit(ProcessIndex process, const ProcessExit& exit, SteadyTi
 
 void Supervisor::on_command(CommandKind kind, SteadyTime now) {
   if (kind == CommandKind::kStop && phase_ != MissionPhase::kStopped)
-    stop_ends_ = now + kStopPatience;
+    stop_ends_ = now + kStopTimeout;
   pending_commands_.push_back(kind);
 }
 
@@ -161,7 +161,7 @@ void Supervisor::command(CommandKind kind, SteadyTime now, std::vector<Action>& 
   if (phase_ == MissionPhase::kStopped && before != MissionPhase::kStopped) {
     stops_to_send_ = kStopRepeats;
     next_stop_ = now;
-    stop_ends_ = now + kStopPatience;
+    stop_ends_ = now + kStopTimeout;
   } else {
     actions.emplace_back(SendCommand{kind});
   }
@@ -178,8 +178,8 @@ void Supervisor::keep_bodies(std::vector<Action>& actions) {
 /// that answer them; one that hangs must not keep the others waiting.
 bool Supervisor::is_starting(std::uint32_t process, SteadyTime now) const {
   const Process& p = processes_[process];
-  return process != kPlanner.value() && p.alive && now - p.started_at < kStartPatience &&
-         !robots_[robots_of(ProcessIndex(process)).first.value()].heard;
+  return process != kPlanner.value() && p.alive && now - p.started_at < kStartTimeout &&
+         !robots_[robots_of(ProcessIndex(process)).first.value()].received;
 }
 
 void Supervisor::start_due(SteadyTime now, std::vector<Action>& actions) {
@@ -211,14 +211,14 @@ void Supervisor::gather(SteadyTime now, std::vector<Action>& actions) {
   std::vector<RobotId> missing;
   bool discovered = true;
   for (std::uint32_t i = 0; i < robots_.size(); ++i) {
-    const bool known = robots_[i].heard && robots_[i].report.has_plan;
+    const bool known = robots_[i].received && robots_[i].report.has_plan;
     discovered = discovered && known;
-    if (!known || !robots_[i].report.hears_neighbours) missing.emplace_back(i);
+    if (!known || !robots_[i].report.receives_neighbours) missing.emplace_back(i);
   }
   const double waited_s = to_seconds(now - last_start_);
   if (discovered && discovery_s_ < 0.0) discovery_s_ = waited_s;
   if (missing.empty()) {
-    hearing_s_ = waited_s - discovery_s_;
+    neighbour_discovery_s_ = waited_s - discovery_s_;
   } else {
     if (waited_s < options_.launcher.quorum_timeout_s) return;
     const double ready = static_cast<double>(robots_.size() - missing.size());
@@ -296,7 +296,7 @@ void Supervisor::run(SteadyTime now, std::vector<Action>& actions) {
   if (arrived && !all_arrived_) all_arrived_at_ = now;
   all_arrived_ = arrived;
   const Duration stayed = arrived ? now - all_arrived_at_ : Duration::zero();
-  if ((c.settled == living && stayed >= kStay) || stayed > kSettlePatience) {
+  if ((c.settled == living && stayed >= kStay) || stayed > kConvergeTimeout) {
     begin_ending(Outcome::kCompleted, now);
   } else if (mission_time(now).count() > options_.launcher.time_limit_s) {
     begin_ending(Outcome::kTimeLimit, now);
@@ -318,8 +318,8 @@ void Supervisor::end(SteadyTime now, std::vector<Action>& actions) {
     stage_ = Stage::kDone;
     return;
   }
-  const auto patience = now - ending_since_;
-  std::uint32_t due = 1 + static_cast<std::uint32_t>(patience / options_.signal_grace);
+  const auto timeout = now - ending_since_;
+  std::uint32_t due = 1 + static_cast<std::uint32_t>(timeout / options_.signal_grace);
   if (interrupts_ > 1) due = 3;
   due = std::min(due, 3U);
   if (signals_sent_ >= due) return;
@@ -358,7 +358,7 @@ Supervisor::Counts Supervisor::counts() const {
       ++c.lost;
       continue;
     }
-    c.ready += r.heard && r.report.has_plan && r.report.hears_neighbours ? 1 : 0;
+    c.ready += r.received && r.report.has_plan && r.report.receives_neighbours ? 1 : 0;
     c.arrived += r.report.mode == RobotMode::kArrived && has_newest_goal(r) ? 1 : 0;
     c.settled += r.report.settled && has_newest_goal(r) ? 1 : 0;
     c.stopped += r.report.mode == RobotMode::kStopped ? 1 : 0;
@@ -370,8 +370,8 @@ std::vector<RobotId> Supervisor::unstopped() const {
   std::vector<RobotId> out;
   for (std::uint32_t i = 0; i < robots_.size(); ++i) {
     const std::uint32_t process = 1 + i / options_.per_process;
-    const bool lives = processes_[process].alive && !robots_[i].lost;
-    if (lives && robots_[i].report.mode != RobotMode::kStopped) out.emplace_back(i);
+    const bool runs = processes_[process].alive && !robots_[i].lost;
+    if (runs && robots_[i].report.mode != RobotMode::kStopped) out.emplace_back(i);
   }
   return out;
 }

@@ -38,7 +38,7 @@ struct ProcessExit {
 /// What a robot's status said.
 struct RobotReport {
   bool has_plan = false;
-  bool hears_neighbours = false;  ///< everyone who stands within its hearing radius
+  bool receives_neighbours = false;  ///< everyone who stands within its communication radius
   RobotMode mode = RobotMode::kWaiting;
   bool settled = false;
   std::uint64_t scene_version = 0;  ///< that its plan was made for
@@ -91,7 +91,7 @@ std::string_view to_string(Outcome outcome);  ///< snake_case, as in summary.jso
 /// Decides when processes start, restart and end, and when the mission's commands go out. Pure:
 /// times and observations in, actions out.
 ///
-/// Ready is a robot that was heard, has the plan, and hears its neighbours.
+/// Ready is a robot that was received, has the plan, and hears its neighbours.
 ///
 ///   starting ──last start──▶ gathering ──everyone ready──▶ running ──settled, limit, stop──▶
 ///   ending ──▶ done
@@ -137,7 +137,7 @@ class Supervisor {
   /// never happened.
   double discovery_s() const { return discovery_s_; }
   /// From then on to everyone hearing its neighbours as well; negative if that never happened.
-  double hearing_s() const { return hearing_s_; }
+  double neighbour_discovery_s() const { return neighbour_discovery_s_; }
   /// Mission time, 0 before the start.
   MissionTime mission_time(SteadyTime now) const;
 
@@ -152,7 +152,7 @@ class Supervisor {
   };
   struct Robot {
     RobotReport report;
-    bool heard = false;
+    bool received = false;
     bool lost = false;
     std::optional<SteadyTime> silent_since{};  // its body is an obstacle
   };
@@ -195,7 +195,7 @@ class Supervisor {
   SteadyTime all_arrived_at_;
   bool all_arrived_ = false;
   double discovery_s_ = -1.0;
-  double hearing_s_ = -1.0;
+  double neighbour_discovery_s_ = -1.0;
   std::size_t next_script_ = 0;
   std::uint64_t goal_version_ = 0;
   std::uint32_t stops_to_send_ = 0;

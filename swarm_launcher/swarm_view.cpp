@@ -17,17 +17,17 @@ void SwarmView::take(const link::RobotStatusMessage& status) {
   known = status;
 }
 
-bool SwarmView::hears_neighbours(std::uint32_t robot) const {
+bool SwarmView::receives_neighbours(std::uint32_t robot) const {
   const link::RobotStatusMessage& self = robots_.at(robot);
   std::uint32_t near = 0;
   for (const link::Cell& touched :
-       link::cells_touching({self.x_m, self.y_m}, hear_radius_m_, hear_radius_m_)) {
+       link::cells_touching({self.x_m, self.y_m}, communication_radius_m_, communication_radius_m_)) {
     const auto cell = cells_.find(touched);
     if (cell == cells_.end()) continue;
     for (const std::uint32_t id : cell->second) {
       const link::RobotStatusMessage& other = robots_[id];
       if (id == robot) continue;
-      if (std::hypot(other.x_m - self.x_m, other.y_m - self.y_m) <= hear_radius_m_) ++near;
+      if (std::hypot(other.x_m - self.x_m, other.y_m - self.y_m) <= communication_radius_m_) ++near;
     }
   }
   return self.neighbours_heard >= near;
@@ -39,7 +39,7 @@ std::string SwarmView::describe(SteadyTime now) {
   for (const link::RobotStatusMessage& r : robots_) {
     if (r.ticks == 0) continue;
     totals.sent += r.states_sent;
-    totals.heard += r.states_received;
+    totals.received += r.states_received;
     totals.ticks += r.ticks;
     totals.late += r.late_ticks;
     gap = std::min(gap, r.nearest_gap_m);
@@ -54,7 +54,7 @@ std::string SwarmView::describe(SteadyTime now) {
   std::string text =
       fmt::format("{}states {:.0f}/s said, {:.0f}/s heard  late {:.2f} %",
                   gap < 1e3 ? fmt::format("nearest gap {:.2f} m  ", gap) : "",
-                  rate(totals.sent, before_.sent), rate(totals.heard, before_.heard), late);
+                  rate(totals.sent, before_.sent), rate(totals.received, before_.received), late);
   before_ = totals;
   at_ = now;
   return text;

@@ -16,28 +16,28 @@ namespace swarm::launcher {
 class SwarmView {
  public:
   SwarmView() = default;
-  SwarmView(std::uint32_t robots, double hear_radius_m)
-      : robots_(robots), hear_radius_m_(hear_radius_m) {}
+  SwarmView(std::uint32_t robots, double communication_radius_m)
+      : robots_(robots), communication_radius_m_(communication_radius_m) {}
 
   void take(const link::RobotStatusMessage& status);
 
-  /// Whether a robot hears at least as many others as stand within the hearing radius, by all their
+  /// Whether a robot hears at least as many others as stand within the communication radius, by all their
   /// statuses. O(robots in nine cells).
-  bool hears_neighbours(std::uint32_t robot) const;
+  bool receives_neighbours(std::uint32_t robot) const;
 
   /// "gap 0.31 m  states 320/s sent 2210/s heard  late 0.0 %"; rates since the previous call.
   std::string describe(SteadyTime now);
 
  private:
   struct Totals {
-    std::uint64_t sent = 0, heard = 0, ticks = 0, late = 0;
+    std::uint64_t sent = 0, received = 0, ticks = 0, late = 0;
   };
   std::vector<std::uint32_t>& cell_at(double x_m, double y_m) {
-    return cells_[link::cell_of({x_m, y_m}, hear_radius_m_)];
+    return cells_[link::cell_of({x_m, y_m}, communication_radius_m_)];
   }
 
   std::vector<link::RobotStatusMessage> robots_;
-  double hear_radius_m_ = 0.0;
+  double communication_radius_m_ = 0.0;
   std::map<link::Cell, std::vector<std::uint32_t>>
       cells_;  // robots, in cells as wide as the radius
   Totals before_;

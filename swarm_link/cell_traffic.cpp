@@ -10,16 +10,16 @@
 namespace swarm::link {
 
 CellInterest::CellInterest(const CellOptions& options) : options_(options) {
-  SWARM_ASSERT(options.cell_size_m > 0.0 && options.hear_radius_m >= 0.0);
+  SWARM_ASSERT(options.cell_size_m > 0.0 && options.communication_radius_m >= 0.0);
   SWARM_ASSERT(0.0 <= options.join_margin_m && options.join_margin_m <= options.leave_margin_m);
 }
 
 std::span<const Cell> CellInterest::update(std::span<const Vec2> positions_m) {
   const double size = options_.cell_size_m;
   const auto join =
-      cells_around(positions_m, options_.hear_radius_m + options_.join_margin_m, size);
+      cells_around(positions_m, options_.communication_radius_m + options_.join_margin_m, size);
   const auto keep =
-      cells_around(positions_m, options_.hear_radius_m + options_.leave_margin_m, size);
+      cells_around(positions_m, options_.communication_radius_m + options_.leave_margin_m, size);
   std::vector<Cell> kept;
   std::set_intersection(wanted_.begin(), wanted_.end(), keep.begin(), keep.end(),
                         std::back_inserter(kept));

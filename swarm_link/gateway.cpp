@@ -38,30 +38,30 @@ class ChannelGateway final : public Gateway {
         batches_(options.topic_cell_size_m),
         inbox_(options.limits) {}
 
-  void relay(Duration patience, UtcTime now) override {
+  void relay(Duration timeout, UtcTime now) override {
     participant_.receive();
     look(now);
     if (!in_use_) {
       tap_.reset();
-      std::this_thread::sleep_for(patience);
+      std::this_thread::sleep_for(timeout);
       return;
     }
     if (!tap_) {
       auto made = make_group_tap(options_.domain);
       if (made) tap_ = std::move(*made);  // else again next time
     }
-    heard_.clear();
+    received_.clear();
     fresh_.clear();
     if (tap_) {
-      tap_->take(patience, heard_);
+      tap_->take(timeout, received_);
     } else {
-      std::this_thread::sleep_for(patience);
+      std::this_thread::sleep_for(timeout);
     }
-    inbox_.take_fresh(heard_, now, fresh_);
+    inbox_.take_fresh(received_, now, fresh_);
     const std::size_t from_groups = fresh_.size();
-    heard_.clear();
-    for (auto& [cell, topic] : topics_) topic.reader->take(heard_);
-    inbox_.take_fresh(heard_, now, fresh_);
+    received_.clear();
+    for (auto& [cell, topic] : topics_) topic.reader->take(received_);
+    inbox_.take_fresh(received_, now, fresh_);
     inbox_.set_undecodable(undecodable());
     to_groups_ += groups_->publish(std::span(fresh_).subspan(from_groups));
     for (const CellStatesMessage& batch : batches_.sort(fresh_)) {
@@ -99,7 +99,7 @@ class ChannelGateway final : public Gateway {
   std::unique_ptr<GroupTap> tap_;
   CellBatches batches_;
   GatewayInbox inbox_;
-  std::vector<CellStatesMessage> heard_;
+  std::vector<CellStatesMessage> received_;
   std::vector<RobotStateMessage> fresh_;
   UtcTime looked_at_{};
   bool in_use_ = false;

@@ -23,7 +23,7 @@ struct GatewayOptions {
   WireLimits limits;
 };
 
-/// Carries robot states between the two channels: what is said by groups becomes samples of the
+/// Carries robot states between the two channels: what is published by groups becomes samples of the
 /// ordinary cell topics, for monitors and robots of other makes, and what those say goes to the
 /// groups and to each other. Everything is checked as an agent would; a state goes on once. Of the
 /// groups it hears those that somebody on its machine has joined, as robots do around them.
@@ -31,9 +31,9 @@ class Gateway {
  public:
   virtual ~Gateway() = default;
 
-  /// Carries what there is; waits up to `patience` for something to come. As long as nobody
+  /// Carries what there is; waits up to `timeout` for something to come. As long as nobody
   /// listens to the topics or speaks there, it does not even hear the groups.
-  virtual void relay(Duration patience, UtcTime now) = 0;
+  virtual void relay(Duration timeout, UtcTime now) = 0;
 
   /// Whether somebody listens or speaks.
   virtual bool in_use() const = 0;

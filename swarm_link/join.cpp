@@ -10,22 +10,22 @@
 
 #include "swarm_link/announcement_port.hpp"
 #include "swarm_link/cyclone/cyclone_participant.hpp"
-#include "swarm_link/hub.hpp"
+#include "swarm_link/relay_participant.hpp"
 
 namespace swarm::link {
 namespace {
 
-constexpr std::uint32_t kAgentsPerHub = 25;
+constexpr std::uint32_t kAgentsPerRelay = 25;
 
 // Participant indices: the launcher's, the planner's, the gateway's, then the agents'. All
 // participants of a Cyclone process share their port: such a launcher or planner is one hub.
-std::uint32_t launcher_index(const Meeting& m, std::uint32_t hub) {
-  return m.launcher == Vendor::kCycloneDds ? 0 : hub;
+std::uint32_t launcher_index(const Meeting& m, std::uint32_t relay) {
+  return m.launcher == Vendor::kCycloneDds ? 0 : relay;
 }
-std::uint32_t planner_index(const Meeting& m, std::uint32_t hub) {
-  return std::max(1U, m.hubs) + (m.planner == Vendor::kCycloneDds ? 0 : hub);
+std::uint32_t planner_index(const Meeting& m, std::uint32_t relay) {
+  return std::max(1U, m.relays) + (m.planner == Vendor::kCycloneDds ? 0 : relay);
 }
-std::uint32_t gateway_index(const Meeting& m) { return 2 * std::max(1U, m.hubs); }
+std::uint32_t gateway_index(const Meeting& m) { return 2 * std::max(1U, m.relays); }
 std::uint32_t agent_index(const Meeting& m, std::uint32_t number) {
   return gateway_index(m) + 1 + number;
 }
@@ -42,11 +42,11 @@ FastDdsOptions member(const Meeting& meeting, std::string name, std::uint32_t in
 Result<std::unique_ptr<Participant>> make_checked(const FastDdsOptions& options) {
   auto made = make_fastdds_participant(options);
   if (!made) return made;
-  if (const auto hears = (*made)->self_check(); !hears) return tl::unexpected(hears.error());
+  if (const auto can_receive = (*made)->self_check(); !can_receive) return tl::unexpected(can_receive.error());
   return made;
 }
 
-CycloneOptions cyclone_hub(const Meeting& meeting, std::string name, std::uint32_t index,
+CycloneOptions cyclone_relay(const Meeting& meeting, std::string name, std::uint32_t index,
                            std::uint32_t peer) {
   return {.name = std::move(name),
           .domain = meeting.domain,
@@ -65,8 +65,8 @@ tl::unexpected<Error> no_server_for_cyclone(const char* option) {
 
 }  // namespace
 
-std::uint32_t hubs_for(std::uint32_t agents) {
-  return std::max(1U, (agents + kAgentsPerHub - 1) / kAgentsPerHub);
+std::uint32_t relays_for(std::uint32_t agents) {
+  return std::max(1U, (agents + kAgentsPerRelay - 1) / kAgentsPerRelay);
 }
 
 std::uint32_t participants_for(const Meeting& meeting, std::uint32_t agents) {
@@ -80,72 +80,72 @@ bool built_with(Vendor vendor) {
 
 Result<std::unique_ptr<Participant>> join_as_launcher(const Meeting& meeting) {
   if (meeting.launcher == Vendor::kCycloneDds) {
-    if (meeting.hubs == 0) return no_server_for_cyclone("--launcher-dds");
-    return make_cyclone_participant(cyclone_hub(
+    if (meeting.relays == 0) return no_server_for_cyclone("--launcher-dds");
+    return make_cyclone_participant(cyclone_relay(
         meeting, "swarm_launcher", launcher_index(meeting, 0), planner_index(meeting, 0)));
   }
-  std::vector<std::unique_ptr<Participant>> hubs;
-  for (std::uint32_t hub = 0; hub < std::max(1U, meeting.hubs); ++hub) {
-    FastDdsOptions options = member(meeting, "swarm_launcher", launcher_index(meeting, hub));
-    if (meeting.hubs > 0) options.star = Star{.is_hub = true};
+  std::vector<std::unique_ptr<Participant>> relays;
+  for (std::uint32_t relay = 0; relay < std::max(1U, meeting.relays); ++relay) {
+    FastDdsOptions options = member(meeting, "swarm_launcher", launcher_index(meeting, relay));
+    if (meeting.relays > 0) options.static_peers = StaticPeers{.is_relay = true};
     auto made = make_checked(options);
     if (!made) return made;
-    hubs.push_back(std::move(*made));
+    relays.push_back(std::move(*made));
   }
-  return make_hub(std::move(hubs));
+  return make_relay_participant(std::move(relays));
 }
 
 Result<std::unique_ptr<Participant>> join_as_planner(const Meeting& meeting,
                                                      std::uint32_t ownership_strength) {
   if (meeting.planner == Vendor::kCycloneDds) {
-    if (meeting.hubs == 0) return no_server_for_cyclone("--planner-dds");
-    CycloneOptions options = cyclone_hub(meeting, "planner_service", planner_index(meeting, 0),
+    if (meeting.relays == 0) return no_server_for_cyclone("--planner-dds");
+    CycloneOptions options = cyclone_relay(meeting, "planner_service", planner_index(meeting, 0),
                                          launcher_index(meeting, 0));
     options.ownership_strength = ownership_strength;
     return make_cyclone_participant(options);
   }
-  std::vector<std::unique_ptr<Participant>> hubs;
-  for (std::uint32_t hub = 0; hub < std::max(1U, meeting.hubs); ++hub) {
-    FastDdsOptions options = member(meeting, "planner_service", planner_index(meeting, hub));
+  std::vector<std::unique_ptr<Participant>> relays;
+  for (std::uint32_t relay = 0; relay < std::max(1U, meeting.relays); ++relay) {
+    FastDdsOptions options = member(meeting, "planner_service", planner_index(meeting, relay));
     options.ownership_strength = ownership_strength;
-    if (meeting.hubs > 0) options.star = Star{.is_hub = true};
+    if (meeting.relays > 0) options.static_peers = StaticPeers{.is_relay = true};
     // Of all its hubs one is enough for what launcher and planner have to tell each other.
-    if (meeting.hubs > 0 && hub == 0) {
-      options.star->peers = {launcher_index(meeting, 0)};
-      options.star->host = meeting.host;
+    if (meeting.relays > 0 && relay == 0) {
+      options.static_peers->peers = {launcher_index(meeting, 0)};
+      options.static_peers->host = meeting.host;
     }
     auto made = make_checked(options);
     if (!made) return made;
-    hubs.push_back(std::move(*made));
+    relays.push_back(std::move(*made));
   }
-  return make_hub(std::move(hubs));
+  return make_relay_participant(std::move(relays));
 }
 
 Result<std::unique_ptr<Participant>> join_as_monitor(const Meeting& meeting, std::uint32_t agents,
                                                      std::uint32_t number) {
   FastDdsOptions options = member(meeting, "swarm_monitor", agent_index(meeting, agents + number));
-  if (meeting.hubs > 0) {
-    options.star = Star{.peers = {launcher_index(meeting, 0), planner_index(meeting, 0)},
+  if (meeting.relays > 0) {
+    options.static_peers = StaticPeers{.peers = {launcher_index(meeting, 0), planner_index(meeting, 0)},
                         .host = meeting.host};
   }
   options.cells_by_multicast = false;
   return make_checked(options);
 }
 
-Result<Stage> join_as_stage(const Meeting& meeting) {
+Result<ReplayParticipants> join_as_replay(const Meeting& meeting) {
   FastDdsOptions options = member(meeting, "replay", launcher_index(meeting, 0));
-  options.star = Star{.is_hub = true};
+  options.static_peers = StaticPeers{.is_relay = true};
   auto launcher = make_checked(options);
   if (!launcher) return tl::unexpected(launcher.error());
   options.index = planner_index(meeting, 0);
   auto planner = make_checked(options);
   if (!planner) return tl::unexpected(planner.error());
-  return Stage{std::move(*launcher), std::move(*planner)};
+  return ReplayParticipants{std::move(*launcher), std::move(*planner)};
 }
 
 Result<std::unique_ptr<Participant>> join_as_gateway(const Meeting& meeting) {
   FastDdsOptions options = member(meeting, "gateway", gateway_index(meeting));
-  options.star = Star{.is_hub = true};
+  options.static_peers = StaticPeers{.is_relay = true};
   options.cells_by_multicast = false;
   return make_checked(options);
 }
@@ -153,25 +153,25 @@ Result<std::unique_ptr<Participant>> join_as_gateway(const Meeting& meeting) {
 Result<std::unique_ptr<Participant>> join_as_agent(const Meeting& meeting, std::uint32_t number,
                                                    const std::string& name, Vendor vendor,
                                                    bool by_gateway) {
-  std::vector<std::uint32_t> hubs;
-  if (meeting.hubs > 0) {
-    const std::uint32_t hub = number % meeting.hubs;
-    hubs = {launcher_index(meeting, hub), planner_index(meeting, hub)};
-    if (by_gateway) hubs.push_back(gateway_index(meeting));
+  std::vector<std::uint32_t> relays;
+  if (meeting.relays > 0) {
+    const std::uint32_t relay = number % meeting.relays;
+    relays = {launcher_index(meeting, relay), planner_index(meeting, relay)};
+    if (by_gateway) relays.push_back(gateway_index(meeting));
   }
   if (vendor == Vendor::kCycloneDds) {
-    if (hubs.empty()) return no_server_for_cyclone("--dds");
+    if (relays.empty()) return no_server_for_cyclone("--dds");
     CycloneOptions options{.name = name,
                            .domain = meeting.domain,
                            .peer_host = meeting.host,
                            .interface = meeting.interface};
-    for (const std::uint32_t hub : hubs) {
-      options.peer_ports.push_back(announcement_port(meeting.domain, hub));
+    for (const std::uint32_t relay : relays) {
+      options.peer_ports.push_back(announcement_port(meeting.domain, relay));
     }
     return make_cyclone_participant(options);
   }
   FastDdsOptions options = member(meeting, name, agent_index(meeting, number));
-  if (!hubs.empty()) options.star = Star{.peers = std::move(hubs), .host = meeting.host};
+  if (!relays.empty()) options.static_peers = StaticPeers{.peers = std::move(relays), .host = meeting.host};
   return make_checked(options);
 }
 

@@ -14,12 +14,12 @@
 namespace swarm::link {
 
 /// The meeting place of a run. Either a discovery server, through which everyone finds everyone, or
-/// a star: launcher and planner have `hubs` participants each at known ports, every agent announces
+/// a star: launcher and planner have `relays` participants each at known ports, every agent announces
 /// itself to one of either, and agents never learn of each other.
 struct Meeting {
   std::uint32_t domain = 0;
-  DiscoveryAddress server{};  ///< used when `hubs` is 0
-  std::uint32_t hubs = 0;
+  DiscoveryAddress server{};  ///< used when `relays` is 0
+  std::uint32_t relays = 0;
   Vendor launcher = Vendor::kFastDds;   ///< whose DDS it speaks; Cyclone's only in a star
   Vendor planner = Vendor::kFastDds;    ///< as the launcher
   std::string host = "127.0.0.1";       ///< where launcher and planner are
@@ -28,7 +28,7 @@ struct Meeting {
 };
 
 /// Hubs for a number of agents: about 25 each; with 300 at one, it never gets done with discovery.
-std::uint32_t hubs_for(std::uint32_t agents);
+std::uint32_t relays_for(std::uint32_t agents);
 
 /// DDS participants of a run, so that all of them have ports of their own.
 std::uint32_t participants_for(const Meeting& meeting, std::uint32_t agents);
@@ -40,15 +40,15 @@ Result<std::unique_ptr<Participant>> join_as_launcher(const Meeting& meeting);
 Result<std::unique_ptr<Participant>> join_as_planner(const Meeting& meeting,
                                                      std::uint32_t ownership_strength);
 
-/// For whoever looks on; `number`: of several. It is told of by launcher and planner alone.
+/// For observers; `number`: of several. It is given of by launcher and planner alone.
 Result<std::unique_ptr<Participant>> join_as_monitor(const Meeting& meeting, std::uint32_t agents,
                                                      std::uint32_t number = 0);
 
 /// The places of launcher and planner in a star of one hub each, for a replay.
-struct Stage {
+struct ReplayParticipants {
   std::unique_ptr<Participant> launcher, planner;
 };
-Result<Stage> join_as_stage(const Meeting& meeting);
+Result<ReplayParticipants> join_as_replay(const Meeting& meeting);
 
 /// One more hub of a star, at a port that agents who want it know.
 Result<std::unique_ptr<Participant>> join_as_gateway(const Meeting& meeting);

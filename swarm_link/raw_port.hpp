@@ -44,7 +44,7 @@ struct RawSample {
 /// The same, kept.
 struct RawMessage {
   std::vector<std::byte> bytes{};
-  std::int64_t said_utc_ns = 0;
+  std::int64_t sent_utc_ns = 0;
 };
 
 /// Sends samples of one topic. Destroying it unregisters the writer. Not thread-safe; may block for
@@ -72,7 +72,7 @@ class RawReader {
   std::size_t take(std::vector<RawMessage>& out) {
     return take([&out](const RawSample& sample) {
       out.push_back({.bytes = {sample.bytes.begin(), sample.bytes.end()},
-                     .said_utc_ns = sample.published_utc_ns});
+                     .sent_utc_ns = sample.published_utc_ns});
     });
   }
 };

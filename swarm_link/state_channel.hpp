@@ -34,7 +34,7 @@ class StateChannel {
 
 struct CellOptions {
   double cell_size_m = 20.0;
-  double hear_radius_m = 4.0;
+  double communication_radius_m = 4.0;
   double join_margin_m = 1.5;
   double leave_margin_m = 3.0;
 };

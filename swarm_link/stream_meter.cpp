@@ -6,7 +6,7 @@
 
 namespace swarm::link {
 
-void StreamMeter::hear(const RobotStateMessage& state, UtcTime at) {
+void StreamMeter::receive(const RobotStateMessage& state, UtcTime at) {
   if (state.robot_id >= streams_.size()) {
     ++counts_.strange;
     return;

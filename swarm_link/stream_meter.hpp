@@ -19,7 +19,7 @@ class StreamMeter {
  public:
   explicit StreamMeter(std::uint32_t robots) : streams_(robots) {}
 
-  void hear(const RobotStateMessage& state, UtcTime at);
+  void receive(const RobotStateMessage& state, UtcTime at);
 
   struct Counts {
     std::uint64_t received = 0;    ///< states, each once
@@ -47,7 +47,7 @@ class StreamMeter {
   static constexpr std::uint32_t kWindow = 64;
 
   struct Stream {
-    std::uint32_t highest = 0;   // 0: never heard
+    std::uint32_t highest = 0;   // 0: never received
     std::uint64_t received = 0;  // bit k: highest − k
   };
 

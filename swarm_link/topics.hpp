@@ -23,7 +23,7 @@ struct Qos {
   Ownership ownership = Ownership::kShared;
   bool large =
       false;  ///< samples may exceed one datagram (64 KiB): fragmented, sent asynchronously
-  bool crowd = false;  ///< many readers of each sample: one datagram to all of them where possible
+  bool many_readers = false;  ///< many readers of each sample: one datagram to all of them where possible
   bool operator==(const Qos&) const = default;
 };
 
@@ -80,7 +80,7 @@ inline Topic<CellStatesMessage> cell_topic(Cell cell) {
     return n < 0 ? "m" + std::to_string(-static_cast<std::int64_t>(n)) : std::to_string(n);
   };
   return {"swarm/cell/" + number(cell.x) + "_" + number(cell.y),
-          {.reliability = Reliability::kBestEffort, .depth = 64, .crowd = true}};
+          {.reliability = Reliability::kBestEffort, .depth = 64, .many_readers = true}};
 }
 
 inline Topic<StatusMessage> status_topic() {

@@ -92,24 +92,24 @@ int open_group_sender(const in_addr& interface) {
 }
 
 bool carries_multicast(const std::string& interface) {
-  constexpr int kPatience_ms = 200;  // the loopback delivers while it sends, others soon after
+  constexpr int kTimeout_ms = 200;  // the loopback delivers while it sends, others soon after
   const in_addr own = to_in_addr(interface);
   sockaddr_in address{};
   address.sin_family = AF_INET;
   address.sin_addr.s_addr = htonl(0xEFFF0000);  // 239.255.0.0; port 0: any free one
   socklen_t size = sizeof address;
-  const int hearing = open_receive_socket(address, 1 << 16);
-  const int speaking = open_group_sender(own);
-  pollfd waiting{.fd = hearing, .events = POLLIN, .revents = 0};
+  const int receiver = open_receive_socket(address, 1 << 16);
+  const int sender = open_group_sender(own);
+  pollfd waiting{.fd = receiver, .events = POLLIN, .revents = 0};
   char back = 0;
-  const bool heard =
-      hearing >= 0 && speaking >= 0 && join_group(hearing, address.sin_addr, own) &&
-      ::getsockname(hearing, reinterpret_cast<sockaddr*>(&address), &size) == 0 &&
-      ::sendto(speaking, "?", 1, 0, reinterpret_cast<const sockaddr*>(&address), size) == 1 &&
-      ::poll(&waiting, 1, kPatience_ms) == 1 && ::recv(hearing, &back, 1, 0) == 1;
-  if (hearing >= 0) ::close(hearing);
-  if (speaking >= 0) ::close(speaking);
-  return heard;
+  const bool received =
+      receiver >= 0 && sender >= 0 && join_group(receiver, address.sin_addr, own) &&
+      ::getsockname(receiver, reinterpret_cast<sockaddr*>(&address), &size) == 0 &&
+      ::sendto(sender, "?", 1, 0, reinterpret_cast<const sockaddr*>(&address), size) == 1 &&
+      ::poll(&waiting, 1, kTimeout_ms) == 1 && ::recv(receiver, &back, 1, 0) == 1;
+  if (receiver >= 0) ::close(receiver);
+  if (sender >= 0) ::close(sender);
+  return received;
 }
 
 int granted_receive_buffer_bytes(int asked_bytes) {

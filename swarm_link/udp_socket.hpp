@@ -27,8 +27,8 @@ bool is_multicast(const in_addr& address);
 sockaddr_in multicast_group(std::uint32_t domain, std::uint32_t hash);
 
 /// A non-blocking socket bound to an address; −1 if the kernel refuses. A multicast group's socket
-/// is bound to the group, so it hears nothing else, and shares its port with other processes; it
-/// hears nothing at all until join_group(). Others share theirs if `shared`.
+/// is bound to the group, so it receives nothing else, and shares its port with other processes; it
+/// receives nothing at all until join_group(). Others share theirs if `shared`.
 int open_receive_socket(const sockaddr_in& address, int buffer_bytes, bool shared = false);
 
 bool join_group(int fd, const in_addr& group, const in_addr& interface);

@@ -47,7 +47,7 @@ std::optional<double> stays_arrived_from(const Track& track) {
 /// position.
 std::optional<double> stop_latency_ms(const Track& track, UtcTime begin) {
   const auto stopped =
-      std::find_if(track.notes.begin(), track.notes.end(), [](const blackbox::Note& note) {
+      std::find_if(track.notes.begin(), track.notes.end(), [](const robot_log::Note& note) {
         return note.code == "mode" && note.text == to_string(RobotMode::kStopped) &&
                note.caused != UtcTime{};
       });
@@ -66,7 +66,7 @@ bool fills_shape(const RecordedRun& run) {
   return run.mission.control.method == "intermittent_diffusion";
 }
 
-bool is_home(const RecordedRun& run, std::size_t goal, const Vec2& position_m) {
+bool is_at_goal(const RecordedRun& run, std::size_t goal, const Vec2& position_m) {
   if (fills_shape(run) && run.mission.goal_shape != nullptr) {
     return run.mission.goal_shape->at(position_m).energy_m2 <=
            run.mission.control.options.number("diffusion_tolerance_m2").value_or(0.0);
@@ -88,7 +88,7 @@ RobotAudit audit_robot(const Track& track, const RecordedRun& run) {
   const TrackPoint& last = track.points.back();
   const auto& goals = run.goal().components();
   if (last.goal < goals.size()) result.goal = last.goal;
-  result.arrived = !result.lost && result.goal && is_home(run, *result.goal, last.position_m);
+  result.arrived = !result.lost && result.goal && is_at_goal(run, *result.goal, last.position_m);
   result.arrived_at_s = stays_arrived_from(track);
   result.stop_ms = stop_latency_ms(track, run.begin);
   return result;
@@ -285,7 +285,7 @@ AuditedRun audit_recorded(RecordedRun recorded) {
   count_robots(run, audit);
   measure_paths(run, audit);
   audit.mission_s = mission_duration_s(run, audit);
-  audit.belief = belief_error(run.tracks);
+  audit.estimate = estimate_error(run.tracks);
   audit.tracking = measure_tracking(run);
   measure_arrivals(audit);
   audit.collisions_robot = static_cast<std::uint32_t>(audited.robots.contacts.size());

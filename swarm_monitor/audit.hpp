@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "swarm_monitor/belief_error.hpp"
+#include "swarm_monitor/estimate_error.hpp"
 #include "swarm_monitor/clearance.hpp"
 #include "swarm_monitor/recorded_run.hpp"
 #include "swarm_monitor/tracking/tracking.hpp"
@@ -27,7 +27,7 @@ struct StopLatency {
 /// One robot's part in an audit.
 struct RobotAudit {
   RobotId robot{};
-  bool lost = false;  ///< no black box, or it ends without the note "exit"
+  bool lost = false;  ///< no robot log, or it ends without the note "exit"
   /// Not lost, and its last position lies in the 99 % ellipse of its goal, or, by intermittent
   /// diffusion, where the drawing's shape function is within the tolerance.
   bool arrived = false;
@@ -38,7 +38,7 @@ struct RobotAudit {
   std::optional<double> stop_ms{};  ///< stamp of the stop it obeyed to its last change of position
 };
 
-/// What a run achieved, computed from its mission and black boxes alone.
+/// What a run achieved, computed from its mission and robot logs alone.
 struct Audit {
   std::vector<std::string> reasons;  ///< why the outcome is not "ok"; empty if it is
   std::uint32_t robots = 0;
@@ -56,7 +56,7 @@ struct Audit {
   std::optional<double> path_ratio;
   std::optional<double> mission_s;  ///< first step in motion to the last arrival, else to the end
   std::optional<StateAge> state_age;
-  std::optional<BeliefError> belief;
+  std::optional<EstimateError> estimate;
   std::optional<double> states_hz;   ///< states that a robot says, on average over the run
   std::optional<StopLatency> stop;   ///< empty if nobody was stopped
   double deadline_miss_ratio = 0.0;  ///< share of control steps that began over 20 ms late

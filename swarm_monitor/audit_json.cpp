@@ -30,12 +30,12 @@ std::string to_json(const Audit& audit) {
            {"p999", audit.state_age->p999_ms},
            {"max", audit.state_age->max_ms}};
   }
-  Json belief = nullptr;
-  if (audit.belief) {
-    belief = {{"p50", audit.belief->p50_cm},
-              {"p99", audit.belief->p99_cm},
-              {"p999", audit.belief->p999_cm},
-              {"max", audit.belief->max_cm}};
+  Json estimate = nullptr;
+  if (audit.estimate) {
+    estimate = {{"p50", audit.estimate->p50_cm},
+              {"p99", audit.estimate->p99_cm},
+              {"p999", audit.estimate->p999_cm},
+              {"max", audit.estimate->max_cm}};
   }
   Json stop = nullptr;
   if (audit.stop) {
@@ -58,7 +58,7 @@ std::string to_json(const Audit& audit) {
                      {"path_ratio", number(audit.path_ratio)},
                      {"mission_s", number(audit.mission_s)},
                      {"state_age_ms", age},
-                     {"belief_error_cm", belief},
+                     {"belief_error_cm", estimate},
                      {"states_hz", number(audit.states_hz)},
                      {"stop_latency_ms", stop},
                      {"deadline_miss_ratio", audit.deadline_miss_ratio},
@@ -103,9 +103,9 @@ std::string to_text(const Audit& audit) {
     text += fmt::format("  age of states    {:.1f} ms (p50), {:.1f} (p99), {:.1f} (max)\n",
                         audit.state_age->p50_ms, audit.state_age->p99_ms, audit.state_age->max_ms);
   }
-  if (audit.belief) {
+  if (audit.estimate) {
     text += fmt::format("  belief error     {:.1f} cm (p50), {:.1f} (p99), {:.1f} (max)\n",
-                        audit.belief->p50_cm, audit.belief->p99_cm, audit.belief->max_cm);
+                        audit.estimate->p50_cm, audit.estimate->p99_cm, audit.estimate->max_cm);
   }
   if (audit.states_hz) {
     text +=

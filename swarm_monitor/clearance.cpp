@@ -199,12 +199,12 @@ void add_obstacle_approaches(std::uint32_t robot, const Track& track, const Phas
     };
     const Vec2 from = place_at(from_s);
     const Vec2 to = place_at(to_s);
-    const double way_m = (to - from).norm() + phase.fastest_mps * (to_s - from_s);
+    const double path_m = (to - from).norm() + phase.fastest_mps * (to_s - from_s);
     const double reach_m = std::max(Clearance::kCap_m, clearance.nearest.gap_m);
-    idle_m -= way_m;
+    idle_m -= path_m;
     if (idle_m > 0.0) continue;
     const double moved_m = phase.fastest_mps * (from_s - phase.begin_s);
-    idle_m = phase.world.distance_m(from) - moved_m - track.radius_m - reach_m - way_m;
+    idle_m = phase.world.distance_m(from) - moved_m - track.radius_m - reach_m - path_m;
     if (idle_m > 0.0) continue;
     const std::size_t window = window_of(points[k].time_s);
     for (const ConvexObstacle& obstacle : phase.world.convex_obstacles()) {

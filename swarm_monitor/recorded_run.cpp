@@ -16,7 +16,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "swarm_core/blackbox/blackbox_file.hpp"
+#include "swarm_core/robot_log/robot_log_file.hpp"
 #include "swarm_core/mcap/reader.hpp"
 #include "swarmflow/mission/mission_file.hpp"
 #include "swarm_core/mission/scene_log.hpp"
@@ -59,18 +59,18 @@ std::vector<RunEvent> read_events(const std::string& text, UtcTime begin) {
 
 }  // namespace
 
-void TrackMaker::add(const blackbox::Record& record) {
+void TrackMaker::add(const robot_log::Record& record) {
   std::visit([this](const auto& r) { take(r); }, record);
 }
 
-void TrackMaker::take(const blackbox::Header& header) {
-  close_life();
+void TrackMaker::take(const robot_log::Header& header) {
+  close_incarnation();
   track_.radius_m = header.radius_m;
   track_.processes.push_back(header.process_id);
   track_.ended_gracefully = false;
 }
 
-void TrackMaker::take(const blackbox::Step& step) {
+void TrackMaker::take(const robot_log::Step& step) {
   if (step.lateness_us > Track::kLate_us) ++track_.late_steps;
   const double time_s = to_seconds(step.stamp - origin_);
   if (!track_.points.empty() && time_s <= track_.points.back().time_s) {
@@ -88,26 +88,26 @@ void TrackMaker::take(const blackbox::Step& step) {
                            .reference_y_m = step.reference_y_m});
 }
 
-void TrackMaker::take(const blackbox::Belief& belief) {
-  track_.beliefs.push_back({.time_s = to_seconds(belief.stamp - origin_),
-                            .neighbour = belief.neighbour,
-                            .position_m = belief.position_m});
+void TrackMaker::take(const robot_log::Estimate& estimate) {
+  track_.estimates.push_back({.time_s = to_seconds(estimate.stamp - origin_),
+                            .neighbour = estimate.neighbour,
+                            .position_m = estimate.position_m});
 }
 
-void TrackMaker::take(const blackbox::Note& note) {
+void TrackMaker::take(const robot_log::Note& note) {
   track_.notes.push_back(note);
   if (note.code == "exit") track_.ended_gracefully = true;
 }
 
-void TrackMaker::close_life() {
-  track_.state_age.merge(life_.state_age);
-  track_.states_sent += life_.states_sent;
-  track_.refused += std::accumulate(life_.refused.begin(), life_.refused.end(), std::uint64_t{0});
-  life_ = {};
+void TrackMaker::close_incarnation() {
+  track_.state_age.merge(incarnation_.state_age);
+  track_.states_sent += incarnation_.states_sent;
+  track_.refused += std::accumulate(incarnation_.refused.begin(), incarnation_.refused.end(), std::uint64_t{0});
+  incarnation_ = {};
 }
 
 Track TrackMaker::finish() {
-  close_life();
+  close_incarnation();
   return std::move(track_);
 }
 
@@ -117,7 +117,7 @@ const Mixture& RecordedRun::goal() const {
 
 namespace {
 
-/// The files of a run beside its black boxes, by name.
+/// The files of a run beside its robot logs, by name.
 using Texts = std::map<std::string, std::string, std::less<>>;
 
 const std::string& text_of(const Texts& texts, std::string_view name) {
@@ -161,9 +161,9 @@ class TrackTable {
  public:
   explicit TrackTable(std::uint32_t robots) : makers_(robots) {}
 
-  void add(RobotId robot, const blackbox::Record& record) {
+  void add(RobotId robot, const robot_log::Record& record) {
     if (robot.value() >= makers_.size()) return;
-    if (!origin_) origin_ = blackbox::stamp_of(record);
+    if (!origin_) origin_ = robot_log::stamp_of(record);
     auto& maker = makers_[robot.value()];
     if (!maker) maker.emplace(robot, *origin_);
     maker->add(record);
@@ -187,7 +187,7 @@ class TrackTable {
     };
     for (Track& track : run.tracks) {
       for (TrackPoint& point : track.points) point.time_s = since_begin(point.time_s);
-      for (BeliefPoint& belief : track.beliefs) belief.time_s = since_begin(belief.time_s);
+      for (EstimatePoint& estimate : track.estimates) estimate.time_s = since_begin(estimate.time_s);
     }
     run.begin = *origin_ + begin;
     return true;
@@ -211,7 +211,7 @@ Result<RecordedRun> finished(RecordedRun run, TrackTable& tracks, const Texts& t
                              const std::filesystem::path& from) {
   if (!tracks.finish(run)) {
     return fail(ErrorCode::kEnvironment,
-                fmt::format("{}: no black box holds a step; did any robot start?", from.string()));
+                fmt::format("{}: no robot log holds a step; did any robot start?", from.string()));
   }
   run.plans = read_plans(texts);
   run.planning = planning_record_from_json(text_of(texts, shell::kPlanningFile));
@@ -241,10 +241,10 @@ Result<RecordedRun> read_directory(const std::filesystem::path& run_dir) {
   auto run = with_mission(text_of(texts, shell::kMissionFile), run_dir);
   if (!run) return run;
   TrackTable tracks(run->mission.robots.count);
-  std::vector<Result<blackbox::Damage>> damages;
+  std::vector<Result<robot_log::Damage>> damages;
   for (std::uint32_t i = 0; i < run->mission.robots.count; ++i) {
     damages.push_back(
-        blackbox::read_records(blackbox::file_of(run_dir, RobotId(i)),
+        robot_log::read_records(robot_log::file_of(run_dir, RobotId(i)),
                                [&](const auto& record) { tracks.add(RobotId(i), record); }));
   }
   run = finished(std::move(*run), tracks, texts, run_dir);
@@ -268,7 +268,7 @@ Result<RecordedRun> read_recording(const std::filesystem::path& file) {
       {.message =
            [&](const mcap::Message& message, const mcap::Channel& channel, const mcap::Schema&) {
              if (!tracks) return;
-             if (const auto record = blackbox::decode(message, channel)) {
+             if (const auto record = robot_log::decode(message, channel)) {
                tracks->add(record->robot, record->record);
              }
            },

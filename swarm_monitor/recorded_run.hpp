@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "swarm_core/blackbox/record.hpp"
+#include "swarm_core/robot_log/record.hpp"
 #include "swarmflow/mission/mission.hpp"
 #include "swarmflow/mission/phase.hpp"
 #include "swarmflow/core/flow_plan.hpp"
@@ -21,7 +21,7 @@ struct TrackPoint {
   double time_s = 0.0;  ///< since RecordedRun::begin
   Vec2 position_m = Vec2::Zero();
   RobotMode mode = RobotMode::kWaiting;
-  std::uint8_t goal = blackbox::Step::kNoGoal;
+  std::uint8_t goal = robot_log::Step::kNoGoal;
   std::uint16_t neighbours = 0;    ///< it believed near
   std::uint32_t plan_version = 0;  ///< of the plan it follows in time; 0: none
   float plan_time_s = 0.0F;        ///< τ of that plan as the robot has it
@@ -32,31 +32,31 @@ struct TrackPoint {
 };
 
 /// Where a robot took another to be.
-struct BeliefPoint {
+struct EstimatePoint {
   double time_s = 0.0;  ///< since RecordedRun::begin
   RobotId neighbour;
   Vec2 position_m = Vec2::Zero();
 };
 
-/// Everything one robot's black box says. Between two points a robot moves in a straight line at
+/// Everything one robot's robot log says. Between two points a robot moves in a straight line at
 /// constant speed, also from the end of one life of its process to the begin of the next.
 struct Track {
   RobotId robot{};
   double radius_m = 0.0;
   std::vector<TrackPoint> points{};  ///< times strictly increasing
-  std::vector<BeliefPoint> beliefs{};
+  std::vector<EstimatePoint> estimates{};
   std::vector<std::uint32_t> processes{};  ///< one a life
   bool ended_gracefully = false;           ///< the last life noted "exit"
   /// A fallen robot's body stays at the last point until this time; a time before that point is
   /// that of no body. Set by lay_fallen_bodies().
   double body_until_s = 0.0;
-  std::string unreadable{};   ///< why there is no black box; empty if there is one
+  std::string unreadable{};   ///< why there is no robot log; empty if there is one
   std::uint64_t damaged = 0;  ///< stretches of the file that are no record, and steps back in time
   std::uint64_t late_steps = 0;   ///< later than kLate_us
   std::uint64_t refused = 0;      ///< messages, over all lives
   Histogram state_age{};          ///< over all lives
   std::uint64_t states_sent = 0;  ///< over all lives
-  std::vector<blackbox::Note> notes{};
+  std::vector<robot_log::Note> notes{};
 
   static constexpr std::int32_t kLate_us = 20'000;
 };
@@ -78,7 +78,7 @@ struct PublishedPlan {
 struct RecordedRun {
   Mission mission;
   std::vector<PublishedPlan> plans{};  ///< by ascending version
-  UtcTime begin{};                     ///< first step in any black box
+  UtcTime begin{};                     ///< first step in any robot log
   std::vector<Track> tracks{};         ///< by robot id, mission.robots.count of them
   std::vector<RunEvent> events{};
   std::vector<Scene> scenes{};               ///< the first as in the mission file
@@ -95,29 +95,29 @@ struct RecordedRun {
 };
 
 /// Of a run directory, or of a recording of one. Fails (kEnvironment) if there is no readable
-/// mission or no black box at all. What single robots lack is told by their tracks; a missing plan,
+/// mission or no robot log at all. What single robots lack is given by their tracks; a missing plan,
 /// clock or event log is no error.
 Result<RecordedRun> read_run(const std::filesystem::path& from);
 
-/// Makes a track of the records of one black box, with times since `origin`.
+/// Makes a track of the records of one robot log, with times since `origin`.
 class TrackMaker {
  public:
   TrackMaker(RobotId robot, UtcTime origin) : origin_(origin) { track_.robot = robot; }
 
-  void add(const blackbox::Record& record);
-  void take(const blackbox::Header& header);
-  void take(const blackbox::Step& step);
-  void take(const blackbox::Belief& belief);
-  void take(const blackbox::LinkStats& stats) { life_ = stats; }
-  void take(const blackbox::Note& note);
+  void add(const robot_log::Record& record);
+  void take(const robot_log::Header& header);
+  void take(const robot_log::Step& step);
+  void take(const robot_log::Estimate& estimate);
+  void take(const robot_log::LinkStats& stats) { incarnation_ = stats; }
+  void take(const robot_log::Note& note);
   Track finish();
 
  private:
-  void close_life();
+  void close_incarnation();
 
   UtcTime origin_;
   Track track_{};
-  blackbox::LinkStats life_{};  // newest counters of the current life
+  robot_log::LinkStats incarnation_{};  // newest counters of the current life
 };
 
 }  // namespace swarm::monitor

@@ -107,10 +107,10 @@ void add_figures(Page& page, const Audit& audit) {
   };
   add_figure(page, number(age(&StateAge::p50_ms), 1, "ms"), "age of states, median");
   add_figure(page, number(age(&StateAge::p99_ms), 1, "ms"), "age of states, 99 %");
-  const auto belief = [&](double BeliefError::*p) {
-    return audit.belief ? std::optional(*audit.belief.*p) : std::nullopt;
+  const auto estimate = [&](double EstimateError::*p) {
+    return audit.estimate ? std::optional(*audit.estimate.*p) : std::nullopt;
   };
-  add_figure(page, number(belief(&BeliefError::p99_cm), 1, "cm"),
+  add_figure(page, number(estimate(&EstimateError::p99_cm), 1, "cm"),
              "neighbours wrongly believed by, 99 %");
   add_figure(page, fmt::format("{:.3f} %", 100.0 * audit.deadline_miss_ratio),
              "control steps over 20 ms late");
@@ -167,7 +167,7 @@ void add_losses(Page& page, const AuditedRun& audited) {
                       : !track.ended_gracefully ? "its process ended without a word"
                                                 : "";
     if (track.damaged > 0) {
-      why += fmt::format("{}{} damaged places in its black box", why.empty() ? "" : "; ",
+      why += fmt::format("{}{} damaged places in its robot log", why.empty() ? "" : "; ",
                          track.damaged);
     }
     if (!track.notes.empty()) {
@@ -235,10 +235,10 @@ std::vector<RunEvent> events_of(const RecordedRun& run) {
     if (!track.unreadable.empty()) {
       events.push_back({.source = source,
                         .severity = "error",
-                        .code = "no-black-box",
+                        .code = "no-robot-log",
                         .text = track.unreadable});
     }
-    for (const blackbox::Note& note : track.notes) {
+    for (const robot_log::Note& note : track.notes) {
       if (note.code == "mode" || note.code == "plan" || note.code == "exit") continue;
       events.push_back({.time_s = to_seconds(note.stamp - run.begin),
                         .source = source,
@@ -319,7 +319,7 @@ std::string report_html(const AuditedRun& audited) {
   add_losses(page, audited);
   add_robots(page, audited);
   add_events(page, audited.run);
-  page.add("<p class=\"soft\">Computed from the robots' black boxes by swarm_monitor " SWARM_VERSION
+  page.add("<p class=\"soft\">Computed from the robots' robot logs by swarm_monitor " SWARM_VERSION
            "; planning, discovery, CPU and memory as measured by the launcher.</p>\n");
   return report_page(audited.run.mission.name, page.take());
 }
@@ -336,8 +336,8 @@ Result<AuditedRun> write_report(const std::filesystem::path& run_dir) {
 Result<void> write_report(const std::filesystem::path& run_dir, const AuditedRun& audited) {
   const std::string paths = paths_svg(audited);
   if (auto written = shell::write_file(run_dir / "paths.svg", paths); !written) return written;
-  constexpr int kPictureWidth_px = 1600;
-  if (auto written = write_png(run_dir / "paths.png", paths, kPictureWidth_px); !written) {
+  constexpr int kImageWidth_px = 1600;
+  if (auto written = write_png(run_dir / "paths.png", paths, kImageWidth_px); !written) {
     return written;
   }
   return shell::write_file(run_dir / "report.html", report_html(audited));

@@ -40,7 +40,7 @@ class Carrot final : public ControlMethod {
     return arrived_ = is_near && route_.goal.contains_99(view.position_m);
   }
 
-  Vec2 wish(const ControlView& view, bool arrived, Rng&) override {
+  Vec2 desired_velocity(const ControlView& view, bool arrived, Rng&) override {
     // The nearest point of the path ahead, in steps of a quarter of a metre.
     for (double s_m = progress_m_; s_m <= progress_m_ + options_.carrot_m; s_m += 0.25) {
       if (distance_m(view, s_m) < distance_m(view, progress_m_)) progress_m_ = s_m;

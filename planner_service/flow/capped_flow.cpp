@@ -19,7 +19,7 @@
 namespace swarm::planner {
 namespace {
 
-// Newton's method below ends after as many steps as there are different cuts on its way: a handful.
+// Newton's method below ends after as many steps as there are different cuts under way: a handful.
 constexpr int kMostCuts = 64;
 constexpr double kFits = 1e-9;
 constexpr double kSaturated = 1e-11;
@@ -199,7 +199,7 @@ class RouteTaker {
       const auto arc =
           std::max_element(out_[v].begin(), out_[v].end(),
                            [](const Carrying& a, const Carrying& b) { return a.mass < b.mass; });
-      if (arc == out_[v].end() || arc->mass <= kFlowDust || nodes.size() > out_.size()) {
+      if (arc == out_[v].end() || arc->mass <= kNegligibleFlow || nodes.size() > out_.size()) {
         return std::nullopt;
       }
       mass = std::min(mass, arc->mass);

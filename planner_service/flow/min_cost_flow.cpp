@@ -78,8 +78,8 @@ std::optional<std::vector<double>> min_cost_flow(std::span<const double> supplie
   flow.reserve(arcs.size());
   for (std::size_t a = 0; a < arcs.size(); ++a) {
     const auto units = static_cast<double>(simplex.flow(Graph::arcFromId(static_cast<int>(a))));
-    const bool is_dust = units < kFlowDust * static_cast<double>(kMassUnits);
-    flow.push_back(is_dust ? 0.0 : units / per_unit);
+    const bool is_negligible = units < kNegligibleFlow * static_cast<double>(kMassUnits);
+    flow.push_back(is_negligible ? 0.0 : units / per_unit);
   }
   return flow;
 }

@@ -26,7 +26,7 @@ struct FlowArc {
 /// by network simplex in whole numbers: masses in units of 2⁻⁵⁰ of the whole supply, costs in units
 /// of 2⁻⁶⁰ (nodes + 2) of the largest, but no finer than 2⁻⁵². So its objective is within
 /// (arcs on a path) · 2⁻⁶⁰ (nodes + 2) of the largest cost times the mass of the optimum: 1e-12 for
-/// a thousand nodes. Flows below kFlowDust of the supply, which only rounding makes, count as 0.
+/// a thousand nodes. Flows below kNegligibleFlow of the supply, which only rounding makes, count as 0.
 ///
 /// Returns x, a basic solution, arc by arc; nothing when the supplies do not fit through. \pre the
 /// supplies sum to 0 within rounding, some are positive; costs are finite and at least 0,
@@ -34,6 +34,6 @@ struct FlowArc {
 std::optional<std::vector<double>> min_cost_flow(std::span<const double> supplies,
                                                  std::span<const FlowArc> arcs);
 
-inline constexpr double kFlowDust = 1e-12;
+inline constexpr double kNegligibleFlow = 1e-12;
 
 }  // namespace swarm::planner

@@ -13,7 +13,7 @@ constexpr double kNotReached = -1.0;
 constexpr std::uint32_t kNone = UINT32_MAX;
 
 // A way between two nodes that have times, through nodes that have none.
-struct Way {
+struct Path {
   double tightness = -1.0;  // its least time over the time it has
   double least_s = 0.0;
   std::vector<std::uint32_t> nodes;
@@ -45,17 +45,17 @@ class Pacer {
   std::vector<double> run() {
     // Every round gives a time to a node.
     while (std::find(has_time_.begin(), has_time_.end(), 0) != has_time_.end()) {
-      const Way way = tightest_way();
-      SWARM_ASSERT(way.nodes.size() > 2);
-      pace(way);
+      const Path path = tightest_path();
+      SWARM_ASSERT(path.nodes.size() > 2);
+      pace(path);
     }
     return times_s_;
   }
 
  private:
   // Longest ways from one node that has a time, over all such nodes.
-  Way tightest_way() {
-    Way tightest;
+  Path tightest_path() {
+    Path tightest;
     for (std::uint32_t from = 0; from < has_time_.size(); ++from) {
       if (has_time_[from] == 0) continue;
       std::fill(longest_s_.begin(), longest_s_.end(), kNotReached);
@@ -84,15 +84,15 @@ class Pacer {
     return tightest;
   }
 
-  void pace(const Way& way) {
-    const double from_s = times_s_[way.nodes.front()];
-    const double stretch = (times_s_[way.nodes.back()] - from_s) / way.least_s;
+  void pace(const Path& path) {
+    const double from_s = times_s_[path.nodes.front()];
+    const double stretch = (times_s_[path.nodes.back()] - from_s) / path.least_s;
     double along_s = 0.0;
-    for (std::size_t i = 1; i + 1 < way.nodes.size(); ++i) {
-      along_s += least_between(way.nodes[i - 1], way.nodes[i]);
-      times_s_[way.nodes[i]] = from_s + stretch * along_s;
+    for (std::size_t i = 1; i + 1 < path.nodes.size(); ++i) {
+      along_s += least_between(path.nodes[i - 1], path.nodes[i]);
+      times_s_[path.nodes[i]] = from_s + stretch * along_s;
     }
-    for (std::size_t i = 1; i + 1 < way.nodes.size(); ++i) has_time_[way.nodes[i]] = 1;
+    for (std::size_t i = 1; i + 1 < path.nodes.size(); ++i) has_time_[path.nodes[i]] = 1;
   }
 
   double least_between(std::uint32_t from, std::uint32_t to) const {
@@ -105,7 +105,7 @@ class Pacer {
   std::vector<PacedLeg> legs_;
   std::vector<double> times_s_;
   std::vector<char> has_time_;
-  std::vector<double> longest_s_;  // scratch of tightest_way()
+  std::vector<double> longest_s_;  // scratch of tightest_path()
   std::vector<std::uint32_t> by_;  // the leg on the longest way to a node
 };
 

@@ -33,13 +33,13 @@ double mean_length_m(const Waypoints& waypoints) {
 }
 
 double leg_duration_s(const Gaussian& from, const Gaussian& to, double speed_mps) {
-  const double mean_way_m = (to.mean_m() - from.mean_m()).norm();
+  const double mean_path_m = (to.mean_m() - from.mean_m()).norm();
   const double squared = wasserstein2_squared(from, to);
-  const double shape_way_m = std::sqrt(std::max(0.0, squared - mean_way_m * mean_way_m));
-  return std::max(std::max(mean_way_m, shape_way_m) / speed_mps, kShortestLeg_s);
+  const double shape_path_m = std::sqrt(std::max(0.0, squared - mean_path_m * mean_path_m));
+  return std::max(std::max(mean_path_m, shape_path_m) / speed_mps, kShortestLeg_s);
 }
 
-double longest_robot_way_m(const Gaussian& from, const Gaussian& to) {
+double longest_robot_path_m(const Gaussian& from, const Gaussian& to) {
   // y = 2Lu, |u| ≤ 1: the longest |a + Bu|, B = 2(T − I)L.
   const Vec2 a = to.mean_m() - from.mean_m();
   const Mat2 b = kEllipseSigmas * (transport_map(from, to) - Mat2::Identity()) *
@@ -73,7 +73,7 @@ double longest_robot_way_m(const Gaussian& from, const Gaussian& to) {
 double end_leg_duration_s(const Gaussian& from, const Gaussian& to, const LegSpeed& speed) {
   const double means_s = leg_duration_s(from, to, speed.means_mps);
   if (!std::isfinite(speed.robots_mps)) return means_s;
-  return std::max(means_s, longest_robot_way_m(from, to) / speed.robots_mps);
+  return std::max(means_s, longest_robot_path_m(from, to) / speed.robots_mps);
 }
 
 double route_leg_duration_s(const Waypoints& waypoints, std::size_t i, const LegSpeed& speed) {

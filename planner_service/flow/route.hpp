@@ -37,7 +37,7 @@ struct LegSpeed {
 ///
 /// An affine function of a point of the unit disc: by the dual of that problem, which has no gap, a
 /// minimum over one number. Never below the exact value, above it by rounding. About 1 µs.
-double longest_robot_way_m(const Gaussian& from, const Gaussian& to);
+double longest_robot_path_m(const Gaussian& from, const Gaussian& to);
 
 /// leg_duration_s() of a leg that leaves a start or enters a goal. Components are wide, and the
 /// shape changes most there: where σ goes from 10 m to 2 m in 17 m, robots at the far side have

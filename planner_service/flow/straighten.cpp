@@ -207,13 +207,13 @@ class Straightener {
 
   bool try_move(std::uint32_t i) {
     const double enough = (1.0 - options_.worthwhile) * action(i, nodes_[i].gaussian);
-    const Geodesic way(nodes_[i].gaussian, middle_of(i));
+    const Geodesic path(nodes_[i].gaussian, middle_of(i));
     // A hair more than σ_min needs, so that the squeeze that follows does not end below it.
     const double room_m = k_ * options_.sigma_min_m * (1.0 + 1e-6) - delta_m_;
     for (const double step : kSteps) {
       for (const double extra_m : kExtraRooms_m) {
         const std::optional<Gaussian> moved =
-            squeeze_into_free(push_out(way.at(step), world_, room_m + extra_m), world_, k_,
+            squeeze_into_free(push_out(path.at(step), world_, room_m + extra_m), world_, k_,
                               delta_m_ - extra_m, options_.sigma_min_m);
         if (!moved || action(i, *moved) >= enough) continue;
         if (!keeps_speed(i, *moved) || !keeps_risk(i, *moved)) continue;

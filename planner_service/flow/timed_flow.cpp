@@ -37,7 +37,7 @@ struct Terminals {
   std::size_t count() const { return supplies.size() + demands.size(); }
 };
 
-double standing_density_per_m2(std::span<const Gaussian> components, std::span<const double> masses,
+double stationary_density_per_m2(std::span<const Gaussian> components, std::span<const double> masses,
                                double robots, const Vec2& at_m) {
   double density = 0.0;
   for (std::size_t i = 0; i < masses.size(); ++i)
@@ -58,16 +58,16 @@ std::vector<double> first_capacities(const Roadmap& roadmap, const Terminals& te
       continue;
     }
     const Vec2& at_m = nodes[v].mean_m();
-    const double standing_per_m2 =
-        std::max(standing_density_per_m2(nodes, terminals.supplies, cap.robots, at_m),
-                 standing_density_per_m2(nodes.subspan(terminals.supplies.size()),
+    const double stationary_per_m2 =
+        std::max(stationary_density_per_m2(nodes, terminals.supplies, cap.robots, at_m),
+                 stationary_density_per_m2(nodes.subspan(terminals.supplies.size()),
                                          terminals.demands, cap.robots, at_m));
     const double spacing = wave_spacing_m / std::pow(nodes[v].determinant(), 0.25);
     double waves = 1.0;
     for (int k = 1; k <= kNeighbouringWaves; ++k) {
       waves += 2.0 * std::exp(-0.5 * std::pow(k * spacing, 2));
     }
-    capacities.push_back(alone * std::max(0.0, 1.0 - standing_per_m2 / cap.max_per_m2) / waves);
+    capacities.push_back(alone * std::max(0.0, 1.0 - stationary_per_m2 / cap.max_per_m2) / waves);
   }
   return capacities;
 }
@@ -168,7 +168,7 @@ Result<TimedFlow> timed_flow(const Roadmap& roadmap, std::span<const double> sup
                              {.speed = options.speed,
                               .step_s = options.step_s,
                               .detour = options.detour,
-                              .delay_price_mps = options.delay_price_mps},
+                              .delay_cost_mps = options.delay_cost_mps},
                              checker);
   const std::optional<std::uint32_t> free_flow = network.free_flow_steps();
   if (!free_flow) {

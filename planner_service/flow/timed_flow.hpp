@@ -20,7 +20,7 @@ struct TimedFlowOptions {
   LegSpeed speed{};
   double step_s = 0.0;            ///< grid of times; 0 for half of the median leg
   double detour = 1.05;           ///< how far off the shortest ways legs are considered
-  double delay_price_mps = 0.1;   ///< metres of detour that a second of delay is worth
+  double delay_cost_mps = 0.1;   ///< metres of detour that a second of delay is worth
   double stretch_max = 8.0;       ///< latest end, in free-flow times
   std::uint32_t rounds_max = 40;  ///< of solving, checking the density and lowering capacities
   double sample_s = 0.5;          ///< the density is checked this often

@@ -33,9 +33,9 @@ struct Leg {
 };
 
 // How long the ways through a node or leg are, from every start and to every goal.
-class Ways {
+class Paths {
  public:
-  Ways(const Roadmap& roadmap, std::size_t starts, std::size_t goals, double detour)
+  Paths(const Roadmap& roadmap, std::size_t starts, std::size_t goals, double detour)
       : starts_(starts), detour_(detour) {
     constexpr std::span<const std::uint32_t> kEverywhere;
     for (std::uint32_t c = 0; c < starts + goals; ++c) from_.emplace_back(roadmap, c, kEverywhere);
@@ -46,8 +46,8 @@ class Ways {
       for (std::size_t j = starts_; j < from_.size(); ++j) {
         const double shortest_m = from_[i].length_m(static_cast<std::uint32_t>(j));
         // Edges are undirected: from the goal is to the goal.
-        const double way_m = from_[i].length_m(u) + length_m + from_[j].length_m(v);
-        if (std::isfinite(way_m) && way_m <= detour_ * shortest_m) return true;
+        const double path_m = from_[i].length_m(u) + length_m + from_[j].length_m(v);
+        if (std::isfinite(path_m) && path_m <= detour_ * shortest_m) return true;
       }
     }
     return false;
@@ -61,13 +61,13 @@ class Ways {
 
 std::vector<Leg> near_shortest(const Roadmap& roadmap, std::size_t starts, std::size_t goals,
                                const TimedNetworkOptions& options, EdgeChecker& checker) {
-  const Ways ways(roadmap, starts, goals, options.detour);
+  const Paths paths(roadmap, starts, goals, options.detour);
   std::vector<Leg> legs;
   for (std::uint32_t u = 0; u < roadmap.nodes.size(); ++u) {
     for (const Roadmap::Arc& arc : roadmap.arcs_of(u)) {
       if (arc.to < u || !std::isfinite(arc.length_m)) continue;
-      const bool there = ways.are_near_shortest(u, arc.to, arc.length_m);
-      const bool back = ways.are_near_shortest(arc.to, u, arc.length_m);
+      const bool there = paths.are_near_shortest(u, arc.to, arc.length_m);
+      const bool back = paths.are_near_shortest(arc.to, u, arc.length_m);
       if (!there && !back) continue;
       const Gaussian& a = roadmap.nodes[u];
       const Gaussian& b = roadmap.nodes[arc.to];
@@ -104,10 +104,10 @@ TimedNetwork::TimedNetwork(const Roadmap& roadmap, std::size_t starts, std::size
                            const TimedNetworkOptions& options, EdgeChecker& checker)
     : starts_(starts), goals_(goals) {
   SWARM_ASSERT(options.step_s >= 0.0 && options.speed.means_mps > 0.0 &&
-               options.delay_price_mps >= 0.0);
+               options.delay_cost_mps >= 0.0);
   const std::vector<Leg> legs = near_shortest(roadmap, starts, goals, options, checker);
   step_s_ = options.step_s > 0.0 ? options.step_s : median_duration_s(legs) / kStepsPerLeg;
-  step_price_m_ = options.delay_price_mps * step_s_;
+  step_cost_m_ = options.delay_cost_mps * step_s_;
   arcs_.resize(roadmap.nodes.size());
   Arcs back(roadmap.nodes.size());
   for (const Leg& leg : legs) {
@@ -193,7 +193,7 @@ TimedNetwork::Unrolled TimedNetwork::unrolled(std::uint32_t horizon,
       net.moves.push_back({v, step, v, step, 0.0});
       if (is_in_time(v, step + 1, horizon)) {
         net.arcs.push_back(
-            {.from = in + 1, .to = in + 2, .cost = is_goal(v) ? 0.0 : step_price_m_});
+            {.from = in + 1, .to = in + 2, .cost = is_goal(v) ? 0.0 : step_cost_m_});
         net.moves.push_back({v, step, v, step + 1, 0.0});
       }
       for (const Arc& arc : arcs_[v]) {
@@ -201,7 +201,7 @@ TimedNetwork::Unrolled TimedNetwork::unrolled(std::uint32_t horizon,
         if (!is_in_time(arc.to, then, horizon)) continue;
         net.arcs.push_back({.from = in + 1,
                             .to = in_of(arc.to, then),
-                            .cost = arc.length_m + arc.steps * step_price_m_});
+                            .cost = arc.length_m + arc.steps * step_cost_m_});
         net.moves.push_back({v, step, arc.to, then, 0.0});
       }
     }

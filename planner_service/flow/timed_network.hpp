@@ -18,7 +18,7 @@ struct TimedNetworkOptions {
   LegSpeed speed{};            ///< ends are legs at a start or goal component
   double step_s = 0.0;         ///< the grid of times; 0 for half of the median leg
   double detour = 1.05;        ///< legs on no way shorter than this many times the shortest are out
-  double delay_price_mps = 0;  ///< what a second of being under way costs, beside the way itself
+  double delay_cost_mps = 0;  ///< what a second of being under way costs, beside the way itself
 };
 
 /// Mass that moves (or waits, when `from` = `to`) between two nodes of the roadmap.
@@ -92,7 +92,7 @@ class TimedNetwork {
 
   std::size_t starts_, goals_;
   double step_s_ = 0.0;
-  double step_price_m_ = 0.0;
+  double step_cost_m_ = 0.0;
   Arcs arcs_;
   std::vector<std::uint32_t> earliest_;  // steps from the nearest start
   std::vector<std::uint32_t> left_;      // steps to the nearest goal

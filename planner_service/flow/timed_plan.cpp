@@ -30,7 +30,7 @@ Copy to_of(const TimedMove& move) { return {move.to, move.to_step}; }
 bool waits(const TimedMove& move) { return move.from == move.to; }
 
 // Leaves out what rounding made: moves of next to nothing, and then those that hang in the air.
-void drop_dust(std::vector<TimedMove>& moves, std::size_t starts, std::size_t goals) {
+void drop_negligible(std::vector<TimedMove>& moves, std::size_t starts, std::size_t goals) {
   std::erase_if(moves, [](const TimedMove& move) { return move.mass < kNothing; });
   std::sort(moves.begin(), moves.end(),
             [](const TimedMove& a, const TimedMove& b) { return from_of(a) < from_of(b); });
@@ -85,7 +85,7 @@ Result<TimedPlan> timed_plan(std::span<const Gaussian> nodes, std::span<const do
                              double step_s) {
   const std::size_t starts = supplies.size();
   const std::size_t goals = demands.size();
-  drop_dust(moves, starts, goals);
+  drop_negligible(moves, starts, goals);
   const std::set<Copy> events = events_of(moves, starts, goals);
 
   std::map<Copy, std::uint32_t> index;

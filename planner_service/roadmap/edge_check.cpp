@@ -50,12 +50,12 @@ EdgeChecker::Rates::Rates(const EdgeEnd& a, const EdgeEnd& b, double k, double d
   // Along a W₂ geodesic σ_max is convex and σ_min concave: the ends bound both.
   const double sigma_max_m = std::max(a.sigma_max_m(), b.sigma_max_m());
   const double sigma_min_m = std::min(a.sigma_min_m(), b.sigma_min_m());
-  const double mean_way_squared = (b.mean_m() - a.mean_m()).squaredNorm();
-  mean_way_m = std::sqrt(mean_way_squared);
-  const double shape_way_m =
-      std::sqrt(std::max(0.0, wasserstein2_squared(a.gaussian(), b.gaussian()) - mean_way_squared));
-  straight_m = mean_way_m + k * shape_way_m;
-  turn_m2 = k * (sigma_max_m - sigma_min_m) * mean_way_m;
+  const double mean_path_squared = (b.mean_m() - a.mean_m()).squaredNorm();
+  mean_path_m = std::sqrt(mean_path_squared);
+  const double shape_path_m =
+      std::sqrt(std::max(0.0, wasserstein2_squared(a.gaussian(), b.gaussian()) - mean_path_squared));
+  straight_m = mean_path_m + k * shape_path_m;
+  turn_m2 = k * (sigma_max_m - sigma_min_m) * mean_path_m;
   distance_min_m = k * sigma_min_m - delta_m;
 }
 
@@ -63,7 +63,7 @@ bool EdgeChecker::is_proven(const Interval& interval, const Rates& rates, double
   const auto& [obstacle, from, to] = interval;
   const double share = to.t - from.t;
   const double distance_m = std::max(
-      rates.distance_min_m, 0.5 * (from.distance_m + to.distance_m - share * rates.mean_way_m));
+      rates.distance_min_m, 0.5 * (from.distance_m + to.distance_m - share * rates.mean_path_m));
   const double rate_m = rates.straight_m + rates.turn_m2 / distance_m;
   return from.slack_m + to.slack_m + 2.0 * tolerance_m >= rate_m * share;
 }
@@ -71,10 +71,10 @@ bool EdgeChecker::is_proven(const Interval& interval, const Rates& rates, double
 bool EdgeChecker::is_free(EdgeEnd& a, EdgeEnd& b, double tolerance_m) {
   const Vec2& from_m = a.mean_m();
   const Vec2& to_m = b.mean_m();
-  const Box way{from_m.cwiseMin(to_m), from_m.cwiseMax(to_m)};
+  const Box path{from_m.cwiseMin(to_m), from_m.cwiseMax(to_m)};
   open_.clear();
   const bool breaks_at_an_end = world_->convex_boxes().any_within(
-      way, reach_m(std::max(a.sigma_max_m(), b.sigma_max_m())), [&](std::uint32_t i) {
+      path, reach_m(std::max(a.sigma_max_m(), b.sigma_max_m())), [&](std::uint32_t i) {
         const EdgeEnd::Seen& from = look(a, i);
         const EdgeEnd::Seen& to = look(b, i);
         if (from.slack_m < 0.0 || to.slack_m < 0.0) return true;

@@ -109,7 +109,7 @@ class EdgeChecker {
     Rates(const EdgeEnd& a, const EdgeEnd& b, double k, double delta_m);
     double straight_m;
     double turn_m2;  // to be divided by the distance of the corner
-    double mean_way_m;
+    double mean_path_m;
     double distance_min_m;  // of the mean, where the limit holds: s ≥ kσ_min − δ
   };
 

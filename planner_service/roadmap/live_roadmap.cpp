@@ -36,7 +36,7 @@ double area_m2(const Box& box) {
   return size_m.x() * size_m.y();
 }
 
-Box way_box(const Gaussian& a, const Gaussian& b) {
+Box path_box(const Gaussian& a, const Gaussian& b) {
   return {a.mean_m().cwiseMin(b.mean_m()), a.mean_m().cwiseMax(b.mean_m())};
 }
 
@@ -104,7 +104,7 @@ bool LiveRoadmap::check(const Gaussian& a, const Gaussian& b) {
 bool LiveRoadmap::needs_check(const Gaussian& a, const Gaussian& b, double sigma_max_m,
                               bool free) const {
   const BoxIndex& changed = free ? added_ : removed_;
-  return changed.any_within(way_box(a, b), checker_.reach_m(sigma_max_m),
+  return changed.any_within(path_box(a, b), checker_.reach_m(sigma_max_m),
                             [](std::uint32_t) { return true; });
 }
 

@@ -26,12 +26,12 @@ Gaussian with_random_shape(const Vec2& mean_m, const SamplerOptions& options, Rn
 
 std::optional<Gaussian> shaped_at(const Vec2& mean_m, const World& world, double k, double delta_m,
                                   const SamplerOptions& options, Rng& rng) {
-  const Gaussian wished = with_random_shape(mean_m, options, rng);
+  const Gaussian desired = with_random_shape(mean_m, options, rng);
   if (options.kind == SamplerKind::kFit) {
-    return squeeze_into_free(wished, world, k, delta_m, kSqueezeBelowMin * options.sigma_min_m);
+    return squeeze_into_free(desired, world, k, delta_m, kSqueezeBelowMin * options.sigma_min_m);
   }
-  if (!in_free(wished, world, k, delta_m)) return std::nullopt;
-  return wished;
+  if (!in_free(desired, world, k, delta_m)) return std::nullopt;
+  return desired;
 }
 
 // Bits of the cell numbers interleaved: cells near each other come near each other.
@@ -45,7 +45,7 @@ std::uint32_t z_order(std::uint32_t column, std::uint32_t row, std::uint32_t bit
 
 // Neighbours in space become neighbours in memory, for what looks at pairs of them. Stable, by
 // counting.
-std::vector<Gaussian> by_place(const std::vector<Gaussian>& samples, const Box& bounds_m) {
+std::vector<Gaussian> by_position(const std::vector<Gaussian>& samples, const Box& bounds_m) {
   std::uint32_t bits = 0;
   while (bits < 12 && (4ULL << (2 * bits)) <= samples.size()) ++bits;
   const std::uint32_t cells = 1U << bits;
@@ -98,7 +98,7 @@ std::vector<Gaussian> sample_free(const World& world, const RiskLimit& risk,
     samples.push_back(*sample);
     tries = 0;
   }
-  return by_place(samples, world.bounds_m());
+  return by_position(samples, world.bounds_m());
 }
 
 }  // namespace swarm::planner

@@ -14,7 +14,7 @@ namespace {
 constexpr int kRounds = 8;
 constexpr int kPushes = 3;
 // Aims a hair below the limit, so that rounding does not leave it a hair above.
-constexpr double kShy = 1.0 - 1e-9;
+constexpr double kShrink = 1.0 - 1e-9;
 
 }  // namespace
 
@@ -41,7 +41,7 @@ std::optional<Gaussian> squeeze_into_free(const Gaussian& g, const World& world,
     const double room_m = at_worst.distance_m + delta_m;
     if (room_m <= 0.0) return std::nullopt;
     const Vec2& n = at_worst.gradient;
-    const double q = kShy * room_m / (k * std::sqrt(squeezed.variance_along_m2(n)));
+    const double q = kShrink * room_m / (k * std::sqrt(squeezed.variance_along_m2(n)));
     const Mat2 a = Mat2::Identity() - (1.0 - q) * n * n.transpose();
     const Mat2 covariance = a * squeezed.covariance_m2() * a;
     if (q < 1e-6) return std::nullopt;

@@ -59,15 +59,15 @@ WorldChange world_change(const World& before, const World& after) {
   Parts new_parts = after.convex_obstacles();
   drop_common_ends(old_parts, new_parts);
   const auto olds = sorted(old_parts);
-  const auto news = sorted(new_parts);
+  const auto sorted_new = sorted(new_parts);
   WorldChange change;
   std::size_t o = 0;
   std::size_t n = 0;
-  while (o < olds.size() || n < news.size()) {
-    if (n == news.size() || (o < olds.size() && shape_less(*olds[o], *news[n]))) {
+  while (o < olds.size() || n < sorted_new.size()) {
+    if (n == sorted_new.size() || (o < olds.size() && shape_less(*olds[o], *sorted_new[n]))) {
       change.removed.push_back(olds[o++]->box);
-    } else if (o == olds.size() || shape_less(*news[n], *olds[o])) {
-      change.added.push_back(news[n++]->box);
+    } else if (o == olds.size() || shape_less(*sorted_new[n], *olds[o])) {
+      change.added.push_back(sorted_new[n++]->box);
     } else {
       ++o;
       ++n;

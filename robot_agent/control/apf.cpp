@@ -73,7 +73,7 @@ Vec2 Apf::attraction_at_will(const ControlView& view, bool arrived, Rng& rng) {
          attraction_to_density(view, arrived);
 }
 
-Vec2 Apf::wish(const ControlView& view, bool arrived, Rng& rng) {
+Vec2 Apf::desired_velocity(const ControlView& view, bool arrived, Rng& rng) {
   const bool keeps_time = options_->keeps_time && view.plan_time;
   return (keeps_time ? attraction_in_time(view, arrived, rng)
                      : attraction_at_will(view, arrived, rng)) +

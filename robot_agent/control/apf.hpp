@@ -51,7 +51,7 @@ class Apf final : public ControlMethod {
 
   void begin(const Route& route, const World& world) override;
   bool has_arrived(const ControlView& view) override;
-  Vec2 wish(const ControlView& view, bool arrived, Rng& rng) override;
+  Vec2 desired_velocity(const ControlView& view, bool arrived, Rng& rng) override;
   Vec2 hold(const ControlView& view) override;
   std::optional<TimeTracking> tracking() const override;
   double lag_s() const override;

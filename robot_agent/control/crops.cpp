@@ -19,31 +19,31 @@ constexpr double kLastSteps_m = 0.25;  // the approach is no slower than from he
 void Crops::begin(const Route& route, const World&) {
   sink_ = route.sink;
   guide_ = GuidePoints(route.path, options_.part(&CropsOptions::guide));
-  place_ = GoalPlace(route.goal, guide_.end_m(), options_.part(&CropsOptions::place));
+  slot_ = GoalSlot(route.goal, guide_.end_m(), options_.part(&CropsOptions::slot));
   remaining_m_ = route.path.length_m();
   escape_.forget();
 }
 
 bool Crops::has_arrived(const ControlView& view) {
-  return place_.has_arrived(view.now, view.position_m);
+  return slot_.has_arrived(view.now, view.position_m);
 }
 
-Vec2 Crops::wish(const ControlView& view, bool arrived, Rng& rng) {
+Vec2 Crops::desired_velocity(const ControlView& view, bool arrived, Rng& rng) {
   const Vec2& x = view.position_m;
   if (arrived) {
-    remaining_m_ = place_.left_m(x);
+    remaining_m_ = slot_.left_m(x);
     escape_.forget();
-    return place_.keep(view);
+    return slot_.keep(view);
   }
-  const Vec2 point_m = guide_.update(x, view.world, place_.is_in_goal(x));
+  const Vec2 point_m = guide_.update(x, view.world, slot_.is_in_goal(x));
   const bool at_end = guide_.is_last();
-  const Vec2 aim_m = at_end ? place_.aim_m() : point_m;
-  remaining_m_ = at_end ? place_.left_m(x) : guide_.remaining_m(x);
+  const Vec2 aim_m = at_end ? slot_.aim_m() : point_m;
+  remaining_m_ = at_end ? slot_.left_m(x) : guide_.remaining_m(x);
   // There is no room in a full goal unless one presses; where even that is in vain, regardless of
   // who is nearer: those have arrived.
-  const bool into_goal = at_end || place_.is_in_goal(point_m);
-  const bool is_blocked = into_goal && place_.is_blocked();
-  const bool presses = is_blocked || (into_goal && place_.is_beside(x));
+  const bool into_goal = at_end || slot_.is_in_goal(point_m);
+  const bool is_blocked = into_goal && slot_.is_blocked();
+  const bool presses = is_blocked || (into_goal && slot_.is_beside(x));
   const Vec2 escape = escape_.update(x, rng);
   // A stuck robot dares to go where walls are near, as in the paper's code; the safety filter minds
   // them.
@@ -67,7 +67,7 @@ Vec2 Crops::wish(const ControlView& view, bool arrived, Rng& rng) {
 
 Vec2 Crops::hold(const ControlView& view) {
   escape_.forget();
-  place_.wait(view.now);
+  slot_.wait(view.now);
   return neighbour_repulsion(view.position_m, view.close, {.radius_m = options_->guide.radius_m}) +
          obstacle_repulsion(view.position_m, view.world, {.radius_m = options_->guide.radius_m});
 }

@@ -9,7 +9,7 @@
 #include "robot_agent/control/crops_fields/heading_field.hpp"
 #include "robot_agent/control/crops_fields/obstacle_field.hpp"
 #include "robot_agent/control/crops_fields/separation_field.hpp"
-#include "robot_agent/control/goal_place.hpp"
+#include "robot_agent/control/goal_slot.hpp"
 #include "robot_agent/control/guide_points.hpp"
 #include "swarm_core/base/shared.hpp"
 
@@ -21,7 +21,7 @@ struct CropsOptions {
   double full_strength = 0.3;     ///< of all fields together from which on it goes at cruise speed
   double stuck_wall_share = 0.1;  ///< of the obstacles' field while the robot is stuck
   GuidePointsOptions guide{};
-  GoalPlaceOptions place{};
+  GoalSlotOptions slot{};
   ObstacleFieldOptions obstacle{};
   SeparationFieldOptions separation{};
   GiveWayFieldOptions give_way{};
@@ -37,7 +37,7 @@ struct CropsOptions {
 /// What differs from the paper, because bodies may not overlap here:
 ///   - who is nearer to the goal goes first (crops_fields/give_way_field.hpp);
 ///   - the end of the way is the robot's own place in the goal, and those that have arrived make
-///     room (goal_place.hpp); there robots do not keep apart, they press;
+///     room (goal_slot.hpp); there robots do not keep apart, they press;
 ///   - where the fields cancel, a robot stands instead of shaking at full speed.
 class Crops final : public ControlMethod {
  public:
@@ -46,7 +46,7 @@ class Crops final : public ControlMethod {
 
   void begin(const Route& route, const World& world) override;
   bool has_arrived(const ControlView& view) override;
-  Vec2 wish(const ControlView& view, bool arrived, Rng& rng) override;
+  Vec2 desired_velocity(const ControlView& view, bool arrived, Rng& rng) override;
   Vec2 hold(const ControlView& view) override;
   std::uint32_t goal(const Vec2&) const override { return sink_; }
   double remaining_m() const override { return remaining_m_; }
@@ -55,7 +55,7 @@ class Crops final : public ControlMethod {
  private:
   Shared<CropsOptions> options_;
   GuidePoints guide_;
-  GoalPlace place_;
+  GoalSlot slot_;
   EscapeWalk escape_;
   double remaining_m_ = 0.0;
   std::uint32_t sink_ = 0;

@@ -30,7 +30,7 @@ CropsOptions crops_options(const Mission& mission, const BodySpec& body) {
                 .passable_m = obstacle_margin_m(mission, body) + 0.01,
                 .goal_radius_m = goal_radius_m(mission),
                 .sight_m = c.look_ahead_s * cruise_mps},
-      .place = {.radius_m = body.radius_m,
+      .slot = {.radius_m = body.radius_m,
                 .room_gap_m = room_gap_m(mission),
                 .approach_gain_hz = c.approach_gain_hz},
       .obstacle = {.radius_m = body.radius_m},

@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kDeep = 6;            // bends of bends
 constexpr double kBetween_m = 0.3;  // a gap between bodies that a robot goes through, beside it
-constexpr double kSkim_m = 0.1;     // what is left of a bend on its way to it
+constexpr double kSkim_m = 0.1;     // what is left of a bend under way to it
 constexpr double kWall_m = 0.05;    // surface distance to obstacles that are no bodies
 constexpr double kLeast_m = 1e-6;
 
@@ -41,7 +41,7 @@ class Detour {
     }
   }
 
-  Vec2 free_place(const Vec2& point_m) const {
+  Vec2 free_position(const Vec2& point_m) const {
     Vec2 p = point_m;
     for (int pass = 0; pass < kDeep; ++pass) {
       for (const Circle& body : bodies_) {
@@ -179,7 +179,7 @@ std::vector<Vec2> around_bodies(const Vec2& from_m, const Vec2& to_m, const Worl
 }
 
 Vec2 beside_bodies(const Vec2& point_m, const World& world, const DetourOptions& options) {
-  return world.bodies().empty() ? point_m : Detour(world, options).free_place(point_m);
+  return world.bodies().empty() ? point_m : Detour(world, options).free_position(point_m);
 }
 
 }  // namespace swarm::agent

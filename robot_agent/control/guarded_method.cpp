@@ -27,7 +27,7 @@ Vec2 GuardedMethod::checked(const Vec2& velocity_mps) {
 
 void GuardedMethod::begin(const FlowPlan& plan, const Route& route, const World& world) {
   guarded(0, [&](ControlMethod& m) {
-    m.see_goals(plan);
+    m.set_goals(plan);
     m.begin(route, world);
     return 0;
   });
@@ -37,9 +37,9 @@ bool GuardedMethod::has_arrived(const ControlView& view) {
   return guarded(false, [&](ControlMethod& m) { return m.has_arrived(view); });
 }
 
-Vec2 GuardedMethod::wish(const ControlView& view, bool arrived, Rng& rng) {
+Vec2 GuardedMethod::desired_velocity(const ControlView& view, bool arrived, Rng& rng) {
   return checked(
-      guarded<Vec2>(Vec2::Zero(), [&](ControlMethod& m) { return m.wish(view, arrived, rng); }));
+      guarded<Vec2>(Vec2::Zero(), [&](ControlMethod& m) { return m.desired_velocity(view, arrived, rng); }));
 }
 
 Vec2 GuardedMethod::hold(const ControlView& view) {

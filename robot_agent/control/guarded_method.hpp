@@ -19,7 +19,7 @@ class GuardedMethod {
 
   void begin(const FlowPlan& plan, const Route& route, const World& world);
   bool has_arrived(const ControlView& view);
-  Vec2 wish(const ControlView& view, bool arrived, Rng& rng);
+  Vec2 desired_velocity(const ControlView& view, bool arrived, Rng& rng);
   Vec2 hold(const ControlView& view);
   std::uint32_t goal(const Vec2& position_m) const;
   std::optional<TimeTracking> tracking() const;

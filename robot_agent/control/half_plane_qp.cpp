@@ -10,8 +10,8 @@ namespace {
 
 constexpr double kSlack_mps = 1e-9;
 
-/// The point of the line n·u = b nearest to `wish` that the disc and the earlier half-planes allow.
-std::optional<Vec2> nearest_on_line(const Vec2& wish, std::span<const HalfPlane> earlier,
+/// The point of the line n·u = b nearest to `desired_velocity` that the disc and the earlier half-planes allow.
+std::optional<Vec2> nearest_on_line(const Vec2& desired_velocity, std::span<const HalfPlane> earlier,
                                     const HalfPlane& line, double speed_max) {
   const double half_chord_squared = speed_max * speed_max - line.bound_mps * line.bound_mps;
   if (half_chord_squared < 0.0) return std::nullopt;  // the line misses the disc
@@ -34,21 +34,21 @@ std::optional<Vec2> nearest_on_line(const Vec2& wish, std::span<const HalfPlane>
     }
     if (low > high + kSlack_mps) return std::nullopt;
   }
-  const double wished = along.dot(wish - foot);
-  return foot + std::clamp(wished, low, std::max(low, high)) * along;
+  const double desired = along.dot(desired_velocity - foot);
+  return foot + std::clamp(desired, low, std::max(low, high)) * along;
 }
 
 }  // namespace
 
-std::optional<Vec2> nearest_velocity(const Vec2& wish_mps, std::span<const HalfPlane> constraints,
+std::optional<Vec2> nearest_velocity(const Vec2& desired_mps, std::span<const HalfPlane> constraints,
                                      double speed_max_mps) {
-  const double wished = wish_mps.norm();
-  Vec2 best = wished > speed_max_mps ? Vec2(wish_mps * (speed_max_mps / wished)) : wish_mps;
+  const double desired = desired_mps.norm();
+  Vec2 best = desired > speed_max_mps ? Vec2(desired_mps * (speed_max_mps / desired)) : desired_mps;
   for (std::size_t i = 0; i < constraints.size(); ++i) {
     const HalfPlane& c = constraints[i];
     if (c.normal.dot(best) <= c.bound_mps + kSlack_mps) continue;
     const std::optional<Vec2> moved =
-        nearest_on_line(wish_mps, constraints.first(i), c, speed_max_mps);
+        nearest_on_line(desired_mps, constraints.first(i), c, speed_max_mps);
     if (!moved) return std::nullopt;
     best = *moved;
   }

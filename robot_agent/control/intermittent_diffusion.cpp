@@ -17,7 +17,7 @@ constexpr double kChiSquared2Dof90 = 4.605170185988091;
 constexpr double kReachShare = 0.05;  // of the distance to the nearest neighbour
 constexpr double kArrive = 0.99;      // of the tolerance; once arrived all of it
 constexpr double kFadeAtRest = 0.1;   // of the range, see CotangentOptions
-constexpr double kRoom = 0.9;         // of the tolerance: here a robot on its way may stay
+constexpr double kRoom = 0.9;         // of the tolerance: here a robot under way may stay
 constexpr double kReached = 1.0;      // radii from the target
 
 bool is_goal_of(const Mixture& mixture, const Gaussian& g) {
@@ -49,7 +49,7 @@ ShapeField shape_of(const std::vector<WeightedGaussian>& components) {
 IntermittentDiffusion::IntermittentDiffusion(Shared<IntermittentDiffusionOptions> options)
     : options_(std::move(options)), shape_(options_->shape) {}
 
-void IntermittentDiffusion::see_goals(const FlowPlan& plan) {
+void IntermittentDiffusion::set_goals(const FlowPlan& plan) {
   goals_.clear();
   bool drawn = options_->shape != nullptr;
   for (const std::uint32_t sink : plan.sinks()) {
@@ -78,7 +78,7 @@ void IntermittentDiffusion::begin(const Route& route, const World&) {
   if (shape_ == nullptr) shape_ = std::make_shared<const ShapeField>(shape_of(goals_));
   begun_ = false;
   resting_ = false;
-  felt_.reset();
+  in_range_.reset();
   arrived_ = false;
 }
 
@@ -103,29 +103,29 @@ double IntermittentDiffusion::reach_m(const ControlView& view) const {
   return kReachShare * std::sqrt(nearest_squared);
 }
 
-const IntermittentDiffusion::Felt& IntermittentDiffusion::feel(const ControlView& view) {
-  if (felt_ && felt_->at == view.now) return *felt_;
+const IntermittentDiffusion::NeighboursInRange& IntermittentDiffusion::find_in_range(const ControlView& view) {
+  if (in_range_ && in_range_->at == view.now) return *in_range_;
   const double reach = reach_m(view);
   CotangentOptions repulsion = options_->repulsion;
   if (resting_) repulsion.fade_share = kFadeAtRest;
-  felt_ = {view.now, reach, cotangent_repulsion(view.position_m, view.neighbours, repulsion, reach),
+  in_range_ = {view.now, reach, cotangent_repulsion(view.position_m, view.neighbours, repulsion, reach),
            shape_attraction(view.position_m, *shape_)};
-  energy_m2_ = felt_->repulsion.energy_m2 + felt_->shape.energy_m2;
+  energy_m2_ = in_range_->repulsion.energy_m2 + in_range_->shape.energy_m2;
   arrived_ = energy_m2_ <= (arrived_ ? 1.0 : kArrive) * options_->tolerance_m2;
-  return *felt_;
+  return *in_range_;
 }
 
 Vec2 IntermittentDiffusion::descend(const Potential& potential, double reach_m) const {
   const double period_s = to_seconds(options_->period);
   const double gain_hz = std::min(options_->gain_hz, 1.0 / (potential.curvature * period_s));
-  const Vec2 wish_mps = -gain_hz * potential.gradient_m;
+  const Vec2 desired_mps = -gain_hz * potential.gradient_m;
   const double limit_mps = std::min(options_->cruise_mps, reach_m / period_s);
-  const double speed_mps = wish_mps.norm();
-  return speed_mps > limit_mps ? Vec2(limit_mps / speed_mps * wish_mps) : wish_mps;
+  const double speed_mps = desired_mps.norm();
+  return speed_mps > limit_mps ? Vec2(limit_mps / speed_mps * desired_mps) : desired_mps;
 }
 
 bool IntermittentDiffusion::has_arrived(const ControlView& view) {
-  feel(view);
+  find_in_range(view);
   return arrived_;
 }
 
@@ -148,8 +148,8 @@ void IntermittentDiffusion::diffuse(const ControlView& view, Rng& rng) {
   enter(Phase::kTarget, view, rng);
 }
 
-Vec2 IntermittentDiffusion::wish(const ControlView& view, bool, Rng& rng) {
-  const Felt& felt = feel(view);
+Vec2 IntermittentDiffusion::desired_velocity(const ControlView& view, bool, Rng& rng) {
+  const NeighboursInRange& in_range = find_in_range(view);
   if (!begun_) enter(Phase::kShape, view, rng);
 
   const double to_target_m = (target_.end_m - view.position_m).norm();
@@ -167,18 +167,18 @@ Vec2 IntermittentDiffusion::wish(const ControlView& view, bool, Rng& rng) {
   }
 
   const bool to_target = phase_ == Phase::kTarget;
-  Potential v = felt.repulsion;
-  v += to_target ? target_attraction(view.position_m, target_) : felt.shape;
-  remaining_m_ = to_target ? to_target_m : std::sqrt(felt.shape.energy_m2);
+  Potential v = in_range.repulsion;
+  v += to_target ? target_attraction(view.position_m, target_) : in_range.shape;
+  remaining_m_ = to_target ? to_target_m : std::sqrt(in_range.shape.energy_m2);
   resting_ = resting_ && arrived_ && !to_target;
-  return descend(v, felt.reach_m) +
+  return descend(v, in_range.reach_m) +
          obstacle_repulsion(view.position_m, view.world, options_->obstacles);
 }
 
 Vec2 IntermittentDiffusion::hold(const ControlView& view) {
   begun_ = false;
-  const Felt& felt = feel(view);
-  return descend(felt.repulsion, felt.reach_m) +
+  const NeighboursInRange& in_range = find_in_range(view);
+  return descend(in_range.repulsion, in_range.reach_m) +
          obstacle_repulsion(view.position_m, view.world, options_->obstacles);
 }
 

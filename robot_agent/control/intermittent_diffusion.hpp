@@ -54,10 +54,10 @@ class IntermittentDiffusion final : public ControlMethod {
  public:
   explicit IntermittentDiffusion(Shared<IntermittentDiffusionOptions> options);
 
-  void see_goals(const FlowPlan& plan) override;
+  void set_goals(const FlowPlan& plan) override;
   void begin(const Route& route, const World& world) override;
   bool has_arrived(const ControlView& view) override;
-  Vec2 wish(const ControlView& view, bool arrived, Rng& rng) override;
+  Vec2 desired_velocity(const ControlView& view, bool arrived, Rng& rng) override;
   Vec2 hold(const ControlView& view) override;
   /// The goal component of the largest weighted density.
   std::uint32_t goal(const Vec2& position_m) const override;
@@ -70,7 +70,7 @@ class IntermittentDiffusion final : public ControlMethod {
  private:
   enum class Phase { kShape, kTarget };
   /// What it feels at a tick: asked by has_arrived() and wish(), taken once.
-  struct Felt {
+  struct NeighboursInRange {
     SteadyTime at;
     double reach_m = 0.0;
     Potential repulsion;  // G
@@ -78,7 +78,7 @@ class IntermittentDiffusion final : public ControlMethod {
   };
 
   void weigh_goals();
-  const Felt& feel(const ControlView& view);
+  const NeighboursInRange& find_in_range(const ControlView& view);
   void enter(Phase phase, const ControlView& view, Rng& rng);
   void diffuse(const ControlView& view, Rng& rng);
   double reach_m(const ControlView& view) const;
@@ -92,7 +92,7 @@ class IntermittentDiffusion final : public ControlMethod {
   bool begun_ = false;  // a phase is on
   SteadyTime until_;    // of the phase
   Target target_;
-  std::optional<Felt> felt_;
+  std::optional<NeighboursInRange> in_range_;
   bool arrived_ = false;
   bool resting_ = false;  // arrived, and (10) is through
   double energy_m2_ = 0.0;

@@ -15,7 +15,7 @@ Vec2 neighbour_repulsion(const Vec2& position_m, std::span<const Neighbour> neig
     const Vec2 away = position_m - n.position_m;
     const double distance = away.norm();
     const double gap = distance - options.radius_m - n.radius_m;
-    // Who is near is a coin toss: no branch, which clamping to constants would be.
+    // Who is near is unpredictable: no branch, which clamping to constants would be.
     const double strength = per_m * (gap_m - std::min(std::max(gap, 0.0), gap_m));
     push += strength / std::max(distance, 1e-9) * away;
   }

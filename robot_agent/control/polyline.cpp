@@ -27,7 +27,7 @@ Polyline::Segment Polyline::segment(double s_m, std::size_t near) const {
   return {i, vertices_[i], vertices_[i + 1], arc_[i], arc_[i + 1]};
 }
 
-Polyline::Place Polyline::Segment::place(double s_m) const {
+Polyline::Position Polyline::Segment::position(double s_m) const {
   const double length_m = end_s_m - begin_s_m;
   if (length_m <= 0.0) return {begin_m, Vec2::Zero()};
   const double t = (std::clamp(s_m, begin_s_m, end_s_m) - begin_s_m) / length_m;

@@ -23,7 +23,7 @@ Pursuit::Pursuit(Polyline path, const World& world, Shared<PursuitOptions> optio
     : path_(std::move(path)),
       options_(std::move(options)),
       segment_(path_.segment(0.0)),
-      here_(segment_.place(0.0)) {
+      here_(segment_.position(0.0)) {
   const double most_m = options_->radius_m + options_->keep_clearance_m;
   const auto pieces = static_cast<std::size_t>(path_.length_m() / kSample_m) + 1;
   clearance_m_.reserve(pieces);
@@ -33,7 +33,7 @@ Pursuit::Pursuit(Polyline path, const World& world, Shared<PursuitOptions> optio
     const double s = (static_cast<double>(i) + 0.5) * kSample_m;
     const Polyline::Segment on = path_.segment(s, segment);
     segment = on.index;
-    const double least_m = world.distance_m(on.place(s).point_m) - 0.5 * kSample_m;
+    const double least_m = world.distance_m(on.position(s).point_m) - 0.5 * kSample_m;
     clearance_m_.push_back(static_cast<float>(std::clamp(least_m, 0.0, most_m)));
   }
 }
@@ -54,7 +54,7 @@ double Pursuit::planned_clearance_m(double from_s_m, double to_s_m) const {
 void Pursuit::move_to(double s_m) {
   s_m_ = s_m;
   if (!segment_.holds(s_m)) segment_ = path_.segment(s_m, segment_.index);
-  here_ = segment_.place(s_m);
+  here_ = segment_.position(s_m);
 }
 
 void Pursuit::advance(const Vec2& position_m) {
@@ -77,7 +77,7 @@ Pursuit::Aim Pursuit::aim(const Vec2& position_m) const {
           .rest_m = std::max(0.0, carrot_m_ - aim_s_m_),
           .visible = true};
   if (s_m_ >= aim_s_m_ && carrot_m_ < path_.length_m()) {
-    const Vec2 tangent = path_.segment(aim_s_m_, segment_.index).place(aim_s_m_).tangent;
+    const Vec2 tangent = path_.segment(aim_s_m_, segment_.index).position(aim_s_m_).tangent;
     aim.past_m = std::max(0.0, (position_m - aim_m_).dot(tangent) - aim.rest_m);
   }
   return aim;

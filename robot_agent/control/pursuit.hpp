@@ -66,7 +66,7 @@ class Pursuit {
   Shared<PursuitOptions> options_;
   double s_m_ = 0.0;
   Polyline::Segment segment_;  // that s_m_ is on; the others are far off in memory
-  Polyline::Place here_;       // at s_m_
+  Polyline::Position here_;       // at s_m_
   double carrot_m_ = 0.0;      // of the last update
   double aim_s_m_ = 0.0;       // of the last visible aim
   Vec2 aim_m_ = Vec2::Zero();

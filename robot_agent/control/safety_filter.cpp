@@ -21,9 +21,9 @@ constexpr double kEvade = 1.0 / 3.0;             // of the margin: kept to who d
 constexpr double kFollows = 3.5;       // periods: who is known from before may have turned
 constexpr double kFresh = 1.01;        // periods: known at once, but for rounding
 constexpr double kWithdraw = 0.9;      // of the largest speed: out of an obstacle
-constexpr double kStands_m2ps = 1e-9;  // does not leave anybody
+constexpr double kStopped_m2ps = 1e-9;  // does not leave anybody
 constexpr double kNever_m2 = 1e9;
-constexpr double kLeastWish_mps = 0.1;  // slower wishes are not worth a detour
+constexpr double kLeastDesired_mps = 0.1;  // slower wishes are not worth a detour
 
 }  // namespace
 
@@ -70,15 +70,15 @@ void SafetyFilter::collect_obstacles(const Vec2& position_m, Lines& lines) const
 }
 
 /// The time in which a neighbour's half of the gap may be closed, and what follows from it.
-SafetyFilter::Pace SafetyFilter::pace(double stale_s) const {
+SafetyFilter::Pace SafetyFilter::pace(double information_age_s) const {
   const double period_s = to_seconds(options_->period);
   const double time_s = period_s + options_->gap_share * options_->lag_s +
-                        options_->stale_gain * std::max(0.0, stale_s - period_s);
-  const double given_up_m = options_->speed_max_mps * std::max(stale_s, period_s);
+                        options_->stale_gain * std::max(0.0, information_age_s - period_s);
+  const double given_up_m = options_->speed_max_mps * std::max(information_age_s, period_s);
   return {
       .closing_hz = options_->gap_share / (2.0 * time_s),
       // If it stops at once …
-      .follow = stale_s > kFollows * period_s
+      .follow = information_age_s > kFollows * period_s
                     ? 0.0
                     : std::min(options_->follow_share,
                                kFollowMargin * options_->neighbour_margin_m / given_up_m),
@@ -92,11 +92,11 @@ void SafetyFilter::collect_neighbours(const Vec2& position_m, std::span<const Ne
   const double v_max = options_->speed_max_mps;
   const double margin_m = options_->neighbour_margin_m;
   const double evading_hz = 1.0 / horizon_s;
-  const double stalled_reach_m = kEvade * margin_m + v_max * horizon_s;
+  const double possible_stop_reach_m = kEvade * margin_m + v_max * horizon_s;
   lines.make_room(2 * neighbours.size());
   HalfPlane* next = lines.buffer.data() + lines.count;
   for (const Neighbour& n : neighbours) {
-    const Pace late = n.stale_s > kFresh * period_s ? pace(n.stale_s) : fresh_;
+    const Pace late = n.information_age_s > kFresh * period_s ? pace(n.information_age_s) : fresh_;
     const double sum_m = options_->radius_m + n.radius_m;
     const Vec2 offset = n.position_m - position_m;
     const double distance = offset.norm();
@@ -112,9 +112,9 @@ void SafetyFilter::collect_neighbours(const Vec2& position_m, std::span<const Ne
     const double bound = std::min(share, evade);
     *next = {towards, std::max(bound, -v_max)};
     next += bound < v_max;
-    const double left_behind_m = n.stalled_s * leaving;
-    if (std::min(left_behind_m, stalled_reach_m + left_behind_m - gap) > 0.0) {
-      if (const auto line = off_stalled(position_m, n, sum_m)) *next++ = *line;
+    const double left_behind_m = n.possible_stop_age_s * leaving;
+    if (std::min(left_behind_m, possible_stop_reach_m + left_behind_m - gap) > 0.0) {
+      if (const auto line = off_possible_stop(position_m, n, sum_m)) *next++ = *line;
     }
   }
   lines.count = static_cast<std::size_t>(next - lines.buffer.data());
@@ -122,9 +122,9 @@ void SafetyFilter::collect_neighbours(const Vec2& position_m, std::span<const Ne
 
 /// Keeps off where the neighbour is if it stalled when that is worst for us: the nearest place of
 /// its way since. One that stands does not come nearer, so neither must we: no more is asked.
-std::optional<HalfPlane> SafetyFilter::off_stalled(const Vec2& position_m, const Neighbour& n,
+std::optional<HalfPlane> SafetyFilter::off_possible_stop(const Vec2& position_m, const Neighbour& n,
                                                    double sum_m) const {
-  const Vec2 back = -n.stalled_s * n.velocity_mps;
+  const Vec2 back = -n.possible_stop_age_s * n.velocity_mps;
   const double share = (position_m - n.position_m).dot(back) / back.squaredNorm();
   const Vec2 offset = n.position_m + std::clamp(share, 0.0, 1.0) * back - position_m;
   const double distance = offset.norm();
@@ -150,16 +150,16 @@ Listeners SafetyFilter::listeners(const Vec2& position_m, const Vec2& velocity_m
     const double coming_m2ps = positive_part(offset.dot(n.velocity_mps));
     const double spare_m2 = positive_part((gap_m - kept_m) * distance - horizon_s * coming_m2ps);
     const double never_m2 = leaving_m2ps > 0.0 ? 0.0 : kNever_m2;
-    found.patience_s =
-        std::min(found.patience_s, (spare_m2 + never_m2) / std::max(leaving_m2ps, kStands_m2ps));
+    found.timeout_s =
+        std::min(found.timeout_s, (spare_m2 + never_m2) / std::max(leaving_m2ps, kStopped_m2ps));
   }
-  found.patience_s += horizon_s - options_->lag_s;
+  found.timeout_s += horizon_s - options_->lag_s;
   return found;
 }
 
 /// All who are too near give in by the same speed, the least that leaves a common point. Nobody
 /// comes nearer for it.
-Vec2 SafetyFilter::least_violation(const Vec2& wish_mps, Lines& lines) const {
+Vec2 SafetyFilter::least_violation(const Vec2& desired_mps, Lines& lines) const {
   const std::span<const HalfPlane> all = lines.all();
   lines.relaxed.assign(all.begin(), all.end());
   const auto relax = [&](double by_mps) {
@@ -167,7 +167,7 @@ Vec2 SafetyFilter::least_violation(const Vec2& wish_mps, Lines& lines) const {
       const double bound = all[i].bound_mps;
       if (bound < 0.0) lines.relaxed[i].bound_mps = std::min(0.0, bound + by_mps);
     }
-    return nearest_velocity(wish_mps, lines.relaxed, options_->speed_max_mps);
+    return nearest_velocity(desired_mps, lines.relaxed, options_->speed_max_mps);
   };
   double low = 0.0;
   double high = 0.0;
@@ -187,28 +187,28 @@ Vec2 SafetyFilter::least_violation(const Vec2& wish_mps, Lines& lines) const {
   return *best;
 }
 
-Vec2 SafetyFilter::nearest(const Vec2& wish_mps, Lines& lines) const {
-  if (auto u = nearest_velocity(wish_mps, lines.all(), options_->speed_max_mps)) return *u;
-  return least_violation(wish_mps, lines);
+Vec2 SafetyFilter::nearest(const Vec2& desired_mps, Lines& lines) const {
+  if (auto u = nearest_velocity(desired_mps, lines.all(), options_->speed_max_mps)) return *u;
+  return least_violation(desired_mps, lines);
 }
 
-Vec2 SafetyFilter::filter(const Vec2& position_m, const Vec2& wish_mps,
+Vec2 SafetyFilter::filter(const Vec2& position_m, const Vec2& desired_mps,
                           std::span<const Neighbour> neighbours, bool gives_way) const {
   static thread_local Lines lines;
   lines.count = 0;
   collect_obstacles(position_m, lines);
   collect_neighbours(position_m, neighbours, lines);
-  const Vec2 u = nearest(wish_mps, lines);
-  const double wished = wish_mps.norm();
-  if (!gives_way || wished < kLeastWish_mps) return u;
-  if (u.dot(wish_mps) > kBlocked * wished * wished) return u;
+  const Vec2 u = nearest(desired_mps, lines);
+  const double desired = desired_mps.norm();
+  if (!gives_way || desired < kLeastDesired_mps) return u;
+  if (u.dot(desired_mps) > kBlocked * desired * desired) return u;
   Vec2 turned = u;
   for (const double turn_rad : kTurns_rad) {
     const double c = std::cos(turn_rad);
     const double s = std::sin(turn_rad);
     turned =
-        nearest({c * wish_mps.x() + s * wish_mps.y(), c * wish_mps.y() - s * wish_mps.x()}, lines);
-    if (turned.norm() > kFree * wished) break;
+        nearest({c * desired_mps.x() + s * desired_mps.y(), c * desired_mps.y() - s * desired_mps.x()}, lines);
+    if (turned.norm() > kFree * desired) break;
   }
   return turned;
 }

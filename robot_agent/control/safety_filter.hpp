@@ -17,7 +17,7 @@ struct SafetyOptions {
   double radius_m = 0.2;
   double speed_max_mps = 1.5;
   Duration period{};                 ///< Δt, of control
-  double lag_s = 0.0;                ///< λ: until the body is at a velocity it is told
+  double lag_s = 0.0;                ///< λ: until the body is at a velocity it is given
   double gap_share = 0.5;            ///< γ
   double stale_gain = 1.0;           ///< a
   double neighbour_margin_m = 0.25;  ///< m
@@ -29,7 +29,7 @@ struct SafetyOptions {
 struct Listeners {
   double nearest_gap_m = std::numeric_limits<double>::infinity();  ///< surface to surface
   /// From so long a silence on one that follows, should it obey, brakes for fear of a stall.
-  double patience_s = 1e9;
+  double timeout_s = 1e9;
 };
 
 /// The layer under every control method: the velocity nearest to the wished one that keeps its
@@ -42,7 +42,7 @@ struct Listeners {
 ///   bounds:       the same with the four walls of the world
 ///
 /// n points to the neighbour, or into the obstacle; v_j is what the neighbour said of its velocity;
-/// gap_s, and its n, are to where it is if it stalled after its last word.
+/// gap_s, and its n, are to where it is if it stalled after its last state update.
 ///
 /// What is promised, given speeds of at most v_max and commands that run out after 2Δt:
 ///
@@ -65,11 +65,11 @@ struct Listeners {
 ///    wish is blocked by robots that face it turns its wish to its right, as everyone does, so that
 ///    opposing streams part into lanes.
 ///
-/// λ = 0 for a body that has the velocity it is told at once. One that takes until λ = v_max/a for
+/// λ = 0 for a body that has the velocity it is given at once. One that takes until λ = v_max/a for
 /// it is asked for no deceleration above a: towards an obstacle v/(2Δt + λ) < v/λ ≤ a, and of two
 /// that close in on each other each 2γv/(2Δt + 2γλ) < a. Bodies that leave the commanded direction
 /// (a unicycle while it turns, any with motion noise) may come as much nearer as they leave it by,
-/// and the margins must hold that. What is told to others must then be the measured velocity: β
+/// and the margins must hold that. What is given to others must then be the measured velocity: β
 /// trusts it.
 class SafetyFilter {
  public:
@@ -77,7 +77,7 @@ class SafetyFilter {
 
   /// No allocation once warm. Cost: O(obstacles in reach + neighbours). `gives_way` allows the turn
   /// to the right: not where robots settle.
-  Vec2 filter(const Vec2& position_m, const Vec2& wish_mps, std::span<const Neighbour> neighbours,
+  Vec2 filter(const Vec2& position_m, const Vec2& desired_mps, std::span<const Neighbour> neighbours,
               bool gives_way = false) const;
 
   /// What it means to `neighbours` that a robot at `position_m` goes at `velocity_mps`.
@@ -89,15 +89,15 @@ class SafetyFilter {
     double closing_hz;  ///< γ / (2T)
     double follow;      ///< β
   };
-  Pace pace(double stale_s) const;
+  Pace pace(double information_age_s) const;
   struct Lines;
   void collect_obstacles(const Vec2& position_m, Lines& lines) const;
   void collect_neighbours(const Vec2& position_m, std::span<const Neighbour> neighbours,
                           Lines& lines) const;
-  std::optional<HalfPlane> off_stalled(const Vec2& position_m, const Neighbour& n,
+  std::optional<HalfPlane> off_possible_stop(const Vec2& position_m, const Neighbour& n,
                                        double sum_m) const;
-  Vec2 nearest(const Vec2& wish_mps, Lines& lines) const;
-  Vec2 least_violation(const Vec2& wish_mps, Lines& lines) const;
+  Vec2 nearest(const Vec2& desired_mps, Lines& lines) const;
+  Vec2 least_violation(const Vec2& desired_mps, Lines& lines) const;
 
   const World& world_;
   Shared<SafetyOptions> options_;

@@ -30,7 +30,7 @@ struct DiffusionPotential {
 ///   dX = −∇(F + G) dt + σ dW,     then σ = 0 for the last fifth of the steps
 ///
 /// by Euler–Maruyama, mirrored at the border of the world; a step that would hit an obstacle is not
-/// made, as a mirror would have it on average. Neighbours stand where they are heard now. If
+/// made, as a mirror would have it on average. Neighbours stand where they are received now. If
 /// `in_sight`, the last place of the path is taken that can be reached straight. 128 steps, about
 /// 20 µs; does not allocate.
 Vec2 virtual_diffusion(const Vec2& from_m, const DiffusionPotential& potential, const World& world,

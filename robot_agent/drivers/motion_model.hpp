@@ -6,7 +6,7 @@
 
 namespace swarm::agent {
 
-/// What a body can do with a velocity it is told: f of x(k+1) = f(x(k), u(k)) [ROVER, eq. 9]. Moves
+/// What a body can do with a velocity it is given: f of x(k+1) = f(x(k), u(k)) [ROVER, eq. 9]. Moves
 /// by the time it is given, without noise.
 class MotionModel {
  public:
@@ -20,7 +20,7 @@ class MotionModel {
 
   virtual Vec2 position_m() const = 0;
   virtual Vec2 velocity_mps() const = 0;
-  virtual bool has_lag() const = 0;  ///< whether it takes time to be at a velocity it is told
+  virtual bool has_lag() const = 0;  ///< whether it takes time to be at a velocity it is given
 };
 
 /// The part of a velocity that a body with this top speed can do.

@@ -25,7 +25,7 @@ struct SimulatedNoise {
 ///
 ///   x(k+1) = f(x(k), u(k)) + w(k)  [ROVER, eq. 9],  y(k) = x(k) + n(k)
 ///
-/// f is a motion model, a step k ends with each measurement. When its command runs out it is told
+/// f is a motion model, a step k ends with each measurement. When its command runs out it is given
 /// to stand, which one with inertia does as fast as it can. Deterministic in its seed.
 class SimulatedRobot final : public Driver {
  public:

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "swarm_core/blackbox/record.hpp"
+#include "swarm_core/robot_log/record.hpp"
 
 namespace swarm::agent {
 
@@ -12,9 +12,9 @@ namespace swarm::agent {
 class RobotLog {
  public:
   virtual ~RobotLog() = default;
-  virtual void append(const blackbox::Step& step) = 0;
-  virtual void append(const blackbox::Belief& estimate) = 0;
-  virtual void append(blackbox::Note note) = 0;
+  virtual void append(const robot_log::Step& step) = 0;
+  virtual void append(const robot_log::Estimate& estimate) = 0;
+  virtual void append(robot_log::Note note) = 0;
 };
 
 }  // namespace swarm::agent

@@ -26,9 +26,9 @@ std::int32_t to_us(Duration d) {
 
 /// Index of the goal as recorded.
 std::uint8_t RobotLoop::goal() const {
-  if (!agent_.has_route()) return blackbox::Step::kNoGoal;
+  if (!agent_.has_route()) return robot_log::Step::kNoGoal;
   return static_cast<std::uint8_t>(
-      std::min(agent_.goal(position_m_), blackbox::Step::kNoGoal - 1U));
+      std::min(agent_.goal(position_m_), robot_log::Step::kNoGoal - 1U));
 }
 
 /// Measures where the body is; a new plan is entered from there.
@@ -36,7 +36,7 @@ Measurement RobotLoop::measure(const RobotTick& tick, const RobotParts& parts) {
   const Measurement body = parts.driver.measure(tick.now);
   position_m_ = body.position_m;
   if (body.command_expired) {  // the body stopped between two ticks: the path has a point there
-    parts.log.append(blackbox::Step{.stamp = tick.utc_now - (tick.now - body.expired_at),
+    parts.log.append(robot_log::Step{.stamp = tick.utc_now - (tick.now - body.expired_at),
                                     .position_m = body.expired_position_m,
                                     .mode = static_cast<std::uint8_t>(output_.mode),
                                     .goal = goal()});
@@ -46,7 +46,7 @@ Measurement RobotLoop::measure(const RobotTick& tick, const RobotParts& parts) {
     if (tick.plan_time) plan_time_s = tick.plan_time->plan_time_s;
     agent_.accept_plan(tick.new_plan->flow, position_m_, tick.new_plan->entry, plan_time_s);
     parts.log.append(
-        blackbox::Note{.stamp = tick.utc_now,
+        robot_log::Note{.stamp = tick.utc_now,
                        .code = "plan",
                        .text = "took plan version " + std::to_string(tick.plan_version)});
   }
@@ -73,14 +73,14 @@ void RobotLoop::decide(const RobotTick& tick, const RobotParts& parts, const Mea
   }
   update_fault(body.is_valid, parts.driver);
   const bool mode_changed = output_.mode != mode_before;
-  has_news_ = mode_changed || (output_.settled && !was_settled);
+  has_updates_ = mode_changed || (output_.settled && !was_settled);
 
   const bool is_first = ticks_++ == 0;
   if (tick.lateness > kLate) ++late_ticks_;
   log_step(tick, parts.log, body.true_position_m.value_or(body.position_m));
   if (!mode_changed && !is_first) return;
   parts.log.append(
-      blackbox::Note{.stamp = tick.utc_now,
+      robot_log::Note{.stamp = tick.utc_now,
                      .caused = output_.mode == RobotMode::kStopped ? tick.stop_sent : UtcTime{},
                      .code = "mode",
                      .text = std::string(to_string(output_.mode))});
@@ -111,7 +111,7 @@ void RobotLoop::update_fault(bool has_position, const Driver& driver) {
 
 void RobotLoop::log_step(const RobotTick& tick, RobotLog& log, const Vec2& true_position_m) const {
   const TimeTracking tracking = output_.tracking.value_or(TimeTracking{});
-  log.append(blackbox::Step{.stamp = tick.utc_now,
+  log.append(robot_log::Step{.stamp = tick.utc_now,
                             .position_m = true_position_m,
                             .velocity_mps = output_.velocity_mps,
                             .lateness_us = to_us(tick.lateness),
@@ -122,10 +122,10 @@ void RobotLoop::log_step(const RobotTick& tick, RobotLog& log, const Vec2& true_
                             .plan_time_s = static_cast<float>(tracking.plan_time_s),
                             .reference_x_m = static_cast<float>(tracking.reference_m.x()),
                             .reference_y_m = static_cast<float>(tracking.reference_m.y())});
-  if (ticks_ % kTicksPerEstimate != 0 || output_.believed.empty()) return;
+  if (ticks_ % kTicksPerEstimate != 0 || output_.estimated.empty()) return;
   // Each of the neighbours in its turn.
-  const Neighbour& one = output_.believed[ticks_ / kTicksPerEstimate % output_.believed.size()];
-  log.append(blackbox::Belief{
+  const Neighbour& one = output_.estimated[ticks_ / kTicksPerEstimate % output_.estimated.size()];
+  log.append(robot_log::Estimate{
       .stamp = tick.utc_now, .neighbour = one.robot, .position_m = one.position_m});
 }
 
@@ -135,13 +135,13 @@ link::RobotStateMessage RobotLoop::next_state(UtcTime utc_now) {
           .stamp_utc_ns = utc_now.time_since_epoch().count(),
           .x_m = position_m_.x(),
           .y_m = position_m_.y(),
-          .vx_mps = output_.told_mps.x(),
-          .vy_mps = output_.told_mps.y(),
+          .vx_mps = output_.reported_mps.x(),
+          .vy_mps = output_.reported_mps.y(),
           .mode = output_.mode};
 }
 
 link::RobotStatusMessage RobotLoop::status() const {
-  constexpr double kNobodyNear_m = 1e9;  // finite, as everything on the bus
+  constexpr double kNoNeighbourGap_m = 1e9;  // finite, as everything on the bus
   return {
       .robot_id = id_.value(),
       .mode = output_.mode,
@@ -151,7 +151,7 @@ link::RobotStatusMessage RobotLoop::status() const {
       .y_m = position_m_.y(),
       .remaining_m = output_.remaining_m,
       .lag_s = agent_.lag_s(),
-      .nearest_gap_m = std::isfinite(output_.nearest_gap_m) ? output_.nearest_gap_m : kNobodyNear_m,
+      .nearest_gap_m = std::isfinite(output_.nearest_gap_m) ? output_.nearest_gap_m : kNoNeighbourGap_m,
       .neighbours_heard = output_.neighbours,
       .ticks = ticks_,
       .late_ticks = late_ticks_,

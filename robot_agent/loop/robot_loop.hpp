@@ -65,14 +65,14 @@ class RobotLoop {
   void step(const RobotTick& tick, const RobotParts& parts, Bus& bus) {
     const Measurement body = measure(tick, parts);
     bus.receive(position_m_, [&](const NeighbourReport& report, Duration age) {
-      if (agent_.hear(report, position_m_, age) != NeighbourTable::Outcome::kTaken) return;
+      if (agent_.receive(report, position_m_, age) != NeighbourTable::Outcome::kTaken) return;
       ++states_received_;
       if (parts.state_ages != nullptr) {
         parts.state_ages->add(age / std::chrono::microseconds(1));
       }
     });
     decide(tick, parts, body);
-    if (output_.say) bus.publish(next_state(tick.utc_now));
+    if (output_.send) bus.publish(next_state(tick.utc_now));
   }
 
   /// What the robot tells of itself to planner and launcher.
@@ -80,7 +80,7 @@ class RobotLoop {
 
   /// Whether the last step has something that is reported at once: another mode, or coming to rest
   /// at the goal.
-  bool has_news() const { return has_news_; }
+  bool has_updates() const { return has_updates_; }
 
   /// What is wrong with the robot: its control method, its position, its driver's health. Empty
   /// while all is well.
@@ -120,7 +120,7 @@ class RobotLoop {
   std::uint32_t late_ticks_ = 0;
   std::uint32_t states_sent_ = 0;  // the sequence number of the last
   std::uint32_t states_received_ = 0;
-  bool has_news_ = false;
+  bool has_updates_ = false;
   Vec2 position_m_ = Vec2::Zero();
   AgentOutput output_;
   std::string fault_;

@@ -22,7 +22,7 @@ Result<std::unique_ptr<link::StateChannel>> make_group_channel(
   link::GroupChannelOptions groups{
       .domain = run.domain, .interface = run.interface, .faults = faults};
   groups.cells.cell_size_m = spec.group_cell_size_m;
-  groups.cells.hear_radius_m = spec.hear_radius_m;
+  groups.cells.communication_radius_m = spec.communication_radius_m;
   return link::make_group_channel(groups);
 }
 
@@ -53,7 +53,7 @@ Result<BusAccess> open_endpoints(std::unique_ptr<link::Participant> participant)
 void open_topic_channel(BusAccess& access, const LinkSpec& spec) {
   access.states =
       link::make_topic_channel(*access.participant, {.cell_size_m = spec.cell_size_m,
-                                                     .hear_radius_m = spec.hear_radius_m,
+                                                     .communication_radius_m = spec.communication_radius_m,
                                                      .join_margin_m = spec.join_margin_m,
                                                      .leave_margin_m = spec.leave_margin_m});
 }

@@ -20,18 +20,18 @@ constexpr std::uint32_t kRecordsAtOnce = 10;
 
 /// A respawned robot's body is where its log last saw it; a new one at its place in the mission.
 Result<Vec2> first_position(const std::filesystem::path& log_file, const Vec2& placed_m) {
-  const auto last = blackbox::last_steps(log_file);
+  const auto last = robot_log::last_steps(log_file);
   if (!last) return tl::unexpected(last.error());
   return last->empty() ? placed_m : last->back().position_m;
 }
 
 Result<LogFile> open_log(const Mission& mission, const LocalRobotsSpec& spec, RobotId robot) {
-  const auto file = blackbox::file_of(spec.run_dir, robot);
+  const auto file = robot_log::file_of(spec.run_dir, robot);
   auto writer = spec.count < kManyRobots
-                    ? blackbox::Writer::open(file)
-                    : blackbox::Writer::open(file, kRecordsAtOnce, robot.value() % kRecordsAtOnce);
+                    ? robot_log::Writer::open(file)
+                    : robot_log::Writer::open(file, kRecordsAtOnce, robot.value() % kRecordsAtOnce);
   if (!writer) return tl::unexpected(writer.error());
-  writer->append(blackbox::Header{.robot = robot,
+  writer->append(robot_log::Header{.robot = robot,
                                   .robots = mission.robots.count,
                                   .process_id = static_cast<std::uint32_t>(::getpid()),
                                   .radius_m = body_of(mission.robots, robot).radius_m,
@@ -74,7 +74,7 @@ Result<LocalRobots> make_local_robots(const Mission& mission, const World& world
   for (std::uint32_t i = 0; i < spec.count; ++i) {
     const RobotId id(spec.first.value() + i);
     const Vec2& placed_m = (*places)[id.value()];
-    const auto position_m = first_position(blackbox::file_of(spec.run_dir, id), placed_m);
+    const auto position_m = first_position(robot_log::file_of(spec.run_dir, id), placed_m);
     if (!position_m) return tl::unexpected(position_m.error());
     auto log = open_log(mission, spec, id);
     if (!log) return tl::unexpected(log.error());

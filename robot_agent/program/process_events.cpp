@@ -25,7 +25,7 @@ void ProcessEvents::on_tick(SteadyTime now, UtcTime utc_now, Inbox& inbox,
 
 void ProcessEvents::record_link_stats(UtcTime utc_now, Inbox& inbox, const Histogram& state_age) {
   for (LocalRobot& robot : robots_) {
-    blackbox::LinkStats stats{.stamp = utc_now,
+    robot_log::LinkStats stats{.stamp = utc_now,
                               .states_sent = robot.loop.states_sent(),
                               .states_received = robot.loop.states_received()};
     if (&robot == &robots_.front()) {
@@ -44,7 +44,7 @@ void ProcessEvents::announce(UtcTime utc_now, link::Severity severity, const std
                  .stamp_utc_ns = utc_now.time_since_epoch().count(),
                  .code = code,
                  .text = text});
-  robots_.front().log.append(blackbox::Note{.stamp = utc_now, .code = code, .text = text});
+  robots_.front().log.append(robot_log::Note{.stamp = utc_now, .code = code, .text = text});
 }
 
 void ProcessEvents::announce_planner(SteadyTime now, UtcTime utc_now, const Inbox& inbox) {
@@ -99,7 +99,7 @@ void ProcessEvents::announce_dropped_records(UtcTime utc_now) {
                                    [](const LocalRobot& robot) { return robot.log.dropped() > 0; });
   if (dropped && !records_dropped_) {
     announce(utc_now, link::Severity::kWarning, "blackbox-dropped",
-             "the disk does not take what the black box records; flies on without");
+             "the disk does not take what the robot log records; flies on without");
   }
   records_dropped_ = dropped;
 }

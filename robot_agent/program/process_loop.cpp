@@ -13,30 +13,30 @@ namespace {
 
 Inbox make_inbox(const Mission& mission, Readers readers, link::StateChannel& states) {
   const Duration silence = from_seconds(mission.timing.planner_silence_s);
-  const double settle_s = mission.link.send_interval_max_s + 2.0 / mission.control.rate_hz;
+  const double resume_delay_s = mission.link.send_interval_max_s + 2.0 / mission.control.rate_hz;
   return {std::move(readers),
           states,
           link::wire_limits(mission),
-          MissionWatch(silence, from_seconds(settle_s)),
+          MissionWatch(silence, from_seconds(resume_delay_s)),
           silence,
-          hears_farthest_m(mission)};
+          largest_communication_radius_m(mission)};
 }
 
 /// The bus as one robot of the process sees it.
 struct RobotBus {
-  const HeardCells& heard;
+  const ReceivedCells& received;
   RobotId self;
   EchoGuard& echo;
   std::vector<link::RobotStateMessage>& published;
 
   template <class Take>
   void receive(const Vec2& position_m, Take take) const {
-    heard.visit_near(position_m, [&](const HeardState& state) {
+    received.visit_near(position_m, [&](const ReceivedState& state) {
       if (state.report.robot != self) take(state.report, state.age);  // else our own echo
     });
   }
   void publish(const link::RobotStateMessage& state) const {
-    echo.said(state);
+    echo.record_sent(state);
     published.push_back(state);
   }
 };
@@ -96,7 +96,7 @@ void ProcessLoop::step_robots(RobotTick tick, const std::optional<NewPlan>& new_
     std::optional<OfferedPlan> offered;
     if (new_plan) offered.emplace(OfferedPlan{new_plan->flow, new_plan->entry_of(robot.loop.id())});
     tick.new_plan = offered ? &*offered : nullptr;
-    RobotBus bus{inbox_.heard(), robot.loop.id(), robot.echo, published_};
+    RobotBus bus{inbox_.received(), robot.loop.id(), robot.echo, published_};
     robot.loop.step(
         tick,
         {.driver = *robot.driver, .rng = robot.rng, .log = robot.log, .state_ages = &state_age_},
@@ -111,7 +111,7 @@ void ProcessLoop::follow_scene(UtcTime utc_now) {
     scene_ = std::move(*received);
     world_moves_ = true;
     local_.robots.front().log.append(
-        blackbox::Note{.stamp = utc_now,
+        robot_log::Note{.stamp = utc_now,
                        .caused = UtcTime(Duration(static_cast<std::int64_t>(scene_.version))),
                        .code = "scene",
                        .text = fmt::format("took scene version {}", scene_.version)});
@@ -139,7 +139,7 @@ void ProcessLoop::end(const Time& time) {
   status_.publish_all(source(time));
   for (LocalRobot& robot : local_.robots) {
     robot.driver->shutdown();
-    robot.log.append(blackbox::Note{.stamp = time.utc_now, .code = "exit", .text = "graceful end"});
+    robot.log.append(robot_log::Note{.stamp = time.utc_now, .code = "exit", .text = "graceful end"});
   }
 }
 

@@ -16,9 +16,9 @@ std::span<const LocalRobot> group(std::span<const LocalRobot> robots, std::size_
   return robots.subspan(first, std::min(kGroup, robots.size() - first));
 }
 
-bool has_news(std::span<const LocalRobot> robots) {
+bool has_updates(std::span<const LocalRobot> robots) {
   return std::any_of(robots.begin(), robots.end(),
-                     [](const LocalRobot& robot) { return robot.loop.has_news(); });
+                     [](const LocalRobot& robot) { return robot.loop.has_updates(); });
 }
 
 }  // namespace
@@ -26,11 +26,11 @@ bool has_news(std::span<const LocalRobot> robots) {
 void StatusReport::on_tick(const Source& source) {
   // All wait for all to have the plan: that is reported at once, as is that we are here.
   const std::uint32_t version = source.inbox.plan_version();
-  const bool all_have_news = ticks_ == 0 || version != plan_reported_;
+  const bool all_have_updates = ticks_ == 0 || version != plan_reported_;
   plan_reported_ = version;
   for (std::size_t first = 0; first < source.robots.size(); first += kGroup) {
-    if (all_have_news || cadence_.is_due(first / kGroup, ticks_) ||
-        has_news(group(source.robots, first))) {
+    if (all_have_updates || cadence_.is_due(first / kGroup, ticks_) ||
+        has_updates(group(source.robots, first))) {
       publish_group(source, first);
     }
   }

@@ -6,7 +6,7 @@
 
 namespace swarm {
 
-/// What the machine's clock says; for those at the edge alone, everyone else is told the time.
+/// What the machine's clock says; for those by the input validation alone, everyone else is given the time.
 inline UtcTime utc_now() {
   return std::chrono::time_point_cast<Duration>(std::chrono::system_clock::now());
 }

@@ -15,7 +15,7 @@ namespace swarm {
 namespace {
 
 constexpr std::uint32_t kMaxComponents = 255;
-constexpr std::uint32_t kBicPatience = 3;
+constexpr std::uint32_t kBicStepsWithoutGain = 3;
 constexpr std::uint32_t kFirstSteps = 10;
 // A component with less than this of the weight has no covariance worth a name.
 constexpr double kNothing = 1e-12;
@@ -262,7 +262,7 @@ Climb chosen_by_bic(Fitter& fitter, const FitOptions& options, Rng& rng) {
   Climb best;
   double best_bic = std::numeric_limits<double>::infinity();
   std::uint32_t without_gain = 0;
-  for (std::uint32_t k = 1; k <= options.components_max && without_gain < kBicPatience; ++k) {
+  for (std::uint32_t k = 1; k <= options.components_max && without_gain < kBicStepsWithoutGain; ++k) {
     Climb climbed = fitter.best_of_starts(k, rng);
     const double bic = fitter.bic(climbed);
     ++without_gain;

@@ -55,7 +55,7 @@ struct Message {
   std::uint16_t channel = 0;
   std::uint32_t sequence = 0;
   std::int64_t log_time_ns = 0;      ///< UTC, when it was recorded
-  std::int64_t publish_time_ns = 0;  ///< UTC, when it was said
+  std::int64_t publish_time_ns = 0;  ///< UTC, when it was published
   std::span<const unsigned char> data{};
 };
 

@@ -138,7 +138,7 @@ class FileReader {
       case Op::kMetadata:
         return take_metadata(record.content);
       case Op::kDataEnd:
-        damage_.ended = true;  // what follows repeats what was said
+        damage_.ended = true;  // what follows repeats what was published
         return true;
       case Op::kHeader:
         return true;

@@ -16,7 +16,7 @@ namespace swarm {
 namespace {
 
 /// Cost of a pair without a way: more than all ways together in any world robots drive in.
-constexpr double kNoWay_m = 1e8;
+constexpr double kNoPath_m = 1e8;
 
 /// Points gathered at one of them each.
 struct Groups {
@@ -80,13 +80,13 @@ double geodesic_bound_m(const World& world, double robot_radius_m, std::span<con
   const Groups from = groups_of(starts, paths);
   const Groups to = groups_of(ends, paths);
   std::vector<double> costs = paths.distances_m(from.centers_m, to.centers_m);
-  bool all_ways_exist = true;
+  bool all_paths_exist = true;
   for (double& cost : costs) {
-    all_ways_exist = all_ways_exist && cost <= kNoWay_m;
-    cost = std::min(cost, kNoWay_m);
+    all_paths_exist = all_paths_exist && cost <= kNoPath_m;
+    cost = std::min(cost, kNoPath_m);
   }
   const double total = transport_cost(costs, from.sizes, to.sizes);
-  if (!all_ways_exist && total >= kNoWay_m) return std::numeric_limits<double>::infinity();
+  if (!all_paths_exist && total >= kNoPath_m) return std::numeric_limits<double>::infinity();
   const double n = static_cast<double>(starts.size());
   return std::max(0.0, (total - from.moved_m - to.moved_m) / n);
 }

@@ -152,8 +152,8 @@ class GoalShapeReader {
       frame.pixel_m = pixel_m.value_or(frame.pixel_m);
     }
     if (const Node* value = keys.take("dark")) {
-      static constexpr std::array<std::string_view, 2> kWords{"true", "false"};
-      const auto word = yaml::read_choice(*value, keys.path_of("dark"), kWords, violations_);
+      static constexpr std::array<std::string_view, 2> kUpdates{"true", "false"};
+      const auto word = yaml::read_choice(*value, keys.path_of("dark"), kUpdates, violations_);
       good = good && word.has_value();
       frame.dark = word != "false";
     }

@@ -28,12 +28,12 @@ double largest_radius_m(const RobotsSpec& robots) {
   return grouped < robots.count ? std::max(largest_m, robots.radius_m) : largest_m;
 }
 
-double hears_farthest_m(const Mission& mission) {
-  double largest_m = mission.robots.hear_radius_m;
+double largest_communication_radius_m(const Mission& mission) {
+  double largest_m = mission.robots.communication_radius_m;
   for (const RobotGroupSpec& group : mission.robots.groups) {
-    largest_m = std::max(largest_m, group.hear_radius_m);
+    largest_m = std::max(largest_m, group.communication_radius_m);
   }
-  return std::max(largest_m, mission.link.hear_radius_m);
+  return std::max(largest_m, mission.link.communication_radius_m);
 }
 
 }  // namespace swarm

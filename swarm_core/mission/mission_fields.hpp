@@ -32,7 +32,7 @@ using swarm::positive;
 inline constexpr double kMaxExtent_m = 1e6;
 inline constexpr double kMaxRobots = 200'000;
 inline constexpr std::size_t kMaxRobotGroups = 64;
-inline constexpr std::size_t kMaxComponents = 255;  ///< a black box names goals by one byte
+inline constexpr std::size_t kMaxComponents = 255;  ///< a robot log names goals by one byte
 inline constexpr std::size_t kMaxObstacles = 10'000;
 inline constexpr std::size_t kMaxVertices = 100'000;  ///< of all polygons together
 inline constexpr std::size_t kMaxScriptEvents = 1'000;
@@ -59,8 +59,8 @@ inline constexpr std::array<Field<BodySpec>, 7> kBody{{
     {"acceleration_max_mps2", &BodySpec::acceleration_max_mps2, positive(1000),
      "unicycle (along its heading) and double_integrator"},
     {"turn_rate_max_radps", &BodySpec::turn_rate_max_radps, positive(1000), "unicycle"},
-    {"hear_radius_m", &BodySpec::hear_radius_m, between(0, 10'000),
-     "its sensing range; 0: link.hear_radius_m"},
+    {"communication_radius_m", &BodySpec::communication_radius_m, between(0, 10'000),
+     "its communication radius; 0: link.communication_radius_m"},
     {"motion_noise_m", &BodySpec::motion_noise_m, between(0, 100),
      "standard deviation of what a control step adds to the motion, per axis"},
     {"position_noise_m", &BodySpec::position_noise_m, between(0, 100),
@@ -96,7 +96,7 @@ inline constexpr std::array<Field<SafetySpec>, 5> kSafety{{
 
 inline constexpr std::array<Field<LinkSpec>, 9> kLink{{
     {"cell_size_m", &LinkSpec::cell_size_m, between(1, 10'000), "cells of the topics channel"},
-    {"hear_radius_m", &LinkSpec::hear_radius_m, positive(10'000),
+    {"communication_radius_m", &LinkSpec::communication_radius_m, positive(10'000),
      "states of robots this near are received"},
     {"join_margin_m", &LinkSpec::join_margin_m, between(0, 1000),
      "a cell is joined this much before it is needed"},
@@ -107,7 +107,7 @@ inline constexpr std::array<Field<LinkSpec>, 9> kLink{{
      "dead reckoning: a state is sent when its extrapolation is off by this"},
     {"send_interval_max_s", &LinkSpec::send_interval_max_s, positive(60), "or this old"},
     {"send_near_m", &LinkSpec::send_near_m, between(0, 10'000),
-     "or, on a poor link, while a surface is this near"},
+     "or, on a degraded link, while a surface is this near"},
     {"status_hz", &LinkSpec::status_hz, between(0.01, 100), "status messages per second"},
 }};
 

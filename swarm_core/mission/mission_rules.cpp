@@ -38,7 +38,7 @@ constexpr double kGroupCellsMax = 4.0;  // per hear radius: at most 100 cells a 
 
 }  // namespace
 
-double least_hear_radius_m(const Mission& mission) {
+double least_communication_radius_m(const Mission& mission) {
   const double braking_s = 1.0 / (mission.control.rate_hz * mission.safety.gap_share);
   return 2.0 * mission.robots.radius_m + mission.safety.neighbour_margin_m +
          2.0 * mission.robots.speed_max_mps * (braking_s + mission.link.send_interval_max_s);
@@ -82,10 +82,10 @@ std::vector<BrokenRule> broken_rules(const Mission& mission) {
               {"timing.neighbour_forget_s", timing.neighbour_forget_s});
   rules.below({"link.join_margin_m", link.join_margin_m},
               {"link.leave_margin_m", link.leave_margin_m});
-  rules.at_most({"link.hear_radius_m", link.hear_radius_m}, {"link.cell_size_m", link.cell_size_m});
-  if (link.hear_radius_m > kGroupCellsMax * link.group_cell_size_m) {
-    rules.add({"link.group_cell_size_m", "link.hear_radius_m"},
-              fmt::format("link.group_cell_size_m is {}; must be >= link.hear_radius_m / {}: a "
+  rules.at_most({"link.communication_radius_m", link.communication_radius_m}, {"link.cell_size_m", link.cell_size_m});
+  if (link.communication_radius_m > kGroupCellsMax * link.group_cell_size_m) {
+    rules.add({"link.group_cell_size_m", "link.communication_radius_m"},
+              fmt::format("link.group_cell_size_m is {}; must be >= link.communication_radius_m / {}: a "
                           "robot listens to every cell within that radius",
                           link.group_cell_size_m, kGroupCellsMax));
   }
@@ -101,12 +101,12 @@ std::vector<BrokenRule> broken_rules(const Mission& mission) {
               fmt::format("timing.planner_silence_s is {}; must be >= {}, two heartbeats",
                           timing.planner_silence_s, 2.0 / timing.heartbeat_hz));
   }
-  if (const double least_m = least_hear_radius_m(mission); link.hear_radius_m < least_m) {
-    rules.add({"link.hear_radius_m", "robots.radius_m", "robots.speed_max_mps", "control.rate_hz",
+  if (const double least_m = least_communication_radius_m(mission); link.communication_radius_m < least_m) {
+    rules.add({"link.communication_radius_m", "robots.radius_m", "robots.speed_max_mps", "control.rate_hz",
                "safety.gap_share", "safety.neighbour_margin_m", "link.send_interval_max_s"},
-              fmt::format("link.hear_radius_m is {}; must be >= {:.4g}, from where on the safety "
+              fmt::format("link.communication_radius_m is {}; must be >= {:.4g}, from where on the safety "
                           "filter needs to know a robot",
-                          link.hear_radius_m, least_m));
+                          link.communication_radius_m, least_m));
   }
   return std::move(rules.broken);
 }

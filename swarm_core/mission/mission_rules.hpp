@@ -19,7 +19,7 @@ struct BrokenRule {
 /// Distance between two robots' centres from which they must hear each other [m]: the safety filter
 /// begins to brake at surface gap m + 2·v_max·dt/γ, and until its next word (send_interval_max_s) a
 /// pair may close in at 2·v_max.
-double least_hear_radius_m(const Mission& mission);
+double least_communication_radius_m(const Mission& mission);
 
 /// All rules between keys that `mission` breaks; its single values are taken to be in range.
 std::vector<BrokenRule> broken_rules(const Mission& mission);

@@ -23,7 +23,7 @@ struct MeanRule {
   double radius_m = 0.0;
 };
 
-/// Reads obstacles and mixtures of mission files and of what is said to a running mission. What is
+/// Reads obstacles and mixtures of mission files and of what is published to a running mission. What is
 /// wrong with them goes to `violations`, which must outlive the reader.
 class ShapeReader {
  public:

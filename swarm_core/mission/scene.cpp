@@ -25,7 +25,7 @@ std::size_t vertices_of(const Obstacle& obstacle) {
   return polygon == nullptr ? 0 : polygon->vertices_m().size();
 }
 
-auto place_of(std::vector<SceneObstacle>& obstacles, std::uint32_t id) {
+auto find_obstacle(std::vector<SceneObstacle>& obstacles, std::uint32_t id) {
   return std::lower_bound(
       obstacles.begin(), obstacles.end(), id,
       [](const SceneObstacle& o, std::uint32_t wanted) { return o.id < wanted; });
@@ -33,7 +33,7 @@ auto place_of(std::vector<SceneObstacle>& obstacles, std::uint32_t id) {
 
 /// The obstacle as a scene obstacle, taken over from the mission file where it is still there.
 Result<SceneObstacle*> find(Scene& scene, std::uint32_t id, const World& mission_world) {
-  const auto at = place_of(scene.obstacles, id);
+  const auto at = find_obstacle(scene.obstacles, id);
   if (at != scene.obstacles.end() && at->id == id) return &*at;
   const bool removed =
       std::find(scene.removed.begin(), scene.removed.end(), id) != scene.removed.end();
@@ -47,7 +47,7 @@ Result<SceneObstacle*> find(Scene& scene, std::uint32_t id, const World& mission
 }
 
 Result<void> make(Scene& scene, const AddObstacle& add, const World&, UtcTime) {
-  const auto at = place_of(scene.obstacles, scene.next_id);  // bodies stay behind it
+  const auto at = find_obstacle(scene.obstacles, scene.next_id);  // bodies stay behind it
   scene.obstacles.insert(at, {.id = scene.next_id++, .shape = add.shape});
   return {};
 }
@@ -88,7 +88,7 @@ Result<void> make(Scene& scene, const SetRisk& risk, const World&, UtcTime) {
 
 Result<void> make(Scene& scene, const AddBody& add, const World&, UtcTime) {
   const std::uint32_t id = body_id(add.robot);
-  const auto at = place_of(scene.obstacles, id);
+  const auto at = find_obstacle(scene.obstacles, id);
   if (at != scene.obstacles.end() && at->id == id) {
     at->shape = add.shape;
   } else {
@@ -99,7 +99,7 @@ Result<void> make(Scene& scene, const AddBody& add, const World&, UtcTime) {
 
 Result<void> make(Scene& scene, const ClearBody& clear, const World&, UtcTime) {
   const std::uint32_t id = body_id(clear.robot);
-  const auto at = place_of(scene.obstacles, id);
+  const auto at = find_obstacle(scene.obstacles, id);
   if (at == scene.obstacles.end() || at->id != id) {
     return fail(ErrorCode::kBadInput,
                 fmt::format("robot {} has no body among the obstacles", clear.robot.value()));

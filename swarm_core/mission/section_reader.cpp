@@ -28,7 +28,7 @@ void set_defaults(const Components& components, OptionValues& values) {
 
 }  // namespace
 
-void SectionReader::keep_place(const std::string& path, const Node& value, bool good) {
+void SectionReader::keep_slot(const std::string& path, const Node& value, bool good) {
   if (good) {
     places_[path] = value.at;
   } else {
@@ -169,7 +169,7 @@ void SectionReader::read_option(const Node& node, const MapReader& keys, const O
     good = number.has_value();
     if (good) values.set(option.key, *number);
   }
-  keep_place(path, node, good);
+  keep_slot(path, node, good);
 }
 
 void SectionReader::check_rules(const Mission& mission) {

@@ -86,10 +86,10 @@ class SectionReader {
           }
         },
         field.member);
-    keep_place(path, value, good);
+    keep_slot(path, value, good);
   }
 
-  void keep_place(const std::string& path, const yaml::Node& value, bool good);
+  void keep_slot(const std::string& path, const yaml::Node& value, bool good);
   void read_body(yaml::MapReader& keys, BodySpec& body);
   void read_groups(const yaml::Node& node, RobotsSpec& robots);
   void set_lag(BodySpec& body) const;

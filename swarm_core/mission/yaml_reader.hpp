@@ -31,7 +31,7 @@ class Violations {
 using swarm::Range;
 
 /// Reads the keys of one mapping strictly: each known key at most once, unknown ones are violations
-/// that name the nearest known key. Paths such as `link.hear_radius_m` name values in messages.
+/// that name the nearest known key. Paths such as `link.communication_radius_m` name values in messages.
 class MapReader {
  public:
   /// A `node` that is no mapping is a violation, and the reader then behaves like an empty one.

@@ -42,21 +42,21 @@ inline std::uint32_t draw_leg(const FlowPlan& plan, std::uint32_t node, double& 
 }
 
 /// Where a share of a source's mass is in a flow at a time, and where it ends.
-struct FlowPlace {
+struct FlowPosition {
   static constexpr std::uint32_t kAtSink = 0xFFFFFFFF;
   std::uint32_t leg = kAtSink;  ///< the one alive then, the first one before the source's time
   std::uint32_t sink = 0;       ///< node
 };
 
 /// \pre `source` is an index into plan.sources()
-inline FlowPlace place_in_flow(const FlowPlan& plan, std::size_t source, double share,
+inline FlowPosition position_in_flow(const FlowPlan& plan, std::size_t source, double share,
                                MissionTime at) {
-  FlowPlace place;
+  FlowPosition place;
   std::uint32_t node = plan.sources()[source];
   while (!plan.legs_out(node).empty()) {
     const std::uint32_t leg = draw_leg(plan, node, share);
     node = plan.legs()[leg].to;
-    if (place.leg == FlowPlace::kAtSink && at < plan.nodes()[node].time) place.leg = leg;
+    if (place.leg == FlowPosition::kAtSink && at < plan.nodes()[node].time) place.leg = leg;
   }
   place.sink = node;
   return place;

@@ -34,7 +34,7 @@ Result<std::filesystem::path> make_run_dir(const std::filesystem::path& out,
     return fail(ErrorCode::kBadInput,
                 fmt::format("--out {}: holds a run already; name another directory", dir.string()));
   }
-  for (const auto& folder : {kLogsFolder, kBlackboxFolder}) {
+  for (const auto& folder : {kLogsFolder, kRobotLogFolder}) {
     std::filesystem::create_directories(dir / folder, error);
     if (error) {
       return fail(ErrorCode::kEnvironment,

@@ -25,7 +25,7 @@ inline constexpr std::string_view kSceneFile = "scene.jsonl";
 inline constexpr std::string_view kRunFile = "run.json";
 inline constexpr std::string_view kControlSocket = "control.sock";
 inline constexpr std::string_view kLogsFolder = "logs";
-inline constexpr std::string_view kBlackboxFolder = "blackbox";
+inline constexpr std::string_view kRobotLogFolder = "blackbox";
 
 /// How to join a run; `run.json`.
 struct RunInfo {
@@ -33,7 +33,7 @@ struct RunInfo {
   std::string discovery_host = "127.0.0.1";
   std::uint16_t discovery_port = 0;
   std::uint32_t agents = 0;       ///< processes
-  std::uint32_t hubs = 0;         ///< of launcher and planner each; 0: everyone meets at the server
+  std::uint32_t relays = 0;         ///< of launcher and planner each; 0: everyone meets at the server
   bool cyclone_launcher = false;  ///< whose DDS the launcher speaks
   bool cyclone_planner = false;   ///< whose DDS the planner speaks
   std::string host = "127.0.0.1";       ///< where launcher and planner are

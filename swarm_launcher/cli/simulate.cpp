@@ -38,7 +38,7 @@ Command add_simulate(CLI::App& program) {
       ->check(CLI::Range(0, 256));
   simulate->add_flag_callback(
       "--no-record", [o] { o->record = false; },
-      "No black boxes, audit and report: arrivals and times alone");
+      "No robot logs, audit and report: arrivals and times alone");
   simulate->add_option("--out", o->out, "Run directory (default: runs/<mission>-<time>)");
   simulate->add_flag("--json", o->json, "Print the summary as JSON");
   return {simulate, [o, fault, kills]() -> Result<ExitCode> {

@@ -12,7 +12,7 @@
 #include <nlohmann/json.hpp>
 #include <unistd.h>
 
-#include "swarm_core/blackbox/blackbox_file.hpp"
+#include "swarm_core/robot_log/robot_log_file.hpp"
 #include "swarmflow/mission/mission_file.hpp"
 #include "swarm_core/shell/run_dir.hpp"
 #include "swarm_core/shell/stop_signal.hpp"
@@ -25,16 +25,16 @@ namespace swarm::launcher {
 namespace {
 
 constexpr int kStep_ms = 20;
-constexpr Duration kAnswerPatience = std::chrono::seconds(10);
+constexpr Duration kAnswerTimeout = std::chrono::seconds(10);
 constexpr Duration kStartEvery = std::chrono::milliseconds(50);  // dozens at once slow each other
 constexpr Duration kGrace = std::chrono::seconds(5);             // of each signal
-constexpr std::size_t kMaxBoxBytes = 1U << 30U;
+constexpr std::size_t kMaxLogBytes = 1U << 30U;
 
 SteadyTime now() { return std::chrono::steady_clock::now(); }
 
 Result<HostOffer> ask(LineSocket& socket, std::uint32_t robots) {
   socket.send(nlohmann::json{{"join", robots}}.dump());
-  for (const SteadyTime until = now() + kAnswerPatience; now() < until && !socket.gone();) {
+  for (const SteadyTime until = now() + kAnswerTimeout; now() < until && !socket.gone();) {
     socket.wait(kStep_ms);
     socket.flush();
     socket.receive();
@@ -44,17 +44,17 @@ Result<HostOffer> ask(LineSocket& socket, std::uint32_t robots) {
 }
 
 /// The processes of this host.
-class Crew {
+class HostProcesses {
  public:
-  Crew(const HostOffer& offer, std::filesystem::path dir, bool cyclone, std::uint32_t respawns)
+  HostProcesses(const HostOffer& offer, std::filesystem::path dir, bool cyclone, std::uint32_t respawns)
       : offer_(offer), dir_(std::move(dir)), cyclone_(cyclone), respawns_(respawns) {
     for (std::uint32_t robot = 0; robot < offer.robots; robot += offer.per_process) {
       waiting_.push_back(robot);
     }
   }
-  ~Crew() { signal(SIGKILL); }
-  Crew(const Crew&) = delete;
-  Crew& operator=(const Crew&) = delete;
+  ~HostProcesses() { signal(SIGKILL); }
+  HostProcesses(const HostProcesses&) = delete;
+  HostProcesses& operator=(const HostProcesses&) = delete;
 
   Result<void> step() {
     while (const auto child = reap_child()) {
@@ -114,15 +114,15 @@ class Crew {
 };
 
 /// Until all processes have ended: because the launcher says so, is gone, or we are to stop.
-Result<void> fly(Crew& crew, LineSocket& socket, Progress& progress) {
-  int told = -1;
-  SteadyTime told_at;
-  const auto tell = [&](int rung) {
-    told = std::min(rung, 2);
-    told_at = now();
-    crew.signal(number_of(static_cast<EndSignal>(told)));
+Result<void> fly(HostProcesses& processes, LineSocket& socket, Progress& progress) {
+  int signalled = -1;
+  SteadyTime signalled_at;
+  const auto signal_processes = [&](int rung) {
+    signalled = std::min(rung, 2);
+    signalled_at = now();
+    processes.signal(number_of(static_cast<EndSignal>(signalled)));
   };
-  while (!crew.over()) {
+  while (!processes.over()) {
     socket.wait(kStep_ms);
     socket.flush();
     socket.receive();
@@ -131,12 +131,12 @@ Result<void> fly(Crew& crew, LineSocket& socket, Progress& progress) {
       const auto end = json.is_object() ? json.find("end") : json.end();
       if (end == json.end() || !end->is_number_integer()) continue;
       const int rung = std::clamp(end->get<int>(), 0, 2);
-      if (rung > told) tell(rung);
+      if (rung > signalled) signal_processes(rung);
     }
-    if (told < 0 && (socket.gone() || shell::stop_requests() > 0)) tell(0);
-    if (told >= 0 && told < 2 && now() - told_at > kGrace) tell(told + 1);
-    if (auto stepped = crew.step(); !stepped) return stepped;
-    progress.show("flying", fmt::format("{} processes", crew.living()));
+    if (signalled < 0 && (socket.gone() || shell::stop_requests() > 0)) signal_processes(0);
+    if (signalled >= 0 && signalled < 2 && now() - signalled_at > kGrace) signal_processes(signalled + 1);
+    if (auto stepped = processes.step(); !stepped) return stepped;
+    progress.show("flying", fmt::format("{} processes", processes.living()));
   }
   return {};
 }
@@ -148,17 +148,17 @@ void drain(LineSocket& socket) {
   }
 }
 
-/// Black boxes go home one after the other.
-void send_boxes(const HostOffer& offer, const std::filesystem::path& dir, LineSocket& socket,
+/// Robot logs go home one after the other.
+void send_logs(const HostOffer& offer, const std::filesystem::path& dir, LineSocket& socket,
                 Progress& progress) {
   socket.send(R"({"over": true})");
   for (std::uint32_t i = 0; i <= offer.robots && !socket.gone(); ++i) {
     if (i < offer.robots) {
       const RobotId robot(offer.first_robot + i);
-      const auto box = shell::read_file(blackbox::file_of(dir, robot), kMaxBoxBytes);
-      if (!box || box->empty()) continue;
-      socket.send(nlohmann::json{{"box", robot.value()}, {"bytes", box->size()}}.dump());
-      socket.send_bytes(*box);
+      const auto log_file = shell::read_file(robot_log::file_of(dir, robot), kMaxLogBytes);
+      if (!log_file || log_file->empty()) continue;
+      socket.send(nlohmann::json{{"box", robot.value()}, {"bytes", log_file->size()}}.dump());
+      socket.send_bytes(*log_file);
     } else {
       socket.send(R"({"bye": true})");
     }
@@ -166,7 +166,7 @@ void send_boxes(const HostOffer& offer, const std::filesystem::path& dir, LineSo
       socket.flush();
       socket.wait(kStep_ms);
       drain(socket);
-      progress.show("ending", fmt::format("{} of {} black boxes sent", i, offer.robots));
+      progress.show("ending", fmt::format("{} of {} robot logs sent", i, offer.robots));
     }
   }
 }
@@ -175,7 +175,7 @@ void send_boxes(const HostOffer& offer, const std::filesystem::path& dir, LineSo
 bool part(LineSocket& socket) {
   if (socket.gone()) return false;
   socket.finish();
-  for (const SteadyTime until = now() + kAnswerPatience; now() < until && !socket.gone();) {
+  for (const SteadyTime until = now() + kAnswerTimeout; now() < until && !socket.gone();) {
     socket.wait(kStep_ms);
     drain(socket);
   }
@@ -210,13 +210,13 @@ Result<ExitCode> join_host(const JoinOptions& options) {
                offer->first_robot + offer->robots - 1, offer->run.interface.c_str());
   Progress progress;
   {
-    Crew crew(*offer, *dir, options.cyclone, mission->launcher.respawn_agent_max);
-    if (auto flown = fly(crew, *socket, progress); !flown) return tl::unexpected(flown.error());
+    HostProcesses processes(*offer, *dir, options.cyclone, mission->launcher.respawn_agent_max);
+    if (auto flown = fly(processes, *socket, progress); !flown) return tl::unexpected(flown.error());
   }
-  send_boxes(*offer, *dir, *socket, progress);
+  send_logs(*offer, *dir, *socket, progress);
   if (!part(*socket)) {
     return fail(ErrorCode::kEnvironment,
-                "the launcher is gone; the black boxes are in " + dir->string());
+                "the launcher is gone; the robot logs are in " + dir->string());
   }
   return ExitCode::kOk;
 }

@@ -19,7 +19,7 @@ struct JoinOptions {
 };
 
 /// `swarm_launcher join`: flies some robots of a run that another host's launcher leads, until that
-/// one ends them or goes away, and sends their black boxes home.
+/// one ends them or goes away, and sends their robot logs home.
 Result<ExitCode> join_host(const JoinOptions& options);
 
 }  // namespace swarm::launcher

@@ -16,7 +16,7 @@ constexpr std::uint32_t kMaxRobots = 20'000;
 std::string to_line(const HostOffer& offer) {
   return nlohmann::json{{"version", kVersion},
                         {"domain", offer.run.domain},
-                        {"hubs", offer.run.hubs},
+                        {"hubs", offer.run.relays},
                         {"host", offer.run.host},
                         {"cyclone_launcher", offer.run.cyclone_launcher},
                         {"cyclone_planner", offer.run.cyclone_planner},
@@ -46,7 +46,7 @@ Result<HostOffer> parse_offer(const std::string& line) {
     }
     HostOffer offer{
         .run = {.domain = json.at("domain").get<std::uint32_t>(),
-                .hubs = json.at("hubs").get<std::uint32_t>(),
+                .relays = json.at("hubs").get<std::uint32_t>(),
                 .cyclone_launcher = json.at("cyclone_launcher").get<bool>(),
                 .cyclone_planner = json.at("cyclone_planner").get<bool>(),
                 .host = json.at("host").get<std::string>(),
@@ -59,8 +59,8 @@ Result<HostOffer> parse_offer(const std::string& line) {
         .first_process = json.at("first_process").get<std::uint32_t>(),
         .fault = json.at("fault").get<std::string>(),
         .mission_yaml = json.at("mission").get<std::string>()};
-    const bool plausible = offer.run.domain < 230 && offer.run.hubs >= 1 &&
-                           offer.run.hubs <= 1000 && offer.robots >= 1 &&
+    const bool plausible = offer.run.domain < 230 && offer.run.relays >= 1 &&
+                           offer.run.relays <= 1000 && offer.robots >= 1 &&
                            offer.robots <= kMaxRobots && offer.first_robot <= kMaxRobots &&
                            offer.per_process >= 1 && offer.first_process <= kMaxRobots;
     if (plausible) return offer;

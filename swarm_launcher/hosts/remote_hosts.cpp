@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "swarm_core/blackbox/blackbox_file.hpp"
+#include "swarm_core/robot_log/robot_log_file.hpp"
 
 namespace swarm::launcher {
 namespace {
@@ -18,9 +18,9 @@ constexpr std::size_t kMaxHosts = 256;
 constexpr std::size_t kMaxLine = 4096;  // of what hosts say
 constexpr std::size_t kMaxHeld = 4U << 20U;
 constexpr int kLinesAtOnce = 64;
-constexpr std::uint64_t kMaxBoxBytes = 1ULL << 30U;
+constexpr std::uint64_t kMaxLogBytes = 1ULL << 30U;
 constexpr std::uint32_t kRobotsPerStatus = 100;
-constexpr Duration kAskPatience = std::chrono::seconds(10);
+constexpr Duration kRequestTimeout = std::chrono::seconds(10);
 
 std::string describe(std::uint32_t first_robot, std::uint32_t robots) {
   return fmt::format("host of robots {}-{}", first_robot, first_robot + robots - 1);
@@ -93,32 +93,32 @@ bool RemoteHosts::take_line(Host& host, const std::string& line) {
     return true;
   }
   const auto robot = number(json, "box", offer_.first_robot + offer_.robots);
-  const auto bytes = number(json, "bytes", kMaxBoxBytes);
+  const auto bytes = number(json, "bytes", kMaxLogBytes);
   if (!robot || !bytes || *bytes == 0) return false;
-  host.box_robot = static_cast<std::uint32_t>(*robot);
-  if (host.box_robot - host.first_robot >= host.robots) return false;
-  host.box = std::ofstream(blackbox::file_of(dir_, RobotId(host.box_robot)),
+  host.log_robot = static_cast<std::uint32_t>(*robot);
+  if (host.log_robot - host.first_robot >= host.robots) return false;
+  host.log_file = std::ofstream(robot_log::file_of(dir_, RobotId(host.log_robot)),
                            std::ios::binary | std::ios::trunc);
-  host.box_bytes = *bytes;
-  return host.box.good();
+  host.log_bytes = *bytes;
+  return host.log_file.good();
 }
 
-void RemoteHosts::take_box(Host& host) {
-  const std::string bytes = host.socket.bytes(host.box_bytes);
-  host.box.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  host.box_bytes -= bytes.size();
-  if (host.box_bytes > 0) return;
-  host.box.close();
-  if (host.box.good()) home_[host.box_robot - offer_.first_robot] = true;
+void RemoteHosts::take_log(Host& host) {
+  const std::string bytes = host.socket.bytes(host.log_bytes);
+  host.log_file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  host.log_bytes -= bytes.size();
+  if (host.log_bytes > 0) return;
+  host.log_file.close();
+  if (host.log_file.good()) collected_[host.log_robot - offer_.first_robot] = true;
 }
 
 void RemoteHosts::take(Host& host) {
   host.socket.flush();
   host.socket.receive(host.robots > 0 ? kMaxHeld : kMaxLine);
   for (int lines = 0; !host.left && lines < kLinesAtOnce; ++lines) {
-    if (host.box_bytes > 0) {
-      take_box(host);
-      if (host.box_bytes > 0) break;
+    if (host.log_bytes > 0) {
+      take_log(host);
+      if (host.log_bytes > 0) break;
       continue;
     }
     const auto line = host.socket.line(kMaxLine);
@@ -146,7 +146,7 @@ std::vector<LogEvent> RemoteHosts::step(Supervisor& supervisor, SteadyTime now) 
   std::vector<LogEvent> log;
   for (Host& host : hosts_) {
     if (!host.left) take(host);
-    if (host.robots == 0 && now - host.came > kAskPatience) drop(host);
+    if (host.robots == 0 && now - host.came > kRequestTimeout) drop(host);
   }
   for (const std::size_t i : std::exchange(joined_, {})) {
     const Host& host = hosts_[i];
@@ -163,7 +163,7 @@ std::vector<LogEvent> RemoteHosts::step(Supervisor& supervisor, SteadyTime now) 
       log.push_back(
           {.warning = lost_it,
            .code = lost_it ? "host-silent" : "host-back",
-           .text = who + (lost_it ? " is not heard: the others pause" : " is heard again")});
+           .text = who + (lost_it ? " is not received: the others pause" : " is received again")});
     }
     if (host.watch.lost(now)) drop(host);
     cut = cut || (host.watch.cut() && !host.over);
@@ -200,9 +200,9 @@ void RemoteHosts::pause_or_resume(bool cut, Supervisor& supervisor, SteadyTime n
 void RemoteHosts::end(ProcessIndex process, EndSignal signal) {
   for (Host& host : hosts_) {
     if (process.value() - host.first_process.value() >= host.processes || host.counted) continue;
-    if (static_cast<int>(signal) <= host.told) return;
-    host.told = static_cast<int>(signal);
-    host.socket.send(nlohmann::json{{"end", host.told}}.dump());
+    if (static_cast<int>(signal) <= host.signalled) return;
+    host.signalled = static_cast<int>(signal);
+    host.socket.send(nlohmann::json{{"end", host.signalled}}.dump());
     if (signal == EndSignal::kKill) host.over = true;  // whether it hears it or not
     return;
   }
@@ -218,11 +218,11 @@ bool RemoteHosts::collect() {
   return all;
 }
 
-std::uint32_t RemoteHosts::missing_boxes() const {
+std::uint32_t RemoteHosts::missing_logs() const {
   std::uint32_t missing = 0;
   for (const Host& host : hosts_) {
     for (std::uint32_t i = 0; i < host.robots; ++i) {
-      missing += home_[host.first_robot - offer_.first_robot + i] ? 0 : 1;
+      missing += collected_[host.first_robot - offer_.first_robot + i] ? 0 : 1;
     }
   }
   return missing;

@@ -16,8 +16,8 @@
 namespace swarm::launcher {
 
 /// The launcher's side of robots that other hosts start (`swarm_launcher join`). A host asks for a
-/// number of them over TCP, is told the mission and how to meet, is told when to end them, and then
-/// sends their black boxes home. In flight it is heard by its robots' statuses alone: while one is
+/// number of them over TCP, is given the mission and how to meet, is given when to end them, and then
+/// sends their robot logs home. In flight it is received by its robots' statuses alone: while one is
 /// not, everybody else is paused, since the robots of the two sides do not see each other.
 class RemoteHosts {
  public:
@@ -28,7 +28,7 @@ class RemoteHosts {
         status_hz_(status_hz),
         dir_(std::move(dir)),
         free_({{0, offer_.robots}}),
-        home_(offer_.robots, false) {}
+        collected_(offer_.robots, false) {}
 
   std::uint16_t port() const { return server_.port(); }
 
@@ -43,10 +43,10 @@ class RemoteHosts {
   /// Ends a process of another host.
   void end(ProcessIndex process, EndSignal signal);
 
-  /// Takes black boxes. Call it, after the flight, until it returns true.
+  /// Takes robot logs. Call it, after the flight, until it returns true.
   bool collect();
-  /// Black boxes that were promised and are not here.
-  std::uint32_t missing_boxes() const;
+  /// Robot logs that were promised and are not here.
+  std::uint32_t missing_logs() const;
 
  private:
   struct Host {
@@ -56,13 +56,13 @@ class RemoteHosts {
     std::uint32_t first_robot = 0, robots = 0;  // none: it has not asked yet
     ProcessIndex first_process{};
     std::uint32_t processes = 0;
-    int told = -1;         // strongest signal sent
+    int signalled = -1;         // strongest signal sent
     bool over = false;     // its processes have ended …
     bool counted = false;  // … and the supervisor knows
     bool left = false;     // it said good-bye, or is out of reach
-    std::ofstream box{};
-    std::uint32_t box_robot = 0;
-    std::uint64_t box_bytes = 0;  // still to come
+    std::ofstream log_file{};
+    std::uint32_t log_robot = 0;
+    std::uint64_t log_bytes = 0;  // still to come
   };
   struct Block {  // of offer_'s robots
     std::uint32_t first;
@@ -72,7 +72,7 @@ class RemoteHosts {
   void take(Host& host);
   bool take_line(Host& host, const std::string& line);
   bool answer(Host& host, std::uint32_t robots);
-  void take_box(Host& host);
+  void take_log(Host& host);
   void drop(Host& host);
   void pause_or_resume(bool cut, Supervisor& supervisor, SteadyTime now);
 
@@ -83,7 +83,7 @@ class RemoteHosts {
   std::vector<Host> hosts_;
   std::vector<std::size_t> joined_;  // since the last step: indices of hosts_
   std::vector<Block> free_;          // nobody's yet
-  std::vector<bool> home_;           // black boxes
+  std::vector<bool> collected_;           // robot logs
   bool paused_ = false;              // by us
   bool overruled_ = false;           // somebody resumed all the same
   bool begun_ = false;

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "swarm_core/base/assert.hpp"
-#include "swarm_core/blackbox/blackbox_file.hpp"
+#include "swarm_core/robot_log/robot_log_file.hpp"
 
 namespace swarm::launcher {
 
@@ -18,15 +18,15 @@ Recording::Recording(const Mission& mission, UtcTime begin, std::uint64_t keeps_
   SWARM_ASSERT(keeps_every >= 1);
 }
 
-void Recording::note(RobotId robot, blackbox::Note note) {
+void Recording::note(RobotId robot, robot_log::Note note) {
   const bool follows_step = !periods_.empty() && periods_.back()[robot.value()].stamp == note.stamp;
   notes_[robot.value()].push_back({.note = std::move(note), .follows_step = follows_step});
 }
 
-std::vector<blackbox::Step> Recording::last_steps(RobotId robot) const {
-  std::vector<blackbox::Step> steps;
+std::vector<robot_log::Step> Recording::last_steps(RobotId robot) const {
+  std::vector<robot_log::Step> steps;
   for (auto period = periods_.rbegin(); period != periods_.rend() && steps.size() < 2; ++period) {
-    const blackbox::Step& step = (*period)[robot.value()];
+    const robot_log::Step& step = (*period)[robot.value()];
     if (step.stamp != kNever) steps.insert(steps.begin(), step);
   }
   return steps;
@@ -35,7 +35,7 @@ std::vector<blackbox::Step> Recording::last_steps(RobotId robot) const {
 /// The records of one robot in the order a process would have written them.
 template <class Take>
 void Recording::replay(std::uint32_t robot, Take take) const {
-  take(blackbox::Header{.robot = RobotId(robot),
+  take(robot_log::Header{.robot = RobotId(robot),
                         .robots = mission_.robots.count,
                         .process_id = 0,
                         .radius_m = body_of(mission_.robots, RobotId(robot)).radius_m,
@@ -44,8 +44,8 @@ void Recording::replay(std::uint32_t robot, Take take) const {
   const auto last_note = notes_[robot].end();
   auto estimate = estimates_[robot].begin();
   const auto last_estimate = estimates_[robot].end();
-  for (const std::vector<blackbox::Step>& period : periods_) {
-    const blackbox::Step& step = period[robot];
+  for (const std::vector<robot_log::Step>& period : periods_) {
+    const robot_log::Step& step = period[robot];
     if (step.stamp == kNever) continue;
     const auto comes_first = [&](const PlacedNote& placed) {
       return placed.note.stamp < step.stamp ||
@@ -56,7 +56,7 @@ void Recording::replay(std::uint32_t robot, Take take) const {
     for (; estimate != last_estimate && estimate->stamp <= step.stamp; ++estimate) take(*estimate);
   }
   if (robot == 0) {
-    take(blackbox::LinkStats{.stamp = periods_.empty() ? begin_ : periods_.back()[robot].stamp,
+    take(robot_log::LinkStats{.stamp = periods_.empty() ? begin_ : periods_.back()[robot].stamp,
                              .states_sent = static_cast<std::uint32_t>(link_.states_sent),
                              .states_received = static_cast<std::uint32_t>(link_.states_received),
                              .refused = link_.refused,
@@ -78,9 +78,9 @@ std::vector<monitor::Track> Recording::tracks() const {
 
 Result<void> Recording::write(const std::filesystem::path& run_dir) const {
   for (std::uint32_t i = 0; i < notes_.size(); ++i) {
-    blackbox::Batch box;
+    robot_log::Batch box;
     replay(i, [&](const auto& record) { box.append(record); });
-    if (auto written = box.write(blackbox::file_of(run_dir, RobotId(i))); !written) return written;
+    if (auto written = box.write(robot_log::file_of(run_dir, RobotId(i))); !written) return written;
   }
   return {};
 }

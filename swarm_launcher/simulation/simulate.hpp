@@ -9,7 +9,7 @@
 
 #include "swarmflow/core/result.hpp"
 #include "swarm_core/mission/link_faults.hpp"
-#include "swarm_launcher/simulation/air.hpp"
+#include "swarm_launcher/simulation/simulated_network.hpp"
 #include "swarm_launcher/simulation/kills.hpp"
 
 namespace swarm::launcher {
@@ -22,7 +22,7 @@ struct SimulateOptions {
   bool clocks_in_step = true;
   std::vector<Kill> kills{};  ///< robots whose processes die
   std::size_t threads = 0;    ///< 0: as many as make it faster
-  bool record = true;         ///< black boxes, audit and report; else arrivals and times alone
+  bool record = true;         ///< robot logs, audit and report; else arrivals and times alone
   std::filesystem::path out;  ///< run directory; empty: runs/<mission>-<time>
   bool json = false;
 };

@@ -25,9 +25,9 @@ constexpr std::size_t kSlots = 10;
 // Below, waking a second thread twice a period costs more than it brings.
 constexpr std::uint32_t kRobotsPerThread = 400;
 
-double hears_m(const Mission& mission, RobotId robot) {
-  const double own_m = body_of(mission.robots, robot).hear_radius_m;
-  return own_m > 0.0 ? own_m : mission.link.hear_radius_m;
+double communication_radius_m(const Mission& mission, RobotId robot) {
+  const double own_m = body_of(mission.robots, robot).communication_radius_m;
+  return own_m > 0.0 ? own_m : mission.link.communication_radius_m;
 }
 
 /// Each robot has a process that may die, and all of them start at once.
@@ -62,11 +62,11 @@ Simulation::Simulation(const Mission& mission, planner::Planner planner,
       keeper_(mission, std::move(planner), options.seed, &std::chrono::steady_clock::now),
       supervisor_(supervisor_options(mission), kBegin),
       cadence_(mission.control.rate_hz, mission.link.status_hz),
-      air_(mission.world.bounds_m(), hears_farthest_m(mission), options.faults,
+      network_(mission.world.bounds_m(), largest_communication_radius_m(mission), options.faults,
            mix_seed(options.seed, 0xA1B), kBegin),
       gate_({.limits = link::wire_limits(mission)}),
-      crew_(std::max<std::size_t>(options.threads, 1)),
-      collected_(crew_.size()),
+      thread_pool_(std::max<std::size_t>(options.threads, 1)),
+      collected_(thread_pool_.size()),
       now_(kBegin),
       density_(mission, agent::AgentOptionsOf(mission).reads_density()) {
   options_.kills = in_order_of_time(std::move(options_.kills));
@@ -103,7 +103,7 @@ UtcTime Simulation::utc(SteadyTime t) const { return begin_utc() + (t - kBegin);
 void Simulation::place(const std::vector<Vec2>& positions_m) {
   robots_.reserve(positions_m.size());
   rngs_.reserve(positions_m.size());
-  has_news_.resize(positions_m.size());
+  has_updates_.resize(positions_m.size());
   dead_.resize(positions_m.size());
   agent::AgentOptionsOf options_of(mission_);
   slots_.resize(options_.clocks_in_step ? 1 : kSlots);
@@ -114,8 +114,8 @@ void Simulation::place(const std::vector<Vec2>& positions_m) {
         {.loop = {world_, options_of(id), agent::agent_identity(mission_, id)},
          .body = agent::make_simulated_body(body_of(mission_.robots, id), kBegin, positions_m[i],
                                             agent::body_seed(id, options_.seed)),
-         .hears_m = hears_m(mission_, id),
-         .heard_until = kBegin});
+         .communication_radius_m = communication_radius_m(mission_, id),
+         .received_until = kBegin});
     robots_.back().loop.place_at(positions_m[i]);
     slots_[slot_of(i)].push_back(i);
   }
@@ -222,7 +222,7 @@ bool Simulation::step() {
   report_status();
   ++periods_;
   now_ += period_;
-  air_.forget(now_ - period_);
+  network_.forget(now_ - period_);
   return true;
 }
 

@@ -17,8 +17,8 @@
 #include "swarmflow/core/result.hpp"
 #include "swarm_core/mission/link_faults.hpp"
 #include "swarmflow/mission/mission.hpp"
-#include "swarm_launcher/simulation/air.hpp"
-#include "swarm_launcher/simulation/crew.hpp"
+#include "swarm_launcher/simulation/simulated_network.hpp"
+#include "swarm_launcher/simulation/thread_pool.hpp"
 #include "swarm_launcher/simulation/kills.hpp"
 #include "swarm_launcher/simulation/recording.hpp"
 #include "swarm_launcher/supervisor.hpp"
@@ -95,8 +95,8 @@ class Simulation {
   struct Robot {
     agent::RobotLoop loop;
     agent::SimulatedRobot body;  // by value: in the cache with the rest
-    double hears_m = 0.0;        // sensing range
-    SteadyTime heard_until;
+    double communication_radius_m = 0.0;        // communication radius
+    SteadyTime received_until;
     std::uint32_t plan_version = 0;  // that it follows
   };
   struct RobotBus;
@@ -155,16 +155,16 @@ class Simulation {
   agent::StatusCadence cadence_;
   MissionPhase phase_ = MissionPhase::kReady;
   UtcTime stop_sent_{};  // 0: not yet
-  Air air_;
+  SimulatedNetwork network_;
   link::Gate gate_;  // what receivers check, once for each published state
-  Crew crew_;
+  ThreadPool thread_pool_;
   std::vector<Robot> robots_;
   std::vector<Rng> rngs_;                          // of each; large and rarely used
   std::vector<std::vector<std::uint32_t>> slots_;  // robots that tick together
   std::vector<Collected> collected_;               // one a thread
-  std::vector<agent::NeighbourReport> on_air_;     // what was published at a moment
+  std::vector<agent::NeighbourReport> sent_states_;     // what was published at a moment
   // Those who report their status out of turn. Apart from robots_: most are only looked at.
-  std::vector<std::uint8_t> has_news_;
+  std::vector<std::uint8_t> has_updates_;
   std::vector<std::uint8_t> dead_;        // their processes
   std::vector<std::uint32_t> fallen_;     // dead robots that their drivers have not stopped yet
   std::vector<std::uint32_t> respawned_;  // in this period

@@ -52,7 +52,7 @@ void Simulation::kill(RobotId robot) {
 void Simulation::coast_fallen() {
   std::erase_if(fallen_, [this](std::uint32_t id) {
     Robot& robot = robots_[id];
-    const std::vector<blackbox::Step> last = recording_.last_steps(RobotId(id));
+    const std::vector<robot_log::Step> last = recording_.last_steps(RobotId(id));
     const agent::Measurement body = robot.body.measure(now_);
     robot.loop.place_at(body.position_m);
     const Vec2 position_m = body.true_position_m.value_or(body.position_m);
@@ -81,13 +81,13 @@ void Simulation::admit_respawned() {
     std::construct_at(&robot.loop, world_, agent::agent_options(mission_, RobotId(id)), self);
     robot.loop.place_at(position_m);
     rngs_[id] = agent::agent_rng(RobotId(id), options_.seed);
-    robot.heard_until = now_;
+    robot.received_until = now_;
     robot.plan_version = 0;
     dead_[id] = 0;
     std::erase(fallen_, id);
     std::vector<std::uint32_t>& members = slots_[slot_of(id)];
     members.insert(std::lower_bound(members.begin(), members.end(), id), id);
-    has_news_[id] = 1;
+    has_updates_[id] = 1;
   }
 }
 

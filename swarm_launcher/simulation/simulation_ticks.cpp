@@ -16,7 +16,7 @@ constexpr std::uint64_t kPeriodsPerAges = 10;
 
 /// The simulated network as one robot sees it.
 struct Simulation::RobotBus {
-  const Air& air;
+  const SimulatedNetwork& network;
   Robot& robot;
   SteadyTime now;
   const Robot* prefetched;  // while this one decides; null: none
@@ -24,9 +24,9 @@ struct Simulation::RobotBus {
 
   template <class Take>
   void receive(const Vec2& position_m, Take take) {
-    air.hear(robot.loop.id(), position_m, robot.hears_m, robot.heard_until, now,
+    network.receive(robot.loop.id(), position_m, robot.communication_radius_m, robot.received_until, now,
              [&](const agent::NeighbourReport& report) { take(report, now - report.as_of); });
-    robot.heard_until = now;
+    robot.received_until = now;
     if (prefetched != nullptr) prefetch(*prefetched);
   }
   void publish(const link::RobotStateMessage& state) { published.push_back(state); }
@@ -74,7 +74,7 @@ void Simulation::tick_robot(std::uint32_t id, const agent::RobotTick& tick,
                                 .rng = rngs_[id],
                                 .log = log,
                                 .state_ages = measures_ages ? &collected.ages : nullptr};
-  RobotBus bus{air_, robot, tick.now, upcoming.second, collected.published};
+  RobotBus bus{network_, robot, tick.now, upcoming.second, collected.published};
   if (const auto offered = offered_plan(robot)) {
     agent::RobotTick with_plan = tick;
     with_plan.new_plan = &*offered;
@@ -83,15 +83,15 @@ void Simulation::tick_robot(std::uint32_t id, const agent::RobotTick& tick,
   } else {
     robot.loop.step(tick, parts, bus);
   }
-  if (robot.loop.has_news()) has_news_[id] = 1;
+  if (robot.loop.has_updates()) has_updates_[id] = 1;
 }
 
 void Simulation::tick_slot(std::size_t slot) {
   const std::vector<std::uint32_t>& members = slots_[slot];
   const agent::RobotTick tick = tick_at(now_ + period_ * static_cast<std::int64_t>(slot) /
                                                    static_cast<std::int64_t>(slots_.size()));
-  const std::size_t parts = crew_.size();
-  crew_.run([&](std::size_t part) {
+  const std::size_t parts = thread_pool_.size();
+  thread_pool_.run([&](std::size_t part) {
     const std::size_t first = members.size() * part / parts;
     const std::size_t last = members.size() * (part + 1) / parts;
     for (std::size_t i = first; i < last; ++i) {
@@ -106,11 +106,11 @@ void Simulation::tick_slot(std::size_t slot) {
 /// Puts what the robots published on the network. A state is checked here, once, as each of its
 /// receivers would.
 void Simulation::deliver_published(SteadyTime now) {
-  on_air_.clear();
+  sent_states_.clear();
   for (Collected& collected : collected_) {
     for (const link::RobotStateMessage& state : collected.published) {
       if (!gate_.state(state, utc(now))) continue;
-      on_air_.push_back({.robot = RobotId(state.robot_id),
+      sent_states_.push_back({.robot = RobotId(state.robot_id),
                          .sequence = state.sequence_number,
                          .as_of = now,
                          .position_m = {state.x_m, state.y_m},
@@ -118,7 +118,7 @@ void Simulation::deliver_published(SteadyTime now) {
     }
     collected.published.clear();
   }
-  air_.post(now, on_air_);
+  network_.post(now, sent_states_);
 }
 
 /// What a robot tells of itself reaches supervisor and planner at once.
@@ -127,17 +127,17 @@ void Simulation::report_status() {
   for (std::uint32_t i = 0; i < robots_.size(); ++i) {
     const bool is_in_turn = i == in_turn;
     if (is_in_turn) in_turn += cadence_.every();
-    if (!is_in_turn && has_news_[i] == 0) continue;
-    has_news_[i] = 0;
+    if (!is_in_turn && has_updates_[i] == 0) continue;
+    has_updates_[i] = 0;
     if (dead_[i] != 0) continue;
     const link::RobotStatusMessage status = robots_[i].loop.status();
     supervisor_.on_status(RobotId(i), {.has_plan = robots_[i].loop.has_route(),
-                                       .hears_neighbours = true,
+                                       .receives_neighbours = true,
                                        .mode = status.mode,
                                        .settled = status.settled,
                                        .scene_version = keeper_.planned_scene(),
                                        .sent_at = now_});
-    keeper_.hear({.robot = RobotId(i),
+    keeper_.receive({.robot = RobotId(i),
                   .position_m = {status.x_m, status.y_m},
                   .arrived = status.arrived,
                   .lag_s = status.lag_s,

@@ -27,7 +27,7 @@ struct SoakSample {
 /// What a soak measured while its mission ran.
 struct SoakMeasurements {
   std::vector<SoakSample> samples{};
-  std::optional<link::StreamMeter::Counts> heard{};  ///< empty: nobody can listen to this channel
+  std::optional<link::StreamMeter::Counts> received{};  ///< empty: nobody can listen to this channel
   Histogram latency{};                               ///< written → received by a waiting listener
   link::StreamMeter::Worst worst{};
   Histogram use_latency{};        ///< written → used by a neighbour's controller

@@ -26,11 +26,11 @@ Result<Mission> soak_mission(std::uint32_t robots, double rate_hz, double durati
   const double variance_m2 = std::max(4.0, robots * kAreaPerRobot_m2 / (2.0 * std::numbers::pi));
   const double sigma_m = std::sqrt(variance_m2);
   const double side_m = 14.0 * sigma_m;
-  const auto crowd_at = [&](double x_m) {
+  const auto dense_region_at = [&](double x_m) {
     return fmt::format("[{{mean_m: [{}, {}], covariance_m2: [[{}, 0], [0, {}]], weight: 1}}]", x_m,
                        0.5 * side_m, variance_m2, variance_m2);
   };
-  const std::string ends[] = {crowd_at(0.25 * side_m), crowd_at(0.75 * side_m)};
+  const std::string ends[] = {dense_region_at(0.25 * side_m), dense_region_at(0.75 * side_m)};
   std::string yaml = fmt::format(
       "version: 1\nname: soak\nworld: {{bounds_m: [0, 0, {0}, {0}]}}\n"
       "robots: {{count: {1}}}\nstart: {2}\ngoal: {3}\n"

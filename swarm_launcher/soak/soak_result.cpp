@@ -24,7 +24,7 @@ double ratio(std::uint64_t part, std::uint64_t whole) {
 }
 
 double loss_of(const SoakMeasurements& m) {
-  const double at_listener = m.heard ? ratio(m.heard->lost, m.heard->sent()) : 0.0;
+  const double at_listener = m.received ? ratio(m.received->lost, m.received->sent()) : 0.0;
   return std::max(at_listener, ratio(m.receive_drops, m.states_used + m.receive_drops));
 }
 
@@ -105,8 +105,8 @@ std::vector<std::string> complaints(const SoakResult& result, const SoakCriteria
 std::string to_json(const SoakResult& result, const std::vector<std::string>& complaints) {
   const SoakMeasurements& m = result.measured;
   const Growth rss = growth_of(m.samples, &SoakSample::rss_mb);
-  const auto heard = [&](std::uint64_t link::StreamMeter::Counts::*count) {
-    return m.heard ? Json((*m.heard).*count) : Json();
+  const auto received = [&](std::uint64_t link::StreamMeter::Counts::*count) {
+    return m.received ? Json((*m.received).*count) : Json();
   };
   Json worst = nullptr;
   if (m.latency.count() > 0) {
@@ -123,12 +123,12 @@ std::string to_json(const SoakResult& result, const std::vector<std::string>& co
                      {"latency_ms", quantiles(m.latency)},
                      {"use_latency_ms", quantiles(m.use_latency)},
                      {"worst", worst},
-                     {"sent", m.heard ? Json(m.heard->sent()) : Json(m.states_sent)},
-                     {"received", heard(&link::StreamMeter::Counts::received)},
-                     {"lost", heard(&link::StreamMeter::Counts::lost)},
-                     {"gaps", heard(&link::StreamMeter::Counts::gaps)},
-                     {"duplicates", heard(&link::StreamMeter::Counts::duplicates)},
-                     {"reordered", heard(&link::StreamMeter::Counts::reordered)},
+                     {"sent", m.received ? Json(m.received->sent()) : Json(m.states_sent)},
+                     {"received", received(&link::StreamMeter::Counts::received)},
+                     {"lost", received(&link::StreamMeter::Counts::lost)},
+                     {"gaps", received(&link::StreamMeter::Counts::gaps)},
+                     {"duplicates", received(&link::StreamMeter::Counts::duplicates)},
+                     {"reordered", received(&link::StreamMeter::Counts::reordered)},
                      {"used", m.states_used},
                      {"receive_drops", m.receive_drops},
                      {"loss", loss_of(m)},
@@ -159,9 +159,9 @@ std::string to_text(const SoakResult& result, const std::vector<std::string>& co
   text += "                   p50 / p90 / p99 / p99.9 / p99.99 / max\n";
   text += fmt::format("  to a listener    {}\n", quantiles_text(m.latency));
   text += fmt::format("  to its use       {}\n", quantiles_text(m.use_latency));
-  if (m.heard) {
+  if (m.received) {
     text += fmt::format("  states           {} sent, {} lost, {} twice, {} out of order\n",
-                        m.heard->sent(), m.heard->lost, m.heard->duplicates, m.heard->reordered);
+                        m.received->sent(), m.received->lost, m.received->duplicates, m.received->reordered);
   }
   text += fmt::format("  at the robots    {} used, {} dropped by the kernel\n", m.states_used,
                       m.receive_drops);

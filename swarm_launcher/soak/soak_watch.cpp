@@ -29,10 +29,10 @@ SoakWatch::~SoakWatch() {
 
 void SoakWatch::listen(std::unique_ptr<link::GroupTap> tap) {
   tap_ = std::move(tap);
-  listener_ = std::thread([this] { hear_all(); });
+  listener_ = std::thread([this] { receive_all(); });
 }
 
-void SoakWatch::hear_all() {
+void SoakWatch::receive_all() {
   std::vector<link::CellStatesMessage> batches;
   while (!ended_) {
     batches.clear();
@@ -40,7 +40,7 @@ void SoakWatch::hear_all() {
     const UtcTime at = utc_now();
     const std::lock_guard lock(mutex_);
     for (const link::CellStatesMessage& batch : batches) {
-      for (const link::RobotStateMessage& state : batch.states) meter_.hear(state, at);
+      for (const link::RobotStateMessage& state : batch.states) meter_.receive(state, at);
     }
   }
 }
@@ -86,22 +86,22 @@ void SoakWatch::sample(const Flight& flight, SteadyTime now) {
     switches += one->context_switches;
   }
   Histogram recent;
-  std::uint64_t heard = 0;
+  std::uint64_t received = 0;
   {
     const std::lock_guard lock(mutex_);
     recent = meter_.take_recent_latency();
-    heard = meter_.counts().received;
+    received = meter_.counts().received;
   }
   const double passed_s = to_seconds(now - sampled_at_);
   s.p99_ms = 1e-3 * static_cast<double>(recent.quantile_us(0.99));
   s.cpu_share = std::max(0.0, cpu_s - cpu_s_) / passed_s;
   s.switches_hz = static_cast<double>(switches - std::min(switches, switches_)) / passed_s;
-  s.received_hz = static_cast<double>(heard - heard_) / passed_s;
+  s.received_hz = static_cast<double>(received - received_) / passed_s;
   // Rates of the first look would be those since the processes began.
   if (cpu_s_ > 0.0) samples_.push_back(s);
   cpu_s_ = cpu_s;
   switches_ = switches;
-  heard_ = heard;
+  received_ = received;
   sampled_at_ = now;
   drops_ = udp_receive_drops() - drops_before_;
 }
@@ -126,7 +126,7 @@ SoakMeasurements SoakWatch::measurements() const {
     for (const link::HistogramBinMessage& bin : bins) m.use_latency.add_bin(bin.bin, bin.count);
   }
   const std::lock_guard lock(mutex_);
-  if (tap_) m.heard = meter_.counts();
+  if (tap_) m.received = meter_.counts();
   m.latency = meter_.latency();
   m.worst = meter_.worst();
   return m;

@@ -36,7 +36,7 @@ class SoakWatch final : public FlightObserver {
   SoakMeasurements measurements() const;
 
  private:
-  void hear_all();
+  void receive_all();
   void sample(const Flight& flight, SteadyTime now);
 
   /// Counters of a robot when the mission began and now.
@@ -49,7 +49,7 @@ class SoakWatch final : public FlightObserver {
   std::vector<SoakSample> samples_;
   SteadyTime sampled_at_;
   double cpu_s_ = 0.0;
-  std::uint64_t switches_ = 0, heard_ = 0;
+  std::uint64_t switches_ = 0, received_ = 0;
   std::uint64_t drops_before_ = 0, drops_ = 0;
 
   std::unique_ptr<link::GroupTap> tap_;

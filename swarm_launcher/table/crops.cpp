@@ -61,11 +61,11 @@ Result<void> crops_experiment(Rows& rows) {
     }
     lines.push_back(std::move(line));
   }
-  rows.say_rows("map, N", "authors: all arrived, wall");
+  rows.add_published_rows("map, N", "authors: all arrived, wall");
   if (rows.quick()) return {};
-  rows.say("\n| map | R² of wall time (median) over N |\n|---|---|");
+  rows.add_line("\n| map | R² of wall time (median) over N |\n|---|---|");
   for (const Line& line : lines) {
-    rows.say(fmt::format("| {} | {:.3f} |", line.name, linearity(line.points)));
+    rows.add_line(fmt::format("| {} | {:.3f} |", line.name, linearity(line.points)));
   }
   rows.draw(
       "wall-time",

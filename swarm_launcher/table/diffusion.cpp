@@ -37,7 +37,7 @@ Mission scaled(Mission mission, const Case& c) {
   robots.count = c.robots;
   for (double* value : {&robots.radius_m, &robots.placement_gap_m, &robots.speed_max_mps,
                         &mission.control.cruise_mps, &mission.safety.neighbour_margin_m,
-                        &mission.safety.obstacle_margin_m, &mission.link.hear_radius_m,
+                        &mission.safety.obstacle_margin_m, &mission.link.communication_radius_m,
                         &mission.link.send_error_m}) {
     *value *= factor;
   }
@@ -106,8 +106,8 @@ Result<void> experiment(Rows& rows, std::span<const Case> cases) {
         rows.newest().mean([](auto& f) { return f.energy_m2.empty() ? 0.0 : f.energy_m2.back(); }));
     draw_energy(rows, i, c);
   }
-  rows.say_rows("shape", "N | r m | tolerance m²");
-  rows.say(
+  rows.add_published_rows("shape", "N | r m | tolerance m²");
+  rows.add_line(
       "\n| shape | N | r m | tolerance m² | formed | by gradient descent | E it ends at, mean, m² "
       "|\n"
       "|---|---|---|---|---|---|---|\n" +

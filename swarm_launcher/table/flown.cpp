@@ -19,7 +19,7 @@
 namespace swarm::launcher {
 namespace {
 
-// Distances to obstacles are looked at in every so manieth step.
+// Distances to obstacles are looked at in every n-th step.
 constexpr std::size_t kRiskEvery = 5;
 // Between two recorded points robots are taken to move straight. Of small robots, controlled a
 // thousand times a second, all would not fit into memory; one of 1 cm drives 1.5 mm in between.
@@ -149,7 +149,7 @@ Result<Flown> fly(const Mission& mission, const SimulationOptions& options, bool
 Result<std::vector<std::vector<Flown>>> fly_in_turns(
     std::span<const Mission> missions, std::uint32_t seeds, const SimulationOptions& options,
     const std::function<void(const Flown&)>& done) {
-  std::mutex telling;
+  std::mutex output_mutex;
   std::vector<std::optional<Result<Flown>>> results(missions.size() * seeds);
   std::atomic<std::size_t> next = 0;
   const auto work = [&] {
@@ -157,7 +157,7 @@ Result<std::vector<std::vector<Flown>>> fly_in_turns(
       SimulationOptions own = options;
       own.seed = i / missions.size() + 1;
       results[i] = fly(missions[i % missions.size()], own, own.seed == 1);
-      const std::lock_guard lock(telling);
+      const std::lock_guard lock(output_mutex);
       if (*results[i]) done(**results[i]);
     }
   };

@@ -97,7 +97,7 @@ Result<void> network_experiment(Rows& rows) {
       !added) {
     return added;
   }
-  rows.say_rows("swarm", "loss | delay");
+  rows.add_published_rows("swarm", "loss | delay");
   return {};
 }
 

@@ -31,7 +31,7 @@ constexpr std::array<Clearance, 3> kPublishedClearance{{{.32, .49}, {.62, .76}, 
 
 /// The paper's least distances beside ours, and which of them are worse.
 void compare_clearances(Rows& rows) {
-  rows.say(
+  rows.add_line(
       "\n| case | least gap robot m: paper / here | obstacle m: paper / here | here |\n"
       "|---|---|---|---|");
   for (std::size_t i = 0; i < kPublishedClearance.size(); ++i) {
@@ -41,7 +41,7 @@ void compare_clearances(Rows& rows) {
     const double own_obstacle_m = row.least([](const Flown& f) { return f.obstacle_gap_m; });
     const bool worse_robot = own_robot_m < robot_m;
     const bool worse_obstacle = own_obstacle_m < obstacle_m;
-    rows.say(fmt::format("| {} | {:.2f} / {:.2f} | {:.2f} / {:.2f} | {} |", row.name, robot_m,
+    rows.add_line(fmt::format("| {} | {:.2f} / {:.2f} | {:.2f} / {:.2f} | {} |", row.name, robot_m,
                          own_robot_m, obstacle_m, own_obstacle_m,
                          worse_robot && worse_obstacle ? "both worse"
                          : worse_robot                 ? "robots worse"
@@ -106,19 +106,19 @@ Result<void> rover_experiment(Rows& rows) {
     return added;
   }
   rows.may_fail();
-  rows.say(
+  rows.add_line(
       "Stand-in maps: the paper prints no coordinates of its obstacles. Its minutes are of "
       "planning "
       "alone; here `plan ms` adds up all plans of a flight, one each "
       "planner.replan_period_s.");
-  rows.say_rows("case", "ROVER min / m / gap robot / obstacle | formation | predictive");
+  rows.add_published_rows("case", "ROVER min / m / gap robot / obstacle | formation | predictive");
   compare_clearances(rows);
-  rows.say(
+  rows.add_line(
       "\n| α | paper min / m | mean of robots' least clearance m | / bound | mission s |\n"
       "|---|---|---|---|---|");
   for (std::size_t a = 0; a < by_alpha.size(); ++a) {
     const Row& row = rows.all()[by_alpha[a]];
-    rows.say(fmt::format("| {}{} | {} | {:.3f} | {:.4f} | {:.1f} |", kAlphas[a].first,
+    rows.add_line(fmt::format("| {}{} | {} | {:.3f} | {:.4f} | {:.1f} |", kAlphas[a].first,
                          a == 0 ? " (the flights of scenario 2 above)" : "", kAlphas[a].second,
                          row.mean([](const Flown& f) { return f.clearance_m; }),
                          row.mean([](const Flown& f) { return f.ratio(); }),

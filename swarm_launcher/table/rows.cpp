@@ -95,7 +95,7 @@ Result<void> Rows::add_in_turns(const std::vector<Named>& named, std::span<const
   for (std::size_t i = 0; i < missions.size(); ++i) {
     title =
         fmt::format("{}: {} robots, {} seed(s)", named[i].name, missions[i].robots.count, seeds);
-    if (i + 1 < missions.size()) progress.say(title);
+    if (i + 1 < missions.size()) progress.add_line(title);
   }
   progress.show(title, "");
   std::size_t count = 0;
@@ -110,14 +110,14 @@ Result<void> Rows::add_in_turns(const std::vector<Named>& named, std::span<const
   return {};
 }
 
-void Rows::say_rows(std::string_view head, std::string_view published_head) {
+void Rows::add_published_rows(std::string_view head, std::string_view published_head) {
   const std::string columns = fmt::format("{} | {} | {}", head, published_head, kOurs);
-  say("| " + columns + " |");
+  add_line("| " + columns + " |");
   std::string rule = "|";
   for (auto i = std::count(columns.begin(), columns.end(), '|'); i >= 0; --i) rule += "---|";
-  say(rule);
+  add_line(rule);
   for (const Row& row : rows_) {
-    say(fmt::format("| {} | {} | {} |", row.name, row.published, cells(row)));
+    add_line(fmt::format("| {} | {} | {} |", row.name, row.published, cells(row)));
   }
 }
 

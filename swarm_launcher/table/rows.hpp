@@ -85,9 +85,9 @@ class Rows {
   const Row& newest() const { return rows_.back(); }
   std::span<const Row> newest(std::size_t count) const { return std::span(rows_).last(count); }
 
-  void say(const std::string& line) { text_ += line + "\n"; }
+  void add_line(const std::string& line) { text_ += line + "\n"; }
   /// The table of all rows.
-  void say_rows(std::string_view head, std::string_view published_head);
+  void add_published_rows(std::string_view head, std::string_view published_head);
   /// A file of its own beside the table.
   void draw(const std::string& name, std::string svg) {
     pictures_.emplace_back(name, std::move(svg));

@@ -69,10 +69,10 @@ Result<void> swarmprm_experiment(Rows& rows) {
     }
   }
   if (auto added = add_ablations(rows, *mission); !added) return added;
-  rows.say(
+  rows.add_line(
       "Stand-in map: the paper prints no obstacles. Its columns are minutes and metres on its "
       "own map; compare path / bound.\n");
-  rows.say_rows("N", "SwarmPRM min / m | formation control | dRRT* | ADOC");
+  rows.add_published_rows("N", "SwarmPRM min / m | formation control | dRRT* | ADOC");
   return {};
 }
 

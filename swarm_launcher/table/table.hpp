@@ -24,7 +24,7 @@ struct TableOptions {
 
 /// `swarm_launcher table`: a paper's experiment, simulated, with the paper's and its peers' figures
 /// beside ours. The table goes to stdout as Markdown, progress to stderr. What the papers' metres
-/// and minutes can be compared to is told by docs/BENCHMARKS.md: their obstacles are not published.
+/// and minutes can be compared to is given by docs/BENCHMARKS.md: their obstacles are not published.
 Result<ExitCode> make_table(const TableOptions& options);
 
 }  // namespace swarm::launcher

@@ -61,7 +61,7 @@ Result<std::unique_ptr<DiscoveryServer>> start_at(std::uint32_t domain, std::uin
                   fmt::format("DDS refused a discovery server at 127.0.0.1:{}", port));
     }
     auto server = std::make_unique<FastDdsDiscoveryServer>(participant, port);
-    if (!sockets->hears(port)) {  // the vendor would quietly listen elsewhere
+    if (!sockets->can_receive(port)) {  // the vendor would quietly listen elsewhere
       return fail(ErrorCode::kEnvironment,
                   fmt::format("discovery server: UDP port 127.0.0.1:{} is taken", port));
     }

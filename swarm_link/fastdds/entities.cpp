@@ -17,7 +17,7 @@ namespace dds = eprosima::fastdds::dds;
 Result<std::unique_ptr<Entities>> Entities::make(const FastDdsOptions& options) {
   const auto ports = first_ports(options.domain, options.index);
   if (!ports) return tl::unexpected(ports.error());
-  if (!options.star && (options.discovery.host != "127.0.0.1" || options.discovery.port == 0)) {
+  if (!options.static_peers && (options.discovery.host != "127.0.0.1" || options.discovery.port == 0)) {
     return fail(ErrorCode::kBadInput,
                 fmt::format("discovery server '{}:{}' is not a port on 127.0.0.1",
                             options.discovery.host, options.discovery.port));
@@ -29,7 +29,7 @@ Result<std::unique_ptr<Entities>> Entities::make(const FastDdsOptions& options) 
                                                     options.faults);
     // The vendor announces a participant before it hands it what its sockets receive: a hub that
     // answers at once would go unheard, and does not repeat itself.
-    sockets->set_silent(options.star.has_value());
+    sockets->set_silent(options.static_peers.has_value());
     auto* participant = dds::DomainParticipantFactory::get_instance()->create_participant(
         options.domain, client_qos(options, *ports, sockets), nullptr, dds::StatusMask::none());
     if (participant == nullptr) {
@@ -98,17 +98,17 @@ void Entities::receive() {
 }
 
 Result<void> Entities::self_check() const {
-  if (!sockets_->hears_data() || !sockets_->hears_metatraffic()) {
+  if (!sockets_->can_receive_data() || !sockets_->can_receive_metatraffic()) {
     return fail(ErrorCode::kEnvironment,
                 fmt::format("participant '{}' is deaf: none of {} UDP ports from {}:{} on "
                             "(domain {}, index {}) was free for its {}; end old processes, use "
                             "another domain, or give the address of an interface",
                             options_.name, options_.port_tries + 1, options_.interface,
-                            sockets_->hears_metatraffic() ? ports_.data : ports_.metatraffic,
+                            sockets_->can_receive_metatraffic() ? ports_.data : ports_.metatraffic,
                             options_.domain, options_.index,
-                            sockets_->hears_metatraffic() ? "data" : "discovery"));
+                            sockets_->can_receive_metatraffic() ? "data" : "discovery"));
   }
-  if (options_.star && options_.star->is_hub && !sockets_->hears(ports_.metatraffic)) {
+  if (options_.static_peers && options_.static_peers->is_relay && !sockets_->can_receive(ports_.metatraffic)) {
     return fail(ErrorCode::kEnvironment,
                 fmt::format("hub '{}': UDP port {}:{} (domain {}, index {}) is taken; end "
                             "old processes or use another domain",

@@ -48,15 +48,15 @@ class FastDdsParticipant final : public Participant {
     return guarded("reader", topic.name, [&]() -> Result<RawReaderPtr> {
       register_type(topic);
       std::optional<eprosima::fastrtps::rtps::Locator_t> group;
-      if (topic.qos.crowd && multicast_) group = group_of(entities_->options().domain, topic.name);
+      if (topic.qos.many_readers && multicast_) group = group_of(entities_->options().domain, topic.name);
       const auto made = entities_->make_reader(topic.name, topic.type, topic.qos, group);
       if (!made) return tl::unexpected(made.error());
       auto membership =
           group ? std::make_unique<GroupMembership>(entities_->sockets(), *group) : nullptr;
-      const bool deaf = membership && !membership->joined();
+      const bool cannot_receive = membership && !membership->joined();
       auto reader = std::make_unique<FastDdsReader>(
           entities_->subscriber(), *made, entities_->topics(), topic.name, std::move(membership));
-      if (deaf) {
+      if (cannot_receive) {
         return fail(ErrorCode::kEnvironment,
                     fmt::format("reader of '{}' cannot join a multicast group", topic.name));
       }

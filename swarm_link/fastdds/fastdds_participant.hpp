@@ -23,8 +23,8 @@ struct DiscoveryAddress {
 
 /// Discovery without a server: a participant announces itself to a few others, who answer, and to
 /// nobody else.
-struct Star {
-  bool is_hub = false;  ///< others know its port: it listens at that of its index, or is of no use
+struct StaticPeers {
+  bool is_relay = false;  ///< others know its port: it listens at that of its index, or is of no use
   std::vector<std::uint32_t> peers{};  ///< indices of the hubs to announce itself to
   std::string host = "127.0.0.1";      ///< where those are
 };
@@ -34,7 +34,7 @@ struct FastDdsOptions {
   std::uint32_t domain = 0;
   std::uint32_t index = 0;       ///< unique per domain; decides the first ports tried
   DiscoveryAddress discovery{};  ///< the server this participant is a client of, unless in a …
-  std::optional<Star> star{};
+  std::optional<StaticPeers> static_peers{};
   std::string interface = "127.0.0.1";  ///< address of the interface it speaks on
   /// Of exclusive writers. A stand-by planner that waits in the background has less; one that
   /// replaces another must have more: a killed writer keeps its topic until its lease ends, and an

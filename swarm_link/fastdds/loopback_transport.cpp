@@ -65,7 +65,7 @@ class LoopbackTransport final : public rtps::ChainingTransport {
   bool OpenInputChannel(const rtps::Locator& locator, rtps::TransportReceiverInterface* receiver,
                         std::uint32_t max_message_size) override {
     if (sockets().owns(locator)) return sockets().open(locator, receiver);
-    // Straight to the low level: nothing is to be done to the bytes on their way.
+    // Straight to the low level: nothing is to be done to the bytes under way.
     const bool opened = low_level_transport_->OpenInputChannel(locator, receiver, max_message_size);
     if (opened) sockets().note_opened(locator.port);
     return opened;
@@ -195,18 +195,18 @@ void ReceiveSockets::drain() {
   }
 }
 
-bool ReceiveSockets::hears_data() const {
+bool ReceiveSockets::can_receive_data() const {
   const std::lock_guard lock(mutex_);
   return std::any_of(opened_.begin(), opened_.end(), [&](auto port) { return is_data_port(port); });
 }
 
-bool ReceiveSockets::hears_metatraffic() const {
+bool ReceiveSockets::can_receive_metatraffic() const {
   const std::lock_guard lock(mutex_);
   return std::any_of(opened_.begin(), opened_.end(),
                      [&](auto port) { return !is_data_port(port); });
 }
 
-bool ReceiveSockets::hears(std::uint32_t port) const {
+bool ReceiveSockets::can_receive(std::uint32_t port) const {
   const std::lock_guard lock(mutex_);
   return std::find(opened_.begin(), opened_.end(), port) != opened_.end();
 }

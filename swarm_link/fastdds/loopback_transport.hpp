@@ -58,9 +58,9 @@ class ReceiveSockets {
   void set_silent(bool silent) { silent_ = silent; }
   bool silent() const { return silent_; }
 
-  bool hears_data() const;
-  bool hears_metatraffic() const;
-  bool hears(std::uint32_t port) const;
+  bool can_receive_data() const;
+  bool can_receive_metatraffic() const;
+  bool can_receive(std::uint32_t port) const;
 
  private:
   struct Socket {

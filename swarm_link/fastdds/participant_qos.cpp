@@ -53,15 +53,15 @@ dds::DomainParticipantQos common_qos(std::shared_ptr<ReceiveSockets> sockets,
 
 /// Agents say often that they are there, since that is how they find a hub that was restarted: a
 /// planner within the two seconds in which nobody misses it.
-void announce_to(const Star& star, std::uint32_t domain, rtps::BuiltinAttributes& builtin) {
+void announce_to(const StaticPeers& static_peers, std::uint32_t domain, rtps::BuiltinAttributes& builtin) {
   auto& discovery = builtin.discovery_config;
   discovery.discoveryProtocol = rtps::DiscoveryProtocol_t::SIMPLE;
   discovery.initial_announcements = {5, {0, 50'000'000}};  // the first is held back
-  discovery.leaseDuration_announcementperiod = star.is_hub
+  discovery.leaseDuration_announcementperiod = static_peers.is_relay
                                                    ? eprosima::fastrtps::Duration_t{3, 0}
                                                    : eprosima::fastrtps::Duration_t{0, 800'000'000};
-  for (const std::uint32_t peer : star.peers) {
-    builtin.initialPeersList.push_back(locator(star.host, announcement_port(domain, peer)));
+  for (const std::uint32_t peer : static_peers.peers) {
+    builtin.initialPeersList.push_back(locator(static_peers.host, announcement_port(domain, peer)));
   }
 }
 
@@ -100,8 +100,8 @@ dds::DomainParticipantQos client_qos(const FastDdsOptions& options, Ports ports,
   wire.builtin.metatrafficUnicastLocatorList.push_back(
       locator(options.interface, ports.metatraffic));
   wire.builtin.mutation_tries = options.port_tries;
-  if (options.star) {
-    announce_to(*options.star, options.domain, wire.builtin);
+  if (options.static_peers) {
+    announce_to(*options.static_peers, options.domain, wire.builtin);
   } else {
     wire.builtin.discovery_config.discoveryProtocol = rtps::DiscoveryProtocol_t::CLIENT;
     eprosima::fastdds::rtps::RemoteServerAttributes server;

@@ -14,7 +14,7 @@ namespace swarm::link {
 /// state under its id is either one of them, which the bus sent back, or forged.
 class EchoGuard {
  public:
-  void said(const RobotStateMessage& state) {
+  void record_sent(const RobotStateMessage& state) {
     published_[next_++ % published_.size()] = {state.sequence_number, state.stamp_utc_ns};
   }
   bool is_echo(const RobotStateMessage& state) const {

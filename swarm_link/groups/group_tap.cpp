@@ -22,8 +22,8 @@ class SocketTap final : public GroupTap, private DatagramSink {
   SocketTap(const SocketTap&) = delete;
   SocketTap& operator=(const SocketTap&) = delete;
 
-  std::size_t take(Duration patience, std::vector<CellStatesMessage>& out) override {
-    if (!wait(patience)) return 0;
+  std::size_t take(Duration timeout, std::vector<CellStatesMessage>& out) override {
+    if (!wait(timeout)) return 0;
     taking_ = &out;
     const std::size_t before = out.size();
     drain_.drain(fd_, *this);
@@ -31,8 +31,8 @@ class SocketTap final : public GroupTap, private DatagramSink {
     return out.size() - before;
   }
 
-  std::size_t take_raw(Duration patience, const RawSink& sink) override {
-    if (!wait(patience)) return 0;
+  std::size_t take_raw(Duration timeout, const RawSink& sink) override {
+    if (!wait(timeout)) return 0;
     sink_ = &sink;
     sunk_ = 0;
     drain_.drain(fd_, *this);
@@ -55,9 +55,9 @@ class SocketTap final : public GroupTap, private DatagramSink {
     ++undecodable_;
   }
 
-  bool wait(Duration patience) const {
+  bool wait(Duration timeout) const {
     pollfd waiting{.fd = fd_, .events = POLLIN, .revents = 0};
-    const auto ms = std::chrono::duration_cast<std::chrono::milliseconds>(patience).count();
+    const auto ms = std::chrono::duration_cast<std::chrono::milliseconds>(timeout).count();
     return ::poll(&waiting, 1, static_cast<int>(ms)) > 0;
   }
 

@@ -22,12 +22,12 @@ class GroupTap {
  public:
   virtual ~GroupTap() = default;
 
-  /// Waits up to `patience` for something to come and appends it. Returns how many batches came.
-  virtual std::size_t take(Duration patience, std::vector<CellStatesMessage>& out) = 0;
+  /// Waits up to `timeout` for something to come and appends it. Returns how many batches came.
+  virtual std::size_t take(Duration timeout, std::vector<CellStatesMessage>& out) = 0;
 
   /// The same for samples as they are, CDR with its encapsulation; they live as long as the call.
   using RawSink = std::function<void(std::span<const std::byte>)>;
-  virtual std::size_t take_raw(Duration patience, const RawSink& sink) = 0;
+  virtual std::size_t take_raw(Duration timeout, const RawSink& sink) = 0;
 
   virtual std::uint64_t undecodable() const = 0;
 };

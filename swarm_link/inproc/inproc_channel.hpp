@@ -17,7 +17,7 @@
 
 namespace swarm::link::inproc {
 
-/// A sample on its way, shared by all who keep it. Histories and ownership are kept per instance.
+/// A sample under way, shared by all who keep it. Histories and ownership are kept per instance.
 struct Sample {
   std::shared_ptr<const std::vector<std::byte>> bytes;
   std::uint32_t instance = 0;

@@ -23,7 +23,7 @@
 namespace swarm::monitor::cli {
 namespace {
 
-constexpr Duration kPatience = std::chrono::milliseconds(10);
+constexpr Duration kTimeout = std::chrono::milliseconds(10);
 /// Places among those who look on at a run: recorder 0, view 1, top 2.
 constexpr std::uint32_t kViewNumber = 1;
 constexpr std::uint32_t kTopNumber = 2;
@@ -44,7 +44,7 @@ Result<ExitCode> serve(ViewServerOptions options, ViewSource& source) {
   std::printf("http://%s:%u/%s%s\n", options.address.c_str(), (*server)->port(),
               options.token.empty() ? "" : "#token=", options.token.c_str());
   std::fflush(stdout);
-  while (shell::stop_requests() == 0) (*server)->serve(kPatience);
+  while (shell::stop_requests() == 0) (*server)->serve(kTimeout);
   return ExitCode::kOk;
 }
 
@@ -77,7 +77,7 @@ Result<ExitCode> top(const std::filesystem::path& run_dir) {
   std::uint64_t received = 0;
   UtcTime shown = utc_now();
   while (shell::stop_requests() == 0) {
-    std::this_thread::sleep_for(kPatience);
+    std::this_thread::sleep_for(kTimeout);
     const UtcTime now = utc_now();
     (*source)->poll(now);
     if (now - shown < std::chrono::seconds(1)) continue;

@@ -43,7 +43,7 @@ Command add_merge(CLI::App& program) {
   };
   const auto o = std::make_shared<Options>();
   CLI::App* const merge = program.add_subcommand(
-      "merge", "Make one recording of a run's black boxes, recordings and files");
+      "merge", "Make one recording of a run's robot logs, recordings and files");
   merge->add_option("run_dir", o->run_dir, "Directory of the run")->required();
   merge->add_option("--out", o->out, "Recording (default: recording.mcap in the run directory)")
       ->type_name("FILE");

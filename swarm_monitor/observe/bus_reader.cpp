@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "swarm_link/cdr/codec.hpp"
-#include "swarm_link/event_words.hpp"
+#include "swarm_link/event_names.hpp"
 
 namespace swarm::monitor {
 namespace {
@@ -50,11 +50,11 @@ bool BusReader::decode(const TappedSample& sample, M& out) {
 void BusReader::take_states(const TappedSample& sample) {
   if (!decode(sample, states_) || !gate_.batch(states_)) return;
   for (const link::RobotStateMessage& state : states_.states) {
-    if (!gate_.state(state, sample.heard)) continue;
+    if (!gate_.state(state, sample.received)) continue;
     observer_.on_state({.robot = RobotId(state.robot_id),
                         .sequence = state.sequence_number,
                         .stamp = UtcTime(Duration(state.stamp_utc_ns)),
-                        .received = sample.heard,
+                        .received = sample.received,
                         .position_m = {state.x_m, state.y_m},
                         .velocity_mps = {state.vx_mps, state.vy_mps},
                         .mode = state.mode});
@@ -62,10 +62,10 @@ void BusReader::take_states(const TappedSample& sample) {
 }
 
 void BusReader::take_status(const TappedSample& sample) {
-  if (!decode(sample, status_) || !gate_.status(status_, sample.heard)) return;
+  if (!decode(sample, status_) || !gate_.status(status_, sample.received)) return;
   for (const link::RobotStatusMessage& status : status_.robots) {
     observer_.on_status({.robot = RobotId(status.robot_id),
-                         .received = sample.heard,
+                         .received = sample.received,
                          .position_m = {status.x_m, status.y_m},
                          .mode = status.mode,
                          .arrived = status.arrived,
@@ -83,43 +83,43 @@ void BusReader::take_status(const TappedSample& sample) {
 void BusReader::take_plan(const TappedSample& sample) {
   link::PlanMessage message;
   if (!decode(sample, message)) return;
-  auto plan = gate_.plan(message, sample.heard);
+  auto plan = gate_.plan(message, sample.received);
   if (!plan) return;
   plan_ = std::move(*plan);
   observer_.on_plan({.flow = plan_,
                      .version = message.version,
                      .excess_m = message.excess_m,
-                     .received = sample.heard});
+                     .received = sample.received});
 }
 
 void BusReader::take_scene(const TappedSample& sample) {
   link::SceneMessage message;
   if (!decode(sample, message)) return;
-  const auto scene = gate_.scene(message, sample.heard);
+  const auto scene = gate_.scene(message, sample.received);
   // Version 0 is the mission file's, which observers know from the beginning.
   if (scene && scene->version != 0) observer_.on_scene(*scene);
 }
 
 void BusReader::take_heartbeat(const TappedSample& sample) {
   link::HeartbeatMessage message;
-  if (!decode(sample, message) || !gate_.heartbeat(message, sample.heard)) return;
+  if (!decode(sample, message) || !gate_.heartbeat(message, sample.received)) return;
   observer_.on_clock({.phase = message.phase,
                       .mission_time_s = message.mission_time_s,
                       .plan_time_s = message.plan_time_s,
                       .plan_rate = message.plan_rate,
-                      .received = sample.heard});
+                      .received = sample.received});
 }
 
 void BusReader::take_command(const TappedSample& sample) {
   // Nothing of a command is reported but that it was refused; what it does, heartbeats report.
   link::CommandMessage message;
-  if (decode(sample, message)) (void)gate_.command(message, sample.heard);
+  if (decode(sample, message)) (void)gate_.command(message, sample.received);
 }
 
 void BusReader::take_event(const TappedSample& sample) {
   link::EventMessage message;
   if (!decode(sample, message) || !gate_.event(message)) return;
-  observer_.on_event({.received = sample.heard,
+  observer_.on_event({.received = sample.received,
                       .source = link::source_name(message.source),
                       .severity = std::string(link::to_string(message.severity)),
                       .code = message.code,

@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "swarm_core/base/clock.hpp"
-#include "swarm_core/blackbox/record_codec.hpp"
+#include "swarm_core/robot_log/record_codec.hpp"
 #include "swarm_core/mcap/idl_text.hpp"
 #include "swarm_link/groups/group_tap.hpp"
 #include "swarm_link/monitor_topics.hpp"
@@ -45,7 +45,7 @@ std::vector<std::string_view> structs_of(link::MessageList<M...>, const std::str
 }
 
 mcap::Schema schema_of(const std::string& type) {
-  for (const blackbox::Kind& kind : blackbox::kinds()) {
+  for (const robot_log::Kind& kind : robot_log::kinds()) {
     if (kind.type == type) {
       return {.name = type, .encoding = "omgidl", .data = mcap::blackbox_idl(kind.structs)};
     }
@@ -69,14 +69,14 @@ class RunTap final : public BusTap {
   }
   void listen(std::unique_ptr<link::GroupTap> groups) { groups_ = std::move(groups); }
 
-  void take(Duration patience, const Sink& sink) override {
+  void take(Duration timeout, const Sink& sink) override {
     if (groups_) {
-      groups_->take_raw(patience, [&](std::span<const std::byte> bytes) {
+      groups_->take_raw(timeout, [&](std::span<const std::byte> bytes) {
         const UtcTime now = utc_now();
         // As DDS would carry it: in multiples of four bytes.
         padded_.assign(bytes.begin(), bytes.end());
         padded_.resize((bytes.size() + 3) / 4 * 4);
-        sink({.topic = states_index(), .heard = now, .said = now, .bytes = as_chars(padded_)});
+        sink({.topic = states_index(), .received = now, .sent = now, .bytes = as_chars(padded_)});
       });
     }
     participant_->receive();
@@ -86,19 +86,19 @@ class RunTap final : public BusTap {
       reader->take(messages_);
       // A reader hands over one instance after the other.
       std::stable_sort(messages_.begin(), messages_.end(),
-                       [](const auto& a, const auto& b) { return a.said_utc_ns < b.said_utc_ns; });
+                       [](const auto& a, const auto& b) { return a.sent_utc_ns < b.sent_utc_ns; });
       for (const link::RawMessage& message : messages_) {
-        const UtcTime said{Duration(message.said_utc_ns)};
-        const bool believed = said <= now && now - said < kMostDelay;
+        const UtcTime sent{Duration(message.sent_utc_ns)};
+        const bool plausible = sent <= now && now - sent < kMostDelay;
         sink({.topic = topic,
-              .heard = now,
-              .said = believed ? said : now,
+              .received = now,
+              .sent = plausible ? sent : now,
               .bytes = as_chars(message.bytes)});
       }
     }
   }
 
-  bool hears_somebody() const override {
+  bool receives_anything() const override {
     return std::any_of(readers_.begin(), readers_.end(),
                        [](const auto& reader) { return reader.second->matched() > 0; });
   }
@@ -134,7 +134,7 @@ Result<void> listen_to_cells(RunTap& tap, const Mission& mission) {
       link::RawTopic raw = link::states_topic().wire;
       raw.name = topic.name;
       raw.qos = topic.qos;
-      if (auto heard = tap.listen(raw, states_index()); !heard) return heard;
+      if (auto received = tap.listen(raw, states_index()); !received) return received;
     }
   }
   return {};
@@ -167,19 +167,19 @@ Result<std::unique_ptr<BusTap>> tap_bus(const std::filesystem::path& run_dir,
   auto tap = std::make_unique<RunTap>(std::move(*participant));
   std::uint32_t index = 0;
   for (const link::MonitorTopic& topic : link::monitor_topics()) {
-    if (auto heard = tap->listen(topic.wire, index++); !heard) {
-      return tl::unexpected(heard.error());
+    if (auto received = tap->listen(topic.wire, index++); !received) {
+      return tl::unexpected(received.error());
     }
   }
-  if (auto heard = tap->listen(link::states_topic().wire, index); !heard) {
-    return tl::unexpected(heard.error());
+  if (auto received = tap->listen(link::states_topic().wire, index); !received) {
+    return tl::unexpected(received.error());
   }
   if (run->channel == Channel::kGroups) {
     auto groups = link::make_group_tap(run->domain);
     if (!groups) return tl::unexpected(groups.error());
     tap->listen(std::move(*groups));
-  } else if (auto heard = listen_to_cells(*tap, *mission); !heard) {
-    return tl::unexpected(heard.error());
+  } else if (auto received = listen_to_cells(*tap, *mission); !received) {
+    return tl::unexpected(received.error());
   }
   return tap;
 }

@@ -29,8 +29,8 @@ std::uint32_t states_index();
 
 struct TappedSample {
   std::uint32_t topic = 0;
-  UtcTime heard{};
-  UtcTime said{};  ///< by its writer's clock, where that tells; else as heard
+  UtcTime received{};
+  UtcTime sent{};  ///< by its writer's clock, where that tells; else as heard
   std::span<const unsigned char> bytes{};
 };
 
@@ -40,11 +40,11 @@ class BusTap {
   using Sink = std::function<void(const TappedSample&)>;
   virtual ~BusTap() = default;
 
-  /// Hands over what came; waits up to `patience` for states.
-  virtual void take(Duration patience, const Sink& sink) = 0;
+  /// Hands over what came; waits up to `timeout` for states.
+  virtual void take(Duration timeout, const Sink& sink) = 0;
 
   /// Whether launcher or planner are there.
-  virtual bool hears_somebody() const = 0;
+  virtual bool receives_anything() const = 0;
 };
 
 Result<std::unique_ptr<BusTap>> tap_bus(const std::filesystem::path& run_dir,

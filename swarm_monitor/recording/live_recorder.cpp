@@ -14,7 +14,7 @@
 namespace swarm::monitor {
 namespace {
 
-constexpr Duration kPatience = std::chrono::milliseconds(5);
+constexpr Duration kTimeout = std::chrono::milliseconds(5);
 constexpr Duration kFlushEvery = std::chrono::seconds(1);
 /// A run whose launcher was killed writes no summary: its recording ends when all is silent.
 constexpr Duration kSilence = std::chrono::seconds(20);
@@ -48,22 +48,22 @@ Result<RecordResult> record_bus(const RecordOptions& options) {
   link::StreamMeter meter(mission->robots.count);
   link::CellStatesMessage states;
   const UtcTime began = utc_now();
-  UtcTime heard_at = began, flushed_at = began;
+  UtcTime received_at = began, flushed_at = began;
   for (;;) {
-    (*tap)->take(kPatience, [&](const TappedSample& sample) {
-      writer->write(static_cast<std::uint16_t>(sample.topic), ns(sample.heard), ns(sample.said),
+    (*tap)->take(kTimeout, [&](const TappedSample& sample) {
+      writer->write(static_cast<std::uint16_t>(sample.topic), ns(sample.received), ns(sample.sent),
                     sample.bytes);
       ++result.by_topic[sample.topic];
-      heard_at = sample.heard;
+      received_at = sample.received;
       if (sample.topic != states_index()) return;
       // Only to count what is missing; the file holds the bytes.
       if (!link::decode(std::as_bytes(sample.bytes), states)) return;
-      for (const auto& state : states.states) meter.hear(state, sample.heard);
+      for (const auto& state : states.states) meter.receive(state, sample.received);
     });
     const UtcTime now = utc_now();
     if (options.stop_requested && options.stop_requested()) break;
     if (options.duration_s && to_seconds(now - began) >= *options.duration_s) break;
-    if (now - heard_at > kSilence) break;
+    if (now - received_at > kSilence) break;
     if (now - flushed_at < kFlushEvery) continue;
     flushed_at = now;
     writer->flush();

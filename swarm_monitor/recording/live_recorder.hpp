@@ -30,7 +30,7 @@ struct RecordResult {
   std::vector<std::uint64_t> by_topic;  ///< as recorded_topics()
 };
 
-/// Records the bus of a run as it is. What was heard is on the disk a second later. `mission.yaml`
+/// Records the bus of a run as it is. What was received is on the disk a second later. `mission.yaml`
 /// of the run is attached.
 Result<RecordResult> record_bus(const RecordOptions& options);
 

@@ -111,7 +111,7 @@ std::string media_type_of(const std::string& name) {
 Result<MergeResult> merge_run(const std::filesystem::path& run_dir,
                               const std::filesystem::path& out,
                               const std::function<void(double)>& progress) {
-  const auto boxes = files_in(run_dir / shell::kBlackboxFolder, [](const std::string& name) {
+  const auto boxes = files_in(run_dir / shell::kRobotLogFolder, [](const std::string& name) {
     return name.starts_with("robot-") && name.ends_with(".mcap");
   });
   const auto recordings = files_in(run_dir, [](const std::string& name) {
@@ -119,7 +119,7 @@ Result<MergeResult> merge_run(const std::filesystem::path& run_dir,
   });
   if (boxes.empty() && recordings.empty()) {
     return fail(ErrorCode::kEnvironment,
-                fmt::format("{} holds no black box and no recording: is it a run directory?",
+                fmt::format("{} holds no robot log and no recording: is it a run directory?",
                             run_dir.string()));
   }
   MergeResult result{.file = out.empty() ? run_dir / "recording.mcap" : out};

@@ -20,7 +20,7 @@ struct MergeResult {
   std::uint32_t recordings = 0;  ///< of the bus
 };
 
-/// Makes one recording of a run: all black boxes and recordings of the bus in the order of time;
+/// Makes one recording of a run: all robot logs and recordings of the bus in the order of time;
 /// mission, plans, scene, events and summary attached. `out` empty: recording.mcap in the run
 /// directory. `progress` hears of the share done. Memory: about the size of the boxes.
 Result<MergeResult> merge_run(const std::filesystem::path& run_dir,

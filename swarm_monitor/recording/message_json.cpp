@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "swarm_core/blackbox/blackbox_file.hpp"
+#include "swarm_core/robot_log/robot_log_file.hpp"
 #include "swarm_link/cdr/codec.hpp"
 #include "swarm_link/topics.hpp"
 
@@ -43,7 +43,7 @@ Json json_of(const T& value) {
   }
 }
 
-Json json_of(RobotId robot, const blackbox::Header& r) {
+Json json_of(RobotId robot, const robot_log::Header& r) {
   return {{"stamp_utc_ns", text(r.stamp)},
           {"robot_id", robot.value()},
           {"robots", r.robots},
@@ -51,7 +51,7 @@ Json json_of(RobotId robot, const blackbox::Header& r) {
           {"radius_m", r.radius_m}};
 }
 
-Json json_of(RobotId robot, const blackbox::Step& r) {
+Json json_of(RobotId robot, const robot_log::Step& r) {
   return {{"stamp_utc_ns", text(r.stamp)},
           {"robot_id", robot.value()},
           {"lateness_us", r.lateness_us},
@@ -68,7 +68,7 @@ Json json_of(RobotId robot, const blackbox::Step& r) {
           {"reference_y_m", r.reference_y_m}};
 }
 
-Json json_of(RobotId robot, const blackbox::Belief& r) {
+Json json_of(RobotId robot, const robot_log::Estimate& r) {
   return {{"stamp_utc_ns", text(r.stamp)},
           {"robot_id", robot.value()},
           {"neighbour_id", r.neighbour.value()},
@@ -76,7 +76,7 @@ Json json_of(RobotId robot, const blackbox::Belief& r) {
           {"y_m", r.position_m.y()}};
 }
 
-Json json_of(RobotId robot, const blackbox::LinkStats& r) {
+Json json_of(RobotId robot, const robot_log::LinkStats& r) {
   Json bins = Json::array();
   for (std::size_t i = 0; i < Histogram::kBins; ++i) {
     if (r.state_age.bin(i) > 0) bins.push_back({{"bin", i}, {"count", text(r.state_age.bin(i))}});
@@ -86,7 +86,7 @@ Json json_of(RobotId robot, const blackbox::LinkStats& r) {
           {"refused", r.refused},          {"state_age", std::move(bins)}};
 }
 
-Json json_of(RobotId robot, const blackbox::Note& r) {
+Json json_of(RobotId robot, const robot_log::Note& r) {
   return {{"stamp_utc_ns", text(r.stamp)},
           {"caused_utc_ns", text(r.caused)},
           {"robot_id", robot.value()},
@@ -112,7 +112,7 @@ Json fields_of(link::MessageList<M...>, const std::string& type,
 }
 
 Json data_of(const mcap::Message& message, const mcap::Channel& channel, const std::string& type) {
-  if (const auto record = blackbox::decode(message, channel)) {
+  if (const auto record = robot_log::decode(message, channel)) {
     return std::visit([&](const auto& r) { return json_of(record->robot, r); }, record->record);
   }
   return fields_of(link::AllMessages(), type, message.data);

@@ -20,7 +20,7 @@ namespace swarm::monitor {
 namespace {
 
 constexpr Duration kStep = std::chrono::milliseconds(20);
-/// For who hears last what was said last.
+/// For who hears last what was published last.
 constexpr Duration kLinger = std::chrono::seconds(1);
 
 /// What a writer keeps to say it again. With ten thousand messages every acknowledgement took 10
@@ -31,38 +31,38 @@ constexpr int kKept = 500;
 class Cast {
  public:
   static Result<Cast> join(const shell::RunInfo& run) {
-    auto stage = link::join_as_stage(link::meeting_of(run));
-    if (!stage) return tl::unexpected(stage.error());
+    auto participants = link::join_as_replay(link::meeting_of(run));
+    if (!participants) return tl::unexpected(participants.error());
     Cast cast;
-    cast.stage_ = std::move(*stage);
+    cast.participants_ = std::move(*participants);
     std::vector<link::MonitorTopic> topics = link::monitor_topics();
     topics.push_back(link::states_topic());
     for (link::MonitorTopic& topic : topics) {
       topic.wire.qos.depth = std::min(topic.wire.qos.depth, kKept);
       const bool planner = topic.recorded == "swarm/plan" || topic.recorded == "swarm/heartbeat";
-      auto writer = (planner ? cast.stage_.planner : cast.stage_.launcher)->make_writer(topic.wire);
+      auto writer = (planner ? cast.participants_.planner : cast.participants_.launcher)->make_writer(topic.wire);
       if (!writer) return tl::unexpected(writer.error());
       cast.writers_.push_back(std::move(*writer));
     }
     return cast;
   }
 
-  bool is_heard() const {
+  bool has_readers() const {
     return std::all_of(writers_.begin(), writers_.end(),
                        [](const auto& writer) { return writer->matched() > 0; });
   }
 
-  bool say(std::uint32_t topic, std::span<const unsigned char> bytes) {
+  bool publish(std::uint32_t topic, std::span<const unsigned char> bytes) {
     return writers_[topic]->write(std::as_bytes(bytes));
   }
 
   void receive() {
-    stage_.launcher->receive();
-    stage_.planner->receive();
+    participants_.launcher->receive();
+    participants_.planner->receive();
   }
 
  private:
-  link::Stage stage_;
+  link::ReplayParticipants participants_;
   std::vector<std::unique_ptr<link::RawWriter>> writers_;
 };
 
@@ -93,14 +93,14 @@ std::string summary_of(const Score& score) {
 Result<void> replay(const ReplayOptions& options) {
   const auto score = read_score(options.file, options.from_s, options.topics);
   if (!score) return tl::unexpected(score.error());
-  const link::Meeting star{.hubs = 1};
+  const link::Meeting star{.relays = 1};
   const auto lock = link::DomainLock::take(options.domain, link::participants_for(star, 0));
   if (!lock) return tl::unexpected(lock.error());
   const auto dir = shell::make_run_dir(options.out, "replay");
   if (!dir) return tl::unexpected(dir.error());
   if (auto written = write_attachments(*score, *dir); !written) return written;
   const shell::RunInfo run{
-      .domain = lock->domain(), .hubs = 1, .channel = Channel::kGroups, .began = utc_now()};
+      .domain = lock->domain(), .relays = 1, .channel = Channel::kGroups, .began = utc_now()};
   auto cast = Cast::join(run);
   if (!cast) return tl::unexpected(cast.error());
   if (auto written = shell::write_run_info(*dir, run); !written) return written;
@@ -110,7 +110,7 @@ Result<void> replay(const ReplayOptions& options) {
 
   const auto stopped = [&] { return options.stop_requested && options.stop_requested(); };
   const auto waits_until = std::chrono::steady_clock::now() + from_seconds(options.wait_s);
-  while (!cast->is_heard() && std::chrono::steady_clock::now() < waits_until && !stopped()) {
+  while (!cast->has_readers() && std::chrono::steady_clock::now() < waits_until && !stopped()) {
     cast->receive();
     std::this_thread::sleep_for(kStep);
   }
@@ -124,7 +124,7 @@ Result<void> replay(const ReplayOptions& options) {
     }
     if (stopped()) break;
     const auto bytes = std::span<const unsigned char>(score->bytes);
-    if (!cast->say(message.topic, bytes.subspan(message.begin, message.size))) ++refused;
+    if (!cast->publish(message.topic, bytes.subspan(message.begin, message.size))) ++refused;
   }
   const auto ends = std::chrono::steady_clock::now() + kLinger;
   while (std::chrono::steady_clock::now() < ends) {

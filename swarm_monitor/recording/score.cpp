@@ -33,7 +33,7 @@ Result<Score> read_score(const std::filesystem::path& file, double from_s,
     if (is_wanted(recorded_topics()[i].name, topics)) numbers[recorded_topics()[i].name] = i;
   }
   Score score;
-  std::vector<std::int64_t> said_until(recorded_topics().size(),
+  std::vector<std::int64_t> sent_until(recorded_topics().size(),
                                        std::numeric_limits<std::int64_t>::min());
   const auto damage = mcap::read(
       file,
@@ -44,7 +44,7 @@ Result<Score> read_score(const std::filesystem::path& file, double from_s,
                ++score.foreign;
                return;
              }
-             std::int64_t& until = said_until[topic->second];
+             std::int64_t& until = sent_until[topic->second];
              until = std::max(until, message.publish_time_ns);
              score.messages.push_back({.at = Duration(until),
                                        .topic = topic->second,

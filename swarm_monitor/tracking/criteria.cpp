@@ -64,7 +64,7 @@ std::vector<std::string> failed_criteria(const CriteriaSpec& criteria, const Tra
                                  ? no_clock
                                  : "the mission has no density cap";
   const auto& last = t.ending.references_to_goal;
-  const std::string no_places =
+  const std::string no_slots =
       no_references.empty() && last && last->ratio() > Tracking::kTruthfulRatio
           ? fmt::format("the last references are not the goal's: W2 {:.2f} m, floor {:.2f}",
                         last->w2_m, last->floor_m)
@@ -112,7 +112,7 @@ std::vector<std::string> failed_criteria(const CriteriaSpec& criteria, const Tra
                  member(t.risk, &ExecutedRisk::kept_share),
                  "share of the time with the CVaR kept in flight", no_clock);
   judge.at_least("own_place_share_min", c.own_place_share_min, t.ending.own_place_share,
-                 "share of robots at their own place", no_places);
+                 "share of robots at their own place", no_slots);
   judge.at_most("path_ratio_max", c.path_ratio_max, path_ratio, "mean path over the geodesic bound",
                 "", "");
   judge.at_most("mission_over_plan_max_s", c.mission_over_plan_max_s, t.mission_over_plan_s,

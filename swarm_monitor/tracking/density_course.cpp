@@ -10,7 +10,7 @@
 namespace swarm::monitor {
 namespace {
 
-constexpr double kCrowded = 1.2;  // of the cap
+constexpr double kDense = 1.2;  // of the cap
 
 }  // namespace
 
@@ -45,10 +45,10 @@ std::optional<DensityCourse> density_course(const RecordedRun& run,
   }
   if (peaks.empty()) return std::nullopt;
   if (course.cap_per_m2) {
-    const auto crowded = std::count_if(peaks.begin(), peaks.end(), [&](double peak) {
-      return peak > kCrowded * *course.cap_per_m2;
+    const auto dense = std::count_if(peaks.begin(), peaks.end(), [&](double peak) {
+      return peak > kDense * *course.cap_per_m2;
     });
-    course.crowded_share = static_cast<double>(crowded) / static_cast<double>(peaks.size());
+    course.dense_share = static_cast<double>(dense) / static_cast<double>(peaks.size());
   }
   course.p95_per_m2 = quantile(peaks, 0.95);
   return course;

@@ -23,7 +23,7 @@ struct Ending {
   std::optional<double> own_place_share{}, own_place_wide_share{};
 };
 
-/// Of more than `most_robots` robots every so manieth enters the distances. Eight to twelve
+/// Of more than `most_robots` robots every n-th enters the distances. Eight to twelve
 /// assignments of at most 500.
 Ending ending_of(const RecordedRun& run, std::size_t most_robots = 500);
 

@@ -76,16 +76,16 @@ double ReferenceCurve::lag_s(const Vec2& position_m, double plan_time_s) const {
   for (auto k = static_cast<std::size_t>(later - entries_.begin()); k < pieces(); ++k) {
     const auto [a, b] = piece(k);
     if (a.plan_time_s > to_s) break;
-    const Vec2 way = b.at_m - a.at_m;
-    const double length_squared = way.squaredNorm();
+    const Vec2 path = b.at_m - a.at_m;
+    const double length_squared = path.squaredNorm();
     const double duration_s = b.plan_time_s - a.plan_time_s;
     // A piece that goes nowhere is passed at all its times: the one nearest to τ counts.
     double share = length_squared > kSame_m * kSame_m
-                       ? std::clamp((position_m - a.at_m).dot(way) / length_squared, 0.0, 1.0)
+                       ? std::clamp((position_m - a.at_m).dot(path) / length_squared, 0.0, 1.0)
                        : std::clamp((plan_time_s - a.plan_time_s) / duration_s, 0.0, 1.0);
     share = std::clamp(share, (from_s - a.plan_time_s) / duration_s,
                        (to_s - a.plan_time_s) / duration_s);
-    const double distance_m = (position_m - (a.at_m + share * way)).norm();
+    const double distance_m = (position_m - (a.at_m + share * path)).norm();
     const double lag = plan_time_s - (a.plan_time_s + share * duration_s);
     const bool nearer = distance_m < nearest_m - kSame_m;
     if (nearer || (distance_m < nearest_m + kSame_m && std::abs(lag) < std::abs(lag_s))) {

@@ -24,7 +24,7 @@ struct SwarmDistance {
 };
 
 /// W2 of the living robots to χ(τ) and its floor, at moments that ascend in time. Of more than
-/// `most_robots` robots, every so manieth by id, which keeps the shares of the components since
+/// `most_robots` robots, every n-th by id, which keeps the shares of the components since
 /// neighbouring ids go the same way. The samples depend on the moment's number alone: the same run
 /// gives the same numbers. Two and a quarter assignments a moment: 40 moments of 500 robots take
 /// 1.4 s.

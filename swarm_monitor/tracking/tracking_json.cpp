@@ -61,7 +61,7 @@ Json density(const std::optional<DensityCourse>& d) {
           {"over_cap_p95", number(d->over_cap(d->p95_per_m2))},
           {"over_cap_worst", number(d->over_cap(d->worst_per_m2))},
           {"planned_over_cap", number(d->over_cap(d->planned_worst_per_m2))},
-          {"crowded_share", number(d->crowded_share)}};
+          {"crowded_share", number(d->dense_share)}};
 }
 
 Json risk(const std::optional<ExecutedRisk>& r) {

@@ -15,7 +15,7 @@ constexpr std::uint32_t kRobots = 0;
 constexpr std::uint32_t kObstacles = 1;
 constexpr std::uint32_t kMixture = 2;
 constexpr std::uint32_t kOwnChannels = 3;
-constexpr Duration kPicturePeriod = std::chrono::milliseconds(100);
+constexpr Duration kViewFramePeriod = std::chrono::milliseconds(100);
 
 bool wanted(std::span<FoxgloveSession* const> sessions, std::uint32_t channel) {
   return std::any_of(sessions.begin(), sessions.end(),
@@ -43,10 +43,10 @@ void FoxgloveFeed::step(UtcTime now, std::span<FoxgloveSession* const> sessions)
   // A recording is shown at its own time.
   const UtcTime shown = source_.live() ? now : raw_time_.value_or(now);
   take_obstacles(shown);
-  if (!sessions.empty() && (now >= next_picture_ || now + kPicturePeriod < next_picture_)) {
-    next_picture_ = now + kPicturePeriod;
-    take_picture(shown, wanted(sessions, kRobots), wanted(sessions, kMixture));
-    for (FoxgloveSession* session : sessions) session->tell_time(shown);
+  if (!sessions.empty() && (now >= next_view_frame_ || now + kViewFramePeriod < next_view_frame_)) {
+    next_view_frame_ = now + kViewFramePeriod;
+    take_view_frame(shown, wanted(sessions, kRobots), wanted(sessions, kMixture));
+    for (FoxgloveSession* session : sessions) session->send_time(shown);
   }
   for (std::uint32_t channel = 0; channel < fresh_.size(); ++channel) {
     if (!fresh_[channel]) continue;
@@ -79,13 +79,13 @@ void FoxgloveFeed::take_obstacles(UtcTime now) {
   set(kObstacles, now, std::move(update));
 }
 
-void FoxgloveFeed::take_picture(UtcTime now, bool robots, bool mixture) {
+void FoxgloveFeed::take_view_frame(UtcTime now, bool robots, bool mixture) {
   if (!robots && !mixture) return;
-  source_.picture(std::nullopt, std::nullopt, picture_);
-  const auto picture = read_picture(picture_);
-  if (!picture) return;
-  if (robots) set(kRobots, now, foxglove::poses_in_frame(now, *picture));
-  if (mixture) set(kMixture, now, foxglove::mixture_scene(now, *picture));
+  source_.view_frame(std::nullopt, std::nullopt, view_frame_);
+  const auto view_frame = read_view_frame(view_frame_);
+  if (!view_frame) return;
+  if (robots) set(kRobots, now, foxglove::poses_in_frame(now, *view_frame));
+  if (mixture) set(kMixture, now, foxglove::mixture_scene(now, *view_frame));
 }
 
 void FoxgloveFeed::set(std::uint32_t channel, UtcTime stamp, std::vector<std::byte> bytes) {

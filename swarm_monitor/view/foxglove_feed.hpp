@@ -34,7 +34,7 @@ class FoxgloveFeed {
   void take_raw(const RawSample& sample);
   void take_channels();
   void take_obstacles(UtcTime now);
-  void take_picture(UtcTime now, bool robots, bool mixture);
+  void take_view_frame(UtcTime now, bool robots, bool mixture);
   void set(std::uint32_t channel, UtcTime stamp, std::vector<std::byte> bytes);
 
   ViewSource& source_;
@@ -44,8 +44,8 @@ class FoxgloveFeed {
   std::size_t raw_known_ = 0;
   std::size_t scenes_seen_ = 0;
   std::optional<UtcTime> raw_time_;  // of the newest raw sample
-  UtcTime next_picture_{};
-  std::vector<std::byte> picture_;
+  UtcTime next_view_frame_{};
+  std::vector<std::byte> view_frame_;
 };
 
 }  // namespace swarm::monitor

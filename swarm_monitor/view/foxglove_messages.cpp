@@ -107,7 +107,7 @@ Bytes scene_update(UtcTime now, std::string_view id, const std::vector<Cylinder>
 }
 
 /// Two standard deviations along the covariance's main axes.
-Cylinder ellipse(const Picture::Component& c) {
+Cylinder ellipse(const ViewFrame::Component& c) {
   const double mean = (static_cast<double>(c.xx) + static_cast<double>(c.yy)) / 2.0;
   const double half = (static_cast<double>(c.xx) - static_cast<double>(c.yy)) / 2.0;
   const double xy = static_cast<double>(c.xy);
@@ -129,25 +129,25 @@ bool is_numbers(const Json& json, std::size_t count) {
 
 }  // namespace
 
-Bytes poses_in_frame(UtcTime now, const Picture& picture) {
+Bytes poses_in_frame(UtcTime now, const ViewFrame& view_frame) {
   CdrWriter cdr;
   put_time(cdr, now);
   cdr.put_string(kFrame);
   cdr.put_length(static_cast<std::size_t>(
-      std::count_if(picture.robots.begin(), picture.robots.end(),
-                    [](const Picture::Robot& robot) { return robot.heard_of; })));
-  for (const Picture::Robot& robot : picture.robots) {
-    if (!robot.heard_of) continue;
+      std::count_if(view_frame.robots.begin(), view_frame.robots.end(),
+                    [](const ViewFrame::Robot& robot) { return robot.was_received; })));
+  for (const ViewFrame::Robot& robot : view_frame.robots) {
+    if (!robot.was_received) continue;
     put_pose(cdr, static_cast<double>(robot.x_m), static_cast<double>(robot.y_m), 0.0,
              static_cast<double>(robot.heading));
   }
   return cdr.take();
 }
 
-Bytes mixture_scene(UtcTime now, const Picture& picture) {
+Bytes mixture_scene(UtcTime now, const ViewFrame& view_frame) {
   std::vector<Cylinder> ellipses;
-  ellipses.reserve(picture.mixture.size());
-  for (const Picture::Component& component : picture.mixture) {
+  ellipses.reserve(view_frame.mixture.size());
+  for (const ViewFrame::Component& component : view_frame.mixture) {
     ellipses.push_back(ellipse(component));
   }
   return scene_update(now, "mixture", ellipses, {});

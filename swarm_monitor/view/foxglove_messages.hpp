@@ -7,18 +7,18 @@
 #include <vector>
 
 #include "swarmflow/core/time.hpp"
-#include "swarm_monitor/view/picture_reader.hpp"
+#include "swarm_monitor/view/view_frame_reader.hpp"
 
 /// Foxglove's schemas as CDR.
 namespace swarm::monitor::foxglove {
 
 using Bytes = std::vector<std::byte>;
 
-/// foxglove::PosesInFrame: who was heard of.
-Bytes poses_in_frame(UtcTime now, const Picture& picture);
+/// foxglove::PosesInFrame: who was received.
+Bytes poses_in_frame(UtcTime now, const ViewFrame& view_frame);
 
 /// foxglove::SceneUpdate: an ellipse of two standard deviations for every component.
-Bytes mixture_scene(UtcTime now, const Picture& picture);
+Bytes mixture_scene(UtcTime now, const ViewFrame& view_frame);
 
 /// foxglove::SceneUpdate: the obstacles of a `scene` message (PROTOCOL.md).
 Bytes obstacles_scene(UtcTime now, std::string_view scene_json);

@@ -75,7 +75,7 @@ class FoxgloveSession final : public Session {
   bool subscribed(std::uint32_t channel) const;
   /// Takes the place of what this client has not got yet of the channel.
   void offer(std::uint32_t channel, const FoxgloveSample& sample);
-  void tell_time(UtcTime now) { time_ = now; }
+  void send_time(UtcTime now) { time_ = now; }
 
  private:
   struct Subscription {

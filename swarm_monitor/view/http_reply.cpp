@@ -15,7 +15,7 @@ namespace swarm::monitor {
 namespace {
 
 constexpr std::size_t kPart = 16 * 1024;
-constexpr int kPatience_s = 20;  // for a part
+constexpr int kTimeout_s = 20;  // for a part
 
 }  // namespace
 
@@ -60,7 +60,7 @@ bool HttpReply::go_on(lws* socket) {
   const std::size_t size = std::min(kPart, body().size() - sent_);
   const bool last = sent_ + size == body().size();
   std::memcpy(buffer.data() + LWS_PRE, body().data() + sent_, size);
-  lws_set_timeout(socket, PENDING_TIMEOUT_HTTP_CONTENT, kPatience_s);
+  lws_set_timeout(socket, PENDING_TIMEOUT_HTTP_CONTENT, kTimeout_s);
   if (lws_write(socket, buffer.data() + LWS_PRE, size,
                 last ? LWS_WRITE_HTTP_FINAL : LWS_WRITE_HTTP) < static_cast<int>(size)) {
     return false;

@@ -11,7 +11,7 @@ struct lws;
 
 namespace swarm::monitor {
 
-/// The answer to one HTTP request, on its way out in parts.
+/// The answer to one HTTP request, under way out in parts.
 class HttpReply {
  public:
   static HttpReply text(int status, std::string body);

@@ -11,7 +11,7 @@
 #include "swarm_core/base/clock.hpp"
 #include "swarmflow/mission/mission_file.hpp"
 #include "swarm_core/shell/run_directory.hpp"
-#include "swarm_monitor/view/picture.hpp"
+#include "swarm_monitor/view/view_frame.hpp"
 #include "swarm_monitor/view/scene_json.hpp"
 
 namespace swarm::monitor {
@@ -63,7 +63,7 @@ void LiveSource::poll(UtcTime now) {
     state_.take(sample);
     if (raw_sink_) {
       raw_sink_(
-          {.channel = sample.topic, .stamp = sample.heard, .bytes = std::as_bytes(sample.bytes)});
+          {.channel = sample.topic, .stamp = sample.received, .bytes = std::as_bytes(sample.bytes)});
     }
   });
   if (state_.version() != scene_version_ || state_.scene().moves(now)) add_scene();
@@ -74,7 +74,7 @@ void LiveSource::poll(UtcTime now) {
 }
 
 void LiveSource::add_scene() {
-  // An obstacle on its way is shown where it is, a few times a second.
+  // An obstacle under way is shown where it is, a few times a second.
   constexpr Duration kMotion = std::chrono::milliseconds(200);
   const bool changed = scenes_.empty() || state_.version() != scene_version_;
   if (!changed && now_ - moved_at_ < kMotion) return;
@@ -119,12 +119,12 @@ void LiveSource::add_row() {
   received_at_row_ = received;
 }
 
-void LiveSource::picture(std::optional<double>, std::optional<RobotId> focus,
+void LiveSource::view_frame(std::optional<double>, std::optional<RobotId> focus,
                          std::vector<std::byte>& out) {
   const auto& robots = state_.robots();
   std::optional<Mixture> mixture;
   if (state_.plan()) mixture = state_.plan()->mixture_at(MissionTime(state_.plan_time_s(now_)));
-  PictureMaker maker(out, static_cast<std::uint32_t>(robots.size()),
+  ViewFrameEncoder maker(out, static_cast<std::uint32_t>(robots.size()),
                      state_.begin() ? to_seconds(now_ - *state_.begin()) : 0.0,
                      static_cast<std::uint32_t>(state_.phase()), mixture);
   for (const SwarmState::Robot& robot : robots) {
@@ -132,19 +132,19 @@ void LiveSource::picture(std::optional<double>, std::optional<RobotId> focus,
                .heading_rad = std::atan2(robot.velocity_mps.y(), robot.velocity_mps.x()),
                .mode = robot.mode,
                .neighbours = static_cast<std::uint8_t>(std::min(robot.neighbours, 255U)),
-               .heard_of = robot.heard_of,
+               .was_received = robot.was_received,
                .arrived = robot.arrived,
                .lost = state_.is_lost(robot, now_)});
   }
   // What a robot believes is not on the bus; whom it must hear is those near it.
-  std::vector<PictureBelief> near;
-  const bool known = focus && focus->value() < robots.size() && robots[focus->value()].heard_of;
+  std::vector<FrameEstimate> near;
+  const bool known = focus && focus->value() < robots.size() && robots[focus->value()].was_received;
   if (known) {
     const Vec2 here = state_.position_of(robots[focus->value()], now_);
     for (std::uint32_t i = 0; i < robots.size(); ++i) {
-      if (i == focus->value() || !robots[i].heard_of) continue;
+      if (i == focus->value() || !robots[i].was_received) continue;
       const Vec2 there = state_.position_of(robots[i], now_);
-      if ((there - here).norm() <= mission_.link.hear_radius_m) near.push_back({RobotId(i), there});
+      if ((there - here).norm() <= mission_.link.communication_radius_m) near.push_back({RobotId(i), there});
     }
   }
   maker.finish(known ? focus : std::nullopt, near);
@@ -156,10 +156,10 @@ std::string LiveSource::metrics() const {
   const Histogram& latency = state_.meter().latency();
   Metrics m;
   m.add("swarm_robots", "gauge", "Robots of the mission.", state_.robots().size());
-  m.add("swarm_robots_heard", "gauge", "Robots heard of.", counts.heard);
+  m.add("swarm_robots_heard", "gauge", "Robots heard of.", counts.received);
   m.add("swarm_robots_moving", "gauge", "Robots that move.", counts.moving);
   m.add("swarm_robots_arrived", "gauge", "Robots that have arrived.", counts.arrived);
-  m.add("swarm_robots_lost", "gauge", "Robots not heard of for three seconds.", counts.lost);
+  m.add("swarm_robots_lost", "gauge", "Robots not received for three seconds.", counts.lost);
   if (std::isfinite(counts.nearest_gap_m)) {
     m.add("swarm_nearest_gap_meters", "gauge", "Smallest gap that any robot tells of.",
           counts.nearest_gap_m);

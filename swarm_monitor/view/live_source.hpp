@@ -22,7 +22,7 @@ class LiveSource final : public ViewSource {
   const std::vector<std::string>& scenes() const override { return scenes_; }
   const std::vector<std::string>& events() const override { return events_; }
   const std::vector<std::string>& series() const override { return series_; }
-  void picture(std::optional<double> time_s, std::optional<RobotId> focus,
+  void view_frame(std::optional<double> time_s, std::optional<RobotId> focus,
                std::vector<std::byte>& out) override;
   const std::vector<RawChannel>& raw_channels() const override { return raw_channels_; }
   void on_raw(std::function<void(const RawSample&)> sink) override { raw_sink_ = std::move(sink); }
@@ -43,7 +43,7 @@ class LiveSource final : public ViewSource {
   SwarmState state_;
   UtcTime now_{};
   std::uint64_t scene_version_ = 0;
-  UtcTime moved_at_{};  // when obstacles on their way were last shown
+  UtcTime moved_at_{};  // when obstacles under way were last shown
   UtcTime row_at_{};
   std::uint64_t received_at_row_ = 0;
   std::vector<std::string> scenes_, events_, series_;
@@ -51,7 +51,7 @@ class LiveSource final : public ViewSource {
   std::function<void(const RawSample&)> raw_sink_;
 };
 
-/// Joins a run. Fails when its directory tells of none, or the bus cannot be heard.
+/// Joins a run. Fails when its directory tells of none, or the bus cannot be received.
 Result<std::unique_ptr<LiveSource>> look_at_run(const std::filesystem::path& run_dir,
                                                 std::uint32_t number, bool control = false);
 

@@ -134,13 +134,13 @@ void PageSession::take(std::string_view frame, bool binary) {
   } else if (const auto* focus = std::get_if<FocusRequest>(&*request)) {
     focus_ = focus->robot;
   } else if (const auto* control = std::get_if<ControlRequest>(&*request)) {
-    obey(*control);
+    apply(*control);
   }
 }
 
 void PageSession::refuse(const std::string&) { count_refused(); }
 
-void PageSession::obey(const ControlRequest& request) {
+void PageSession::apply(const ControlRequest& request) {
   if (answers_.size() >= kMaxAnswers) return refuse("does not read its answers");
   const auto done = control_(request);
   if (!done) count_refused();  // a token is not to be guessed
@@ -164,9 +164,9 @@ bool PageSession::next(Outgoing& out) {
   if (next_scene(out) || next_events(out) || next_series(out)) return true;
   if (!wanted_) return false;
   out.binary = true;
-  source_.picture(wanted_->time_s, focus_, out.bytes);
+  source_.view_frame(wanted_->time_s, focus_, out.bytes);
   wanted_.reset();
-  ++counters().pictures_sent;
+  ++counters().view_frames_sent;
   return true;
 }
 

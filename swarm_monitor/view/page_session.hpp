@@ -57,7 +57,7 @@ class PageSession final : public Session {
   bool next(Outgoing& out) override;
 
  private:
-  void obey(const ControlRequest& request);
+  void apply(const ControlRequest& request);
   bool next_scene(Outgoing& out);
   bool next_events(Outgoing& out);
   bool next_series(Outgoing& out);

@@ -10,7 +10,7 @@
 
 #include "swarm_monitor/clearance.hpp"
 #include "swarm_monitor/tracking/plan_timeline.hpp"
-#include "swarm_monitor/view/picture.hpp"
+#include "swarm_monitor/view/view_frame.hpp"
 #include "swarm_monitor/view/scene_json.hpp"
 
 namespace swarm::monitor {
@@ -19,7 +19,7 @@ namespace {
 /// A robot whose box ends this long before, and not gracefully, is lost.
 constexpr double kLostAfter_s = 1.0;
 /// A belief is shown this long.
-constexpr double kBelief_s = 2.0;
+constexpr double kEstimate_s = 2.0;
 
 /// Index of the last point at or before a time; size() if there is none.
 std::size_t index_at(const std::vector<TrackPoint>& points, double time_s) {
@@ -30,13 +30,13 @@ std::size_t index_at(const std::vector<TrackPoint>& points, double time_s) {
                                  : static_cast<std::size_t>(after - points.begin()) - 1;
 }
 
-PictureRobot robot_at(const Track& track, double time_s) {
-  PictureRobot robot;
+FrameRobot robot_at(const Track& track, double time_s) {
+  FrameRobot robot;
   const auto& points = track.points;
   const std::size_t i = index_at(points, time_s);
   if (i == points.size()) return robot;
   const TrackPoint& now = points[i];
-  robot.heard_of = true;
+  robot.was_received = true;
   robot.position_m = now.position_m;
   robot.mode = now.mode;
   robot.goal = now.goal;
@@ -49,22 +49,22 @@ PictureRobot robot_at(const Track& track, double time_s) {
     const double share = (time_s - now.time_s) / (next.time_s - now.time_s);
     robot.position_m += std::clamp(share, 0.0, 1.0) * (next.position_m - now.position_m);
   }
-  const Vec2 way = next.position_m - before.position_m;
-  robot.heading_rad = std::atan2(way.y(), way.x());
+  const Vec2 path = next.position_m - before.position_m;
+  robot.heading_rad = std::atan2(path.y(), path.x());
   return robot;
 }
 
-std::vector<PictureBelief> beliefs_at(const Track& track, double time_s) {
-  std::vector<PictureBelief> beliefs;
-  for (auto it = track.beliefs.rbegin(); it != track.beliefs.rend(); ++it) {
+std::vector<FrameEstimate> estimates_at(const Track& track, double time_s) {
+  std::vector<FrameEstimate> estimates;
+  for (auto it = track.estimates.rbegin(); it != track.estimates.rend(); ++it) {
     if (it->time_s > time_s) continue;
-    if (it->time_s < time_s - kBelief_s) break;
-    const bool newer_known = std::any_of(beliefs.begin(), beliefs.end(), [&](const auto& known) {
+    if (it->time_s < time_s - kEstimate_s) break;
+    const bool newer_known = std::any_of(estimates.begin(), estimates.end(), [&](const auto& known) {
       return known.neighbour == it->neighbour;
     });
-    if (!newer_known) beliefs.push_back({it->neighbour, it->position_m});
+    if (!newer_known) estimates.push_back({it->neighbour, it->position_m});
   }
-  return beliefs;
+  return estimates;
 }
 
 }  // namespace
@@ -126,7 +126,7 @@ void RecordedSource::make_series() {
   }
 }
 
-void RecordedSource::picture(std::optional<double> time_s, std::optional<RobotId> focus,
+void RecordedSource::view_frame(std::optional<double> time_s, std::optional<RobotId> focus,
                              std::vector<std::byte>& out) {
   const double t = std::clamp(time_s.value_or(end_s_), 0.0, end_s_);
   std::optional<Mixture> mixture;
@@ -136,13 +136,13 @@ void RecordedSource::picture(std::optional<double> time_s, std::optional<RobotId
     // Recorded before there was a clock: as if it had begun with the motion.
     mixture = run_.first_plan()->mixture_at(MissionTime(std::max(0.0, t - moving_from_s_)));
   }
-  PictureMaker maker(out, static_cast<std::uint32_t>(run_.tracks.size()), t,
+  ViewFrameEncoder maker(out, static_cast<std::uint32_t>(run_.tracks.size()), t,
                      t >= end_s_ ? kEndedPhase : static_cast<std::uint32_t>(MissionPhase::kRunning),
                      mixture);
   for (const Track& track : run_.tracks) maker.add(robot_at(track, t));
   const bool known = focus && focus->value() < run_.tracks.size();
   maker.finish(known ? focus : std::nullopt,
-               known ? beliefs_at(run_.tracks[focus->value()], t) : std::vector<PictureBelief>{});
+               known ? estimates_at(run_.tracks[focus->value()], t) : std::vector<FrameEstimate>{});
 }
 
 std::string RecordedSource::metrics() const {

@@ -19,7 +19,7 @@ class RecordedSource final : public ViewSource {
   const std::vector<std::string>& scenes() const override { return scenes_; }
   const std::vector<std::string>& events() const override { return events_; }
   const std::vector<std::string>& series() const override { return series_; }
-  void picture(std::optional<double> time_s, std::optional<RobotId> focus,
+  void view_frame(std::optional<double> time_s, std::optional<RobotId> focus,
                std::vector<std::byte>& out) override;
   /// Whoever wants the messages of a recording opens its file.
   const std::vector<RawChannel>& raw_channels() const override { return no_channels_; }

@@ -79,8 +79,8 @@ class RemoteControl::Worker {
       const std::string line = std::move(lines_.front());
       lines_.pop_front();
       lock.unlock();
-      const auto done = shell::send_command(run_dir_, line, [](const std::string& said) {
-        std::fprintf(stderr, "launcher: %s\n", said.c_str());
+      const auto done = shell::send_command(run_dir_, line, [](const std::string& sent) {
+        std::fprintf(stderr, "launcher: %s\n", sent.c_str());
       });
       if (!done) std::fprintf(stderr, "%s: %s\n", line.c_str(), done.error().message.c_str());
       lock.lock();

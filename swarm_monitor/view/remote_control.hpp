@@ -16,7 +16,7 @@ namespace swarm::monitor {
 std::string command_line_of(const ControlRequest& request, const Mixture& goal);
 
 /// Hands viewers' wishes to the launcher of a run, in a thread of its own, since a launcher answers
-/// when it is done. How that went is told by the run's events.
+/// when it is done. How that went is given by the run's events.
 class RemoteControl {
  public:
   RemoteControl(std::filesystem::path run_dir, const LiveSource& source);

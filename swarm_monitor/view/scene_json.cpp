@@ -84,7 +84,7 @@ std::string scene_json(const SceneFacts& facts) {
       {"plan", plan_of(facts.plan)},
       {"plan_excess_m", facts.plan_excess_m},
       {"cell_m", facts.channel == Channel::kGroups ? m.link.group_cell_size_m : m.link.cell_size_m},
-      {"hearing_m", m.link.hear_radius_m}}
+      {"hearing_m", m.link.communication_radius_m}}
       .dump();
 }
 

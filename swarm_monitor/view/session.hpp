@@ -14,14 +14,14 @@ namespace swarm::monitor {
 
 /// What the server counts; part of /metrics.
 struct ViewCounters {
-  std::uint64_t pictures_sent = 0;
+  std::uint64_t view_frames_sent = 0;
   std::uint64_t frames_received = 0;
   std::uint64_t frames_refused = 0;   ///< malformed, too long, or not allowed
   std::uint64_t samples_skipped = 0;  ///< a newer one came before a slow client took it
   std::uint64_t connections_refused = 0;
 };
 
-/// A message on its way out.
+/// A message under way out.
 struct Outgoing {
   bool binary = false;
   std::vector<std::byte> bytes{};

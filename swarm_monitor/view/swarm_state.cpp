@@ -25,13 +25,13 @@ SwarmState::SwarmState(const Mission& mission)
 
 void SwarmState::on_state(const ObservedState& state) {
   if (!begin_) begin_ = state.received;
-  meter_.hear({.robot_id = state.robot.value(),
+  meter_.receive({.robot_id = state.robot.value(),
                .sequence_number = state.sequence,
                .stamp_utc_ns = state.stamp.time_since_epoch().count()},
               state.received);
   Robot& robot = robots_[state.robot.value()];
-  robot.heard_of = true;
-  robot.heard = robot.moved = state.received;
+  robot.was_received = true;
+  robot.received = robot.moved = state.received;
   robot.position_m = state.position_m;
   robot.velocity_mps = state.velocity_mps;
   robot.mode = state.mode;
@@ -41,9 +41,9 @@ void SwarmState::on_state(const ObservedState& state) {
 void SwarmState::on_status(const ObservedStatus& status) {
   Robot& robot = robots_[status.robot.value()];
   // Its states have its position more often, if there are any.
-  if (!robot.heard_of) robot.position_m = status.position_m;
-  robot.heard_of = true;
-  robot.heard = status.received;
+  if (!robot.was_received) robot.position_m = status.position_m;
+  robot.was_received = true;
+  robot.received = status.received;
   robot.mode = status.mode;
   robot.arrived = status.arrived;
   robot.nearest_gap_m = status.nearest_gap_m;
@@ -87,14 +87,14 @@ Vec2 SwarmState::position_of(const Robot& robot, UtcTime now) const {
 }
 
 bool SwarmState::is_lost(const Robot& robot, UtcTime now) const {
-  return robot.heard_of && now - robot.heard > kLostAfter;
+  return robot.was_received && now - robot.received > kLostAfter;
 }
 
 SwarmState::Counts SwarmState::counts(UtcTime now) const {
   Counts counts{.nearest_gap_m = std::numeric_limits<double>::infinity()};
   for (const Robot& robot : robots_) {
-    if (!robot.heard_of) continue;
-    ++counts.heard;
+    if (!robot.was_received) continue;
+    ++counts.received;
     counts.moving += robot.mode == RobotMode::kMoving ? 1 : 0;
     counts.arrived += robot.arrived ? 1 : 0;
     counts.lost += is_lost(robot, now) ? 1 : 0;

@@ -29,9 +29,9 @@ class SwarmState final : private Observer {
   void take(const TappedSample& sample) { reader_.take(sample); }
 
   struct Robot {
-    bool heard_of = false;
+    bool was_received = false;
     bool arrived = false;
-    UtcTime heard{};  ///< its last state or status
+    UtcTime received{};  ///< its last state or status
     UtcTime moved{};  ///< its last state
     Vec2 position_m = Vec2::Zero();
     Vec2 velocity_mps = Vec2::Zero();
@@ -47,7 +47,7 @@ class SwarmState final : private Observer {
   bool is_lost(const Robot& robot, UtcTime now) const;
 
   struct Counts {
-    std::uint32_t heard = 0, moving = 0, arrived = 0, lost = 0;
+    std::uint32_t received = 0, moving = 0, arrived = 0, lost = 0;
     double nearest_gap_m = 0.0;  ///< ∞ while no status tells
   };
   Counts counts(UtcTime now) const;

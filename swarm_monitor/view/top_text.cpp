@@ -21,7 +21,7 @@ std::string top_text(const SwarmState& state, const TopFacts& facts, UtcTime now
       "{:.0f} states/s  latency p50 {:.2f} ms  p99 {:.2f} ms  {} lost  {} refused\n\n"
       "{:>6}  {:<8} {:>8} {:>8} {:>7} {:>8} {:>11} {:>7}\n",
       facts.name, to_string(state.phase()), state.mission_time_s(now), state.plan_version(),
-      counts.heard, state.robots().size(), counts.moving, counts.arrived, counts.lost,
+      counts.received, state.robots().size(), counts.moving, counts.arrived, counts.lost,
       std::isfinite(counts.nearest_gap_m) ? fmt::format("{:.2f} m", counts.nearest_gap_m) : "–",
       facts.states_hz, ms(0.5), ms(0.99), state.meter().counts().lost, state.refused().total(),
       "robot", "mode", "x m", "y m", "m/s", "gap m", "neighbours", "late %");
@@ -29,7 +29,7 @@ std::string top_text(const SwarmState& state, const TopFacts& facts, UtcTime now
   std::iota(order.begin(), order.end(), std::size_t{0});
   const auto urgency = [&](std::size_t i) {
     const SwarmState::Robot& robot = state.robots()[i];
-    if (!robot.heard_of) return 2e9;
+    if (!robot.was_received) return 2e9;
     if (state.is_lost(robot, now)) return -1e9;
     return std::min(robot.nearest_gap_m, 1e9);
   };
@@ -38,7 +38,7 @@ std::string top_text(const SwarmState& state, const TopFacts& facts, UtcTime now
                     [&](std::size_t a, std::size_t b) { return urgency(a) < urgency(b); });
   for (std::size_t i = 0; i < rows; ++i) {
     const SwarmState::Robot& robot = state.robots()[order[i]];
-    if (!robot.heard_of) break;
+    if (!robot.was_received) break;
     const Vec2 at = state.position_of(robot, now);
     text +=
         fmt::format("{:>6}  {:<8} {:>8.2f} {:>8.2f} {:>7.2f} {:>8.2f} {:>11} {:>7.2f}\n", order[i],

@@ -87,7 +87,7 @@ class ViewServer::Impl {
   Impl& operator=(const Impl&) = delete;
 
   Result<void> listen();
-  void serve(Duration patience);
+  void serve(Duration timeout);
   std::uint16_t port() const { return port_; }
   std::size_t clients() const { return clients_.size(); }
   const ViewCounters& counters() const { return counters_; }
@@ -169,7 +169,7 @@ Result<void> ViewServer::Impl::listen() {
   return {};
 }
 
-void ViewServer::Impl::serve(Duration patience) {
+void ViewServer::Impl::serve(Duration timeout) {
   const UtcTime now = utc_now();
   source_.poll(now);
   std::vector<FoxgloveSession*> sessions;
@@ -183,10 +183,10 @@ void ViewServer::Impl::serve(Duration patience) {
     if (client.session->has_something()) lws_callback_on_writable(socket);
   }
   // lws waits for as long as it likes, and no longer than to the next thing that is due.
-  const auto patience_us = std::chrono::duration_cast<std::chrono::microseconds>(patience).count();
+  const auto timeout_us = std::chrono::duration_cast<std::chrono::microseconds>(timeout).count();
   lws_sul_schedule(
-      context_, 0, &wake_, [](lws_sorted_usec_list_t*) {}, std::max<lws_usec_t>(patience_us, 1));
-  lws_service(context_, patience_us <= 0 ? -1 : 0);
+      context_, 0, &wake_, [](lws_sorted_usec_list_t*) {}, std::max<lws_usec_t>(timeout_us, 1));
+  lws_service(context_, timeout_us <= 0 ? -1 : 0);
 }
 
 int ViewServer::Impl::on_event(lws* socket, lws_callback_reasons reason, void*, void* in,
@@ -349,7 +349,7 @@ std::string ViewServer::Impl::metrics() const {
     text += fmt::format("# TYPE swarm_view_{0} {1}\nswarm_view_{0} {2}\n", name, type, value);
   };
   add("clients", "gauge", clients_.size());
-  add("pictures_sent_total", "counter", counters_.pictures_sent);
+  add("pictures_sent_total", "counter", counters_.view_frames_sent);
   add("frames_received_total", "counter", counters_.frames_received);
   add("frames_refused_total", "counter", counters_.frames_refused);
   add("samples_skipped_total", "counter", counters_.samples_skipped);
@@ -371,7 +371,7 @@ Result<std::unique_ptr<ViewServer>> ViewServer::make(ViewServerOptions options,
 
 ViewServer::ViewServer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 ViewServer::~ViewServer() = default;
-void ViewServer::serve(Duration patience) { impl_->serve(patience); }
+void ViewServer::serve(Duration timeout) { impl_->serve(timeout); }
 std::uint16_t ViewServer::port() const { return impl_->port(); }
 std::size_t ViewServer::clients() const { return impl_->clients(); }
 const ViewCounters& ViewServer::counters() const { return impl_->counters(); }

@@ -36,8 +36,8 @@ class ViewServer {
   static Result<std::unique_ptr<ViewServer>> make(ViewServerOptions options, ViewSource& source);
   ~ViewServer();
 
-  /// One step: takes in what the source has, and what sockets have; waits at most `patience`.
-  void serve(Duration patience);
+  /// One step: takes in what the source has, and what sockets have; waits at most `timeout`.
+  void serve(Duration timeout);
 
   std::uint16_t port() const;
   /// WebSockets, of the page and of Foxglove.

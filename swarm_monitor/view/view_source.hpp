@@ -48,7 +48,7 @@ class ViewSource {
   virtual const std::vector<std::string>& series() const = 0;
 
   /// Replaces `out` by a picture: of a time since the begin, or the newest.
-  virtual void picture(std::optional<double> time_s, std::optional<RobotId> focus,
+  virtual void view_frame(std::optional<double> time_s, std::optional<RobotId> focus,
                        std::vector<std::byte>& out) = 0;
 
   /// What goes to Foxglove as it is. The list only grows.

@@ -59,25 +59,25 @@ double cpu_s() {
 }
 
 /// How one process speaks and hears.
-class Mouth {
+class Sender {
  public:
-  virtual ~Mouth() = default;
+  virtual ~Sender() = default;
   /// Says the states of this process. Returns how many states arrived since the last call.
   virtual std::uint64_t tick(std::span<const link::RobotStateMessage> states) = 0;
 };
 
-class ChannelMouth final : public Mouth {
+class ChannelSender final : public Sender {
  public:
-  ChannelMouth(std::unique_ptr<link::Participant> participant,
+  ChannelSender(std::unique_ptr<link::Participant> participant,
                std::unique_ptr<link::StateChannel> channel)
       : participant_(std::move(participant)), channel_(std::move(channel)) {}
 
   std::uint64_t tick(std::span<const link::RobotStateMessage> states) override {
     if (participant_) participant_->receive();
-    heard_.clear();
-    channel_->take(heard_);
+    received_.clear();
+    channel_->take(received_);
     std::uint64_t delivered = 0;
-    for (const auto& batch : heard_) delivered += batch.states.size();
+    for (const auto& batch : received_) delivered += batch.states.size();
     channel_->publish(states);
     channel_->listen_around(places_);
     return delivered;
@@ -87,13 +87,13 @@ class ChannelMouth final : public Mouth {
   std::unique_ptr<link::Participant> participant_;
   std::unique_ptr<link::StateChannel> channel_;
   std::vector<Vec2> places_ = {{50.0, 50.0}};
-  std::vector<link::CellStatesMessage> heard_;
+  std::vector<link::CellStatesMessage> received_;
 };
 
 /// One datagram to each peer, a thread that waits for theirs.
-class UdpMouth final : public Mouth {
+class UdpSender final : public Sender {
  public:
-  UdpMouth(std::uint32_t self, std::uint32_t processes)
+  UdpSender(std::uint32_t self, std::uint32_t processes)
       : socket_(::socket(AF_INET, SOCK_DGRAM, 0)) {
     const sockaddr_in own = address_of(self);
     if (::bind(socket_, reinterpret_cast<const sockaddr*>(&own), sizeof own) != 0) {
@@ -103,7 +103,7 @@ class UdpMouth final : public Mouth {
     for (std::uint32_t i = 0; i < processes; ++i) peers_.push_back(address_of(i));
     std::thread([this] {
       std::array<std::byte, 2048> bytes;
-      while (::recv(socket_, bytes.data(), bytes.size(), 0) > 0) ++heard_;
+      while (::recv(socket_, bytes.data(), bytes.size(), 0) > 0) ++received_;
     }).detach();
   }
 
@@ -113,7 +113,7 @@ class UdpMouth final : public Mouth {
       ::sendto(socket_, bytes, states.size_bytes(), 0, reinterpret_cast<const sockaddr*>(&peer),
                sizeof peer);
     }
-    return heard_.exchange(0);
+    return received_.exchange(0);
   }
 
  private:
@@ -126,7 +126,7 @@ class UdpMouth final : public Mouth {
   }
   int socket_;
   std::vector<sockaddr_in> peers_;
-  std::atomic<std::uint64_t> heard_ = 0;
+  std::atomic<std::uint64_t> received_ = 0;
 };
 
 template <class T>
@@ -136,22 +136,22 @@ T or_end(Result<T> made) {
   std::_Exit(2);
 }
 
-std::unique_ptr<Mouth> make_mouth(const Case& c, std::uint32_t self, const link::Meeting& meeting) {
+std::unique_ptr<Sender> make_sender(const Case& c, std::uint32_t self, const link::Meeting& meeting) {
   const std::string name = c.name;
-  if (name.starts_with("udp")) return std::make_unique<UdpMouth>(self, c.processes);
+  if (name.starts_with("udp")) return std::make_unique<UdpSender>(self, c.processes);
   if (name.starts_with("groups")) {
     link::GroupChannelOptions options{.domain = meeting.domain};
     options.cells.cell_size_m = 100.0;
-    return std::make_unique<ChannelMouth>(nullptr, or_end(link::make_group_channel(options)));
+    return std::make_unique<ChannelSender>(nullptr, or_end(link::make_group_channel(options)));
   }
   auto participant = or_end(link::join_as_agent(meeting, self, fmt::format("bench_{}", self)));
   auto channel = link::make_topic_channel(*participant, {.cell_size_m = 100.0});
-  return std::make_unique<ChannelMouth>(std::move(participant), std::move(channel));
+  return std::make_unique<ChannelSender>(std::move(participant), std::move(channel));
 }
 
 [[noreturn]] void child(const Case& c, std::uint32_t self, const link::Meeting& meeting,
                         Duration measured, Board& board) {
-  const auto mouth = make_mouth(c, self, meeting);
+  const auto sender = make_sender(c, self, meeting);
   std::vector<link::RobotStateMessage> states(c.robots_each);
   for (std::uint32_t i = 0; i < c.robots_each; ++i) {
     states[i] = {.robot_id = self * c.robots_each + i, .x_m = 50.0, .y_m = 50.0};
@@ -175,7 +175,7 @@ std::unique_ptr<Mouth> make_mouth(const Case& c, std::uint32_t self, const link:
       ++state.sequence_number;
       state.stamp_utc_ns = utc_now().time_since_epoch().count();
     }
-    delivered += mouth->tick(states);
+    delivered += sender->tick(states);
   }
   board.results[self] = {.delivered = delivered, .cpu_s = cpu_s() - cpu_before_s};
   std::_Exit(0);

@@ -10,7 +10,7 @@
 
 #include <benchmark/benchmark.h>
 
-#include "swarm_launcher/simulation/air.hpp"
+#include "swarm_launcher/simulation/simulated_network.hpp"
 #include "swarm_launcher/simulation/simulation.hpp"
 #include "swarmflow/mission/mission_file.hpp"
 
@@ -29,21 +29,21 @@ Mission standin_mission() {
 /// A swarm that flies across an open map, as dense whatever their number: what is around a robot is
 /// the same, but for the rim.
 Mission open_mission(std::uint32_t robots) {
-  constexpr double kAreaEach_m2 = 2.0, kWay_m = 150.0;
+  constexpr double kAreaEach_m2 = 2.0, kPath_m = 150.0;
   Mission mission = standin_mission();
   const double sigma_m = std::sqrt(kAreaEach_m2 * robots / (4.0 * std::numbers::pi));
   const double side_m = 8.0 * sigma_m;
-  const auto crowd_at = [&](double x_m) {
+  const auto dense_region_at = [&](double x_m) {
     const Mat2 covariance_m2 = sigma_m * sigma_m * Mat2::Identity();
     return Mixture::make({{1.0, Gaussian::make(Vec2(x_m, 0.5 * side_m), covariance_m2).value()}})
         .value();
   };
-  mission.world = World::make({{0.0, 0.0}, {side_m + kWay_m, side_m}}, {}).value();
-  mission.start = crowd_at(0.5 * side_m);
-  mission.goal = crowd_at(0.5 * side_m + kWay_m);
+  mission.world = World::make({{0.0, 0.0}, {side_m + kPath_m, side_m}}, {}).value();
+  mission.start = dense_region_at(0.5 * side_m);
+  mission.goal = dense_region_at(0.5 * side_m + kPath_m);
   mission.planner.options.set("sigma_min_m", 0.9 * sigma_m);
   mission.planner.options.set("sigma_max_m", 1.1 * sigma_m);
-  mission.planner.options.set("connection_radius_m", 2.0 * kWay_m);
+  mission.planner.options.set("connection_radius_m", 2.0 * kPath_m);
   mission.planner.options.set("bridge_share", 0.0);
   mission.robots.count = robots;
   mission.launcher.time_limit_s = 1e4;
@@ -53,10 +53,10 @@ Mission open_mission(std::uint32_t robots) {
 // Time per iteration: of one control period of all robots. `per_agent` is that for one robot.
 void fly_on(benchmark::State& state, const Mission& mission, std::size_t threads) {
   Recording nothing(mission, Simulation::begin_utc(), Recording::kFirstAndLast);
-  SimulationObserver nobody;
+  SimulationObserver no_observer;
   SimulationOptions options;
   options.threads = threads;
-  auto simulation = Simulation::make(mission, options, nothing, nobody);
+  auto simulation = Simulation::make(mission, options, nothing, no_observer);
   if (!simulation) {
     state.SkipWithError(simulation.error().message.c_str());
     return;
@@ -99,39 +99,39 @@ BENCHMARK(BM_OpenMapByAllCores)
     ->Complexity();
 
 /// Robots that all speak, as densely as a swarm in flight.
-std::vector<agent::NeighbourReport> words_of(std::uint32_t robots, double side_m) {
+std::vector<agent::NeighbourReport> reports_of(std::uint32_t robots, double side_m) {
   Rng rng(1);
-  std::vector<agent::NeighbourReport> said(robots);
+  std::vector<agent::NeighbourReport> sent(robots);
   for (std::uint32_t i = 0; i < robots; ++i) {
-    said[i].robot = RobotId(i);
-    said[i].position_m = Vec2(uniform(rng, 0.0, side_m), uniform(rng, 0.0, side_m));
+    sent[i].robot = RobotId(i);
+    sent[i].position_m = Vec2(uniform(rng, 0.0, side_m), uniform(rng, 0.0, side_m));
   }
-  return said;
+  return sent;
 }
 
 // Without cells there is one for all, so that everybody is looked at.
-void hear_all(benchmark::State& state, bool cells) {
+void receive_all(benchmark::State& state, bool cells) {
   constexpr double kRange_m = 4.0, kArea_m2 = 2.0;
   const auto robots = static_cast<std::uint32_t>(state.range(0));
   const double side_m = std::sqrt(kArea_m2 * robots);
   const SteadyTime then;
-  Air air({{0, 0}, {side_m, side_m}}, cells ? kRange_m : 2.0 * side_m, {}, 1, then);
-  const std::vector<agent::NeighbourReport> said = words_of(robots, side_m);
+  SimulatedNetwork network({{0, 0}, {side_m, side_m}}, cells ? kRange_m : 2.0 * side_m, {}, 1, then);
+  const std::vector<agent::NeighbourReport> sent = reports_of(robots, side_m);
   const SteadyTime now = then + std::chrono::milliseconds(100);
-  air.post(then, said);
+  network.post(then, sent);
   for (auto _ : state) {
-    std::uint64_t heard = 0;
-    for (const agent::NeighbourReport& self : said) {
-      air.hear(self.robot, self.position_m, kRange_m, then, now, [&](const auto&) { ++heard; });
+    std::uint64_t received = 0;
+    for (const agent::NeighbourReport& self : sent) {
+      network.receive(self.robot, self.position_m, kRange_m, then, now, [&](const auto&) { ++received; });
     }
-    benchmark::DoNotOptimize(heard);
+    benchmark::DoNotOptimize(received);
   }
   state.SetComplexityN(robots);
 }
-void BM_HearByCells(benchmark::State& state) { hear_all(state, true); }
-void BM_HearEverybody(benchmark::State& state) { hear_all(state, false); }
-BENCHMARK(BM_HearByCells)->RangeMultiplier(10)->Range(100, 10'000)->Complexity();
-BENCHMARK(BM_HearEverybody)->RangeMultiplier(10)->Range(100, 10'000)->Complexity();
+void BM_ReceiveByCells(benchmark::State& state) { receive_all(state, true); }
+void BM_ReceiveFromAll(benchmark::State& state) { receive_all(state, false); }
+BENCHMARK(BM_ReceiveByCells)->RangeMultiplier(10)->Range(100, 10'000)->Complexity();
+BENCHMARK(BM_ReceiveFromAll)->RangeMultiplier(10)->Range(100, 10'000)->Complexity();
 
 }  // namespace
 }  // namespace swarm::launcher

@@ -25,7 +25,7 @@ namespace {
 
 constexpr double kSpeed_mps = 1.25;
 constexpr double kStep_s = 8.0;
-constexpr double kPrice_mps = 0.1;
+constexpr double kDelayCost_mps = 0.1;
 
 std::vector<double> random_weights(std::size_t count, Rng& rng) {
   std::vector<double> weights(count);
@@ -93,10 +93,10 @@ std::string arcs_of(const Roadmap& roadmap) {
   for (std::uint32_t v = 0; v < roadmap.nodes.size(); ++v) {
     for (const Roadmap::Arc& arc : roadmap.arcs_of(v)) {
       if (!std::isfinite(arc.length_m)) continue;
-      const Vec2 way_m = roadmap.nodes[arc.to].mean_m() - roadmap.nodes[v].mean_m();
+      const Vec2 path_m = roadmap.nodes[arc.to].mean_m() - roadmap.nodes[v].mean_m();
       const double shape_m =
-          std::sqrt(std::max(0.0, arc.length_m * arc.length_m - way_m.squaredNorm()));
-      const double steps = std::max(way_m.norm(), shape_m) / kSpeed_mps / kStep_s;
+          std::sqrt(std::max(0.0, arc.length_m * arc.length_m - path_m.squaredNorm()));
+      const double steps = std::max(path_m.norm(), shape_m) / kSpeed_mps / kStep_s;
       texts.push_back(fmt::format("[{},{},{},{}]", v, arc.to, number(arc.length_m),
                                   std::max(1, static_cast<int>(std::ceil(steps)))));
     }
@@ -122,7 +122,7 @@ bool print_flow(const Mission& mission, bool timed, Rng& rng) {
                                {.speed = {.means_mps = kSpeed_mps},
                                 .step_s = kStep_s,
                                 .detour = 1e6,
-                                .delay_price_mps = kPrice_mps},
+                                .delay_cost_mps = kDelayCost_mps},
                                checker);
     const auto free_flow = network.free_flow_steps();
     if (!free_flow) return false;
@@ -133,7 +133,7 @@ bool print_flow(const Mission& mission, bool timed, Rng& rng) {
         const bool has_arrived = move.from == move.to && move.from >= 4 && move.from < 7;
         const double waited_s = has_arrived ? 0.0 : kStep_s * (move.to_step - move.from_step);
         best += move.mass * (wasserstein2(roadmap.nodes[move.from], roadmap.nodes[move.to]) +
-                             kPrice_mps * waited_s);
+                             kDelayCost_mps * waited_s);
       }
     }
   } else if (const auto flow = capped_flow(roadmap, supplies, demands, cap, checker)) {
@@ -143,7 +143,7 @@ bool print_flow(const Mission& mission, bool timed, Rng& rng) {
              R"("step_price":{},"best":{}}})"
              "\n",
              timed ? "timed" : "capped", list(supplies), list(demands), list(capacities),
-             arcs_of(roadmap), horizon, kPrice_mps * kStep_s, number(best));
+             arcs_of(roadmap), horizon, kDelayCost_mps * kStep_s, number(best));
   return true;
 }
 

@@ -181,7 +181,7 @@ bool still_serves(ViewServer& server) {
       upgraded = client.input.starts_with("HTTP/1.1 101");
       if (!upgraded) return false;
       client.input.erase(0, head + 4);
-      client.say(kPageValid[0]);
+      client.send_text(kPageValid[0]);
     }
     while (upgraded) {
       const auto message = client.message();
@@ -236,7 +236,7 @@ int main(int argc, char** argv) {
   fmt::print(
       "{} pictures sent, {} controls done, {} frames refused, {} samples skipped, {} "
       "connections refused\n",
-      counters.pictures_sent, controls, counters.frames_refused, counters.samples_skipped,
+      counters.view_frames_sent, controls, counters.frames_refused, counters.samples_skipped,
       counters.connections_refused);
   fmt::print("peak {} MiB after a tenth, {} MiB at the end; {}\n", early_MiB, peak_MiB(),
              alive ? "still serves" : "SERVES NO MORE");

@@ -21,7 +21,7 @@ TUNSETIFF = 0x400454CA
 IFF_TAP, IFF_NO_PI = 0x0002, 0x1000
 CLONE_NEWNET = 0x40000000
 FRAME = 65536
-WAITING = 20000  # frames on their way, each direction: like a switch, it drops what is more
+WAITING = 20000  # frames under way, each direction: like a switch, it drops what is more
 
 libc = ctypes.CDLL(None, use_errno=True)
 

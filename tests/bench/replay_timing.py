@@ -4,7 +4,7 @@
 """How true a replay at rate 1 keeps its times:  replay_timing.py FIRST.mcap SECOND.mcap
 
 Both are recordings of the same messages, the second of a replay of the first. Compares content and order on
-every topic, and when each message was said, since the first of all. Needs swarm_monitor on the PATH."""
+every topic, and when each message was published, since the first of all. Needs swarm_monitor on the PATH."""
 import collections
 import json
 import subprocess

@@ -7,7 +7,7 @@ import protocol from '@foxglove/ws-protocol';
 import WebSocket from 'ws';
 import { readerOf } from './idl_messages.mjs';
 
-const PATIENCE_MS = 60000;  // against hanging for ever; nothing is measured by it
+const TIMEOUT_MS = 60000;  // against hanging for ever; nothing is measured by it
 
 export class Peer {
   channels = new Map();  // by topic
@@ -59,7 +59,7 @@ export class Peer {
         else if (this.error) end(reject, this.error);
         else if (this.closed) end(reject, new Error(`closed while waiting for ${what}`));
       };
-      const timer = setTimeout(() => end(reject, new Error(`no ${what} came`)), PATIENCE_MS);
+      const timer = setTimeout(() => end(reject, new Error(`no ${what} came`)), TIMEOUT_MS);
       this.#waiting.add(check);
       check();
     });

@@ -23,7 +23,7 @@ const RAW = {
 
 let peer, scene;
 
-/** What the page is told of the map: the first frame that it gets. */
+/** What the page is given of the map: the first frame that it gets. */
 async function pageScene() {
   const socket = new WebSocket(`${SERVER}ws`, 'swarmflow.view.v1', { origin });
   const [frame] = await once(socket, 'message');
@@ -118,7 +118,7 @@ test('its clock goes on', async () => {
   assert.ok(peer.times.at(-1) > peer.times[from]);
 });
 
-test('who comes late gets the plan, which was said once', async () => {
+test('who comes late gets the plan, which was published once', async () => {
   const late = await Peer.open(SERVER);
   late.subscribe('swarm/plan');
   const { data, timestamp } = await late.until(() => late.messages[0], 'plan');

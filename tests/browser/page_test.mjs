@@ -13,14 +13,14 @@ import puppeteer from 'puppeteer-core';
 const URL_OF_VIEW = process.env.SWARM_VIEW_URL;
 assert.ok(URL_OF_VIEW, 'SWARM_VIEW_URL: where the view is served');
 const SHOTS = process.env.SWARM_SHOTS;
-const PATIENCE_MS = 60000;  // against hanging for ever; nothing is measured by it
+const TIMEOUT_MS = 60000;  // against hanging for ever; nothing is measured by it
 
 let browser, page, live;
 const complaints = [];
 
 async function open({ scheme = 'light', motion = 'no-preference', width = 1280, height = 800, prepare } = {}) {
   const opened = await browser.newPage();
-  opened.setDefaultTimeout(PATIENCE_MS);
+  opened.setDefaultTimeout(TIMEOUT_MS);
   opened.on('console', (message) => {
     if (message.type() === 'error') complaints.push(message.text());
   });
@@ -30,7 +30,7 @@ async function open({ scheme = 'light', motion = 'no-preference', width = 1280, 
     { name: 'prefers-color-scheme', value: scheme }, { name: 'prefers-reduced-motion', value: motion },
   ]);
   if (prepare) await opened.evaluateOnNewDocument(prepare);
-  await opened.goto(URL_OF_VIEW, { timeout: PATIENCE_MS });
+  await opened.goto(URL_OF_VIEW, { timeout: TIMEOUT_MS });
   await opened.waitForFunction(() => window.swarmflow?.state().robots > 0);
   // The panels follow the picture a little later.
   await opened.waitForFunction(() => document.getElementById('heard').textContent !== '–');
@@ -53,7 +53,7 @@ async function seek(t) {
 
 before(async () => {
   browser = await puppeteer.launch({
-    executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium', headless: true, protocolTimeout: 4 * PATIENCE_MS,
+    executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium', headless: true, protocolTimeout: 4 * TIMEOUT_MS,
     args: ['--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'],
   });
   page = await open();
@@ -76,9 +76,9 @@ test('says how many robots there are', async () => {
   }
   // The panel follows a moment after the picture: both are looked at together.
   await until((n) => {
-    let heard = 0;
-    for (let id = 0; id < n; ++id) heard += window.swarmflow.robot(id).heard ? 1 : 0;
-    return document.getElementById('heard').textContent === `${heard} / ${n}`;
+    let received = 0;
+    for (let id = 0; id < n; ++id) received += window.swarmflow.robot(id).received ? 1 : 0;
+    return document.getElementById('heard').textContent === `${received} / ${n}`;
   }, robots);
 });
 
@@ -95,7 +95,7 @@ test('measures frames', async () => {
   const last = await state();
   const seconds = (performance.now() - began) / 1000;
   const fps = (last.framesDrawn - first.framesDrawn) / seconds;
-  const pictures = (last.picturesReceived - first.picturesReceived) / seconds;
+  const pictures = (last.viewFramesReceived - first.viewFramesReceived) / seconds;
   console.log(JSON.stringify({ robots: last.robots, fps: Number(fps.toFixed(1)), pictures_per_s: Number(pictures.toFixed(1)) }));
   assert.ok(last.framesDrawn > first.framesDrawn);
   if (process.env.SWARM_MIN_FPS) assert.ok(fps >= Number(process.env.SWARM_MIN_FPS), `${fps} frames/s`);
@@ -129,7 +129,7 @@ test('draws robots where they are, in the colours of their goals', async (t) => 
     for (let id = 0; id < window.swarmflow.state().robots; ++id) {
       const robot = window.swarmflow.robot(id);
       const [x, y] = window.swarmflow.toScreen(robot.x, robot.y);
-      if (robot.heard) all.push({ ...robot, sx: x, sy: y });
+      if (robot.received) all.push({ ...robot, sx: x, sy: y });
     }
     const box = document.getElementById('canvas').getBoundingClientRect();
     return all.filter((a) => !a.lost && !a.arrived &&
@@ -199,7 +199,7 @@ test('chooses robots by keyboard and by pointer', async () => {
     for (let id = 0; id < window.swarmflow.state().robots; ++id) {
       const robot = window.swarmflow.robot(id);
       const [x, y] = window.swarmflow.toScreen(robot.x, robot.y);
-      if (robot.heard && document.elementFromPoint(left + x, top + y) === canvas) return [x, y];
+      if (robot.received && document.elementFromPoint(left + x, top + y) === canvas) return [x, y];
     }
     return null;
   });
@@ -305,9 +305,9 @@ test('connects again by itself', async () => {
   await other.evaluate(() => window.lastSocket.close());
   await other.waitForFunction(() => document.getElementById('connection').textContent.includes('trying again'));
   await other.waitForFunction(() => window.swarmflow.state().connected);
-  const { picturesReceived } = await state(other);
+  const { viewFramesReceived } = await state(other);
   if (!live) await other.evaluate(() => window.swarmflow.seek(1));
-  await other.waitForFunction((before) => window.swarmflow.state().picturesReceived > before, {}, picturesReceived);
+  await other.waitForFunction((before) => window.swarmflow.state().viewFramesReceived > before, {}, viewFramesReceived);
   await other.close();
 });
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // Recordings read by the format's own library and decoded by their own IDL say what `swarm_monitor cat` says.
-// SWARM_RECORDING: the file. SWARM_RUN_DIR: its run, whose black boxes (and bus.mcap, if there is one) are read too.
+// SWARM_RECORDING: the file. SWARM_RUN_DIR: its run, whose robot logs (and bus.mcap, if there is one) are read too.
 // SWARM_BIN: the programs.
 import assert from 'node:assert/strict';
 import { spawn } from 'node:child_process';
@@ -174,7 +174,7 @@ test('a flipped bit is noticed, and costs no more than its chunk', async () => {
   await assertSameAsCat(file, whole.messages.filter((message) => message.chunk !== number));
 });
 
-test('black boxes are read, those of killed processes up to their end', async (t) => {
+test('robot logs are read, those of killed processes up to their end', async (t) => {
   if (!SWARM_RUN_DIR) return t.skip('SWARM_RUN_DIR is not given');
   const folder = join(SWARM_RUN_DIR, 'blackbox');
   const boxes = readdirSync(folder).filter((name) => /^robot-.*\.mcap$/.test(name)).sort();

@@ -59,15 +59,15 @@ class TestFastDdsBus final : public Bus {
 };
 
 /// No server: everyone announces itself to those who were there before.
-class TestStarBus final : public Bus {
+class TestStaticPeersBus final : public Bus {
  private:
   std::unique_ptr<Participant> make(std::uint32_t ownership_strength) override {
-    Star star{.is_hub = true};
-    for (std::uint32_t peer = 0; peer < next_index_; ++peer) star.peers.push_back(peer);
+    StaticPeers static_peers{.is_relay = true};
+    for (std::uint32_t peer = 0; peer < next_index_; ++peer) static_peers.peers.push_back(peer);
     auto made = make_fastdds_participant({.name = "conformance",
                                           .domain = test_domain(),
                                           .index = next_index_++,
-                                          .star = star,
+                                          .static_peers = static_peers,
                                           .ownership_strength = ownership_strength});
     SWARM_ASSERT(made.has_value());
     return *std::move(made);
@@ -118,7 +118,7 @@ void Bus::pump() {
   for (const auto& participant : participants_) participant->receive();
 }
 
-void Bus::settle() {
+void Bus::converge() {
   for (int i = 0; i < 50; ++i) {
     pump();
     rest();
@@ -141,19 +141,19 @@ std::unique_ptr<Bus> join_fastdds_bus(const DiscoveryAddress& discovery,
   return std::make_unique<TestFastDdsBus>(nullptr, discovery, true, first_index);
 }
 
-const std::vector<Back>& backs() {
-  static const std::vector<Back> all = {
+const std::vector<Backend>& backends() {
+  static const std::vector<Backend> all = {
       {"inproc", [] { return make_inproc_bus(); }},
       {"fastdds_at_tick", [] { return make_fastdds_bus(true); }},
       {"fastdds_threads", [] { return make_fastdds_bus(false); }},
-      {"fastdds_star", []() -> std::unique_ptr<Bus> { return std::make_unique<TestStarBus>(); }},
+      {"fastdds_star", []() -> std::unique_ptr<Bus> { return std::make_unique<TestStaticPeersBus>(); }},
       {"cyclone", []() -> std::unique_ptr<Bus> { return std::make_unique<TestCycloneBus>(); }}};
   return all;
 }
 
-const std::vector<Back>& channel_backs() {
-  static const std::vector<Back> all = [] {
-    std::vector<Back> list = backs();
+const std::vector<Backend>& channel_backends() {
+  static const std::vector<Backend> all = [] {
+    std::vector<Backend> list = backends();
     list.push_back(
         {"groups", []() -> std::unique_ptr<Bus> { return std::make_unique<TestGroupBus>(); }});
     return list;

@@ -40,7 +40,7 @@ class Bus {
   }
 
   /// Ticks for a while, for what must not arrive. Too short a while can only hide a fault.
-  void settle();
+  void converge();
 
  protected:
   virtual std::unique_ptr<Participant> make(std::uint32_t ownership_strength) = 0;
@@ -70,13 +70,13 @@ std::unique_ptr<Bus> make_fastdds_bus(bool receive_at_tick = true);
 std::unique_ptr<Bus> join_fastdds_bus(const DiscoveryAddress& discovery, std::uint32_t first_index);
 
 using MakeBus = std::unique_ptr<Bus> (*)();
-struct Back {
+struct Backend {
   const char* name;
   MakeBus make;
 };
-const std::vector<Back>& backs();
+const std::vector<Backend>& backends();
 /// The backs, whose channels are made of topics, and the groups.
-const std::vector<Back>& channel_backs();
-inline std::string name_of(const testing::TestParamInfo<Back>& back) { return back.param.name; }
+const std::vector<Backend>& channel_backends();
+inline std::string name_of(const testing::TestParamInfo<Backend>& back) { return back.param.name; }
 
 }  // namespace swarm::link::conformance

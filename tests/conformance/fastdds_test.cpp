@@ -48,7 +48,7 @@ struct FastDds : testing::Test {
 };
 
 // The vendor tries 100 ports and then goes on without hearing anything.
-TEST_F(FastDds, HearsEvenWhereAHundredAndTenParticipantsWereBefore) {
+TEST_F(FastDds, ReceivesAfterAHundredAndTenParticipantsUsedThePorts) {
   const OccupiedPorts others(first_port(), 2 * 110);
   const auto bus = join_fastdds_bus(server->address(), 0);
   auto& a = bus->participant();
@@ -60,11 +60,11 @@ TEST_F(FastDds, HearsEvenWhereAHundredAndTenParticipantsWereBefore) {
   const auto reader = b.make_reader(command_topic()).value();
   writer->write({.command_id = 1});
 
-  std::vector<CommandMessage> heard;
-  EXPECT_TRUE(bus->eventually([&] { return reader->take(heard) > 0; }));
+  std::vector<CommandMessage> received;
+  EXPECT_TRUE(bus->eventually([&] { return reader->take(received) > 0; }));
 }
 
-TEST_F(FastDds, SaysThatItIsDeafWhenNoPortIsFree) {
+TEST_F(FastDds, ReportsThatItCannotReceiveWhenNoPortIsFree) {
   const OccupiedPorts others(first_port(), 2 * 110);
   for (const bool at_tick : {true, false}) {
     auto few_tries = options(0);
@@ -80,7 +80,7 @@ TEST_F(FastDds, SaysThatItIsDeafWhenNoPortIsFree) {
   }
 }
 
-TEST_F(FastDds, SaysWhichKernelLimitKeepsItsBuffersSmall) {
+TEST_F(FastDds, ReportsWhichKernelLimitKeepsItsBuffersSmall) {
   auto greedy = options(0);
   greedy.receive_buffer_bytes = 1 << 30;
 
@@ -122,17 +122,17 @@ TEST_F(FastDds, KeepsRunsOnDifferentServersApart) {
   writer->write({.command_id = 1});
   other_writer->write({.command_id = 2});
 
-  std::vector<CommandMessage> heard;
-  std::vector<CommandMessage> other_heard;
-  ASSERT_TRUE(bus->eventually([&] { return reader->take(heard) > 0; }));
-  ASSERT_TRUE(other_bus->eventually([&] { return other_reader->take(other_heard) > 0; }));
-  bus->settle();
-  other_bus->settle();
-  reader->take(heard);
-  other_reader->take(other_heard);
+  std::vector<CommandMessage> received;
+  std::vector<CommandMessage> other_received;
+  ASSERT_TRUE(bus->eventually([&] { return reader->take(received) > 0; }));
+  ASSERT_TRUE(other_bus->eventually([&] { return other_reader->take(other_received) > 0; }));
+  bus->converge();
+  other_bus->converge();
+  reader->take(received);
+  other_reader->take(other_received);
 
-  EXPECT_EQ(heard, std::vector{CommandMessage{.command_id = 1}});
-  EXPECT_EQ(other_heard, std::vector{CommandMessage{.command_id = 2}});
+  EXPECT_EQ(received, std::vector{CommandMessage{.command_id = 1}});
+  EXPECT_EQ(other_received, std::vector{CommandMessage{.command_id = 2}});
   EXPECT_EQ(writer->matched(), 1);
   EXPECT_EQ(other_writer->matched(), 1);
 }
@@ -145,16 +145,16 @@ TEST_F(FastDds, FindsNewcomersAgainAfterItsServerRestarted) {
   const auto port = server->address().port;
   server.reset();
   writer->write({.command_id = 1});  // peers that know each other need no server
-  std::vector<CommandMessage> heard;
-  EXPECT_TRUE(bus->eventually([&] { return reader->take(heard) > 0; }));
+  std::vector<CommandMessage> received;
+  EXPECT_TRUE(bus->eventually([&] { return reader->take(received) > 0; }));
 
   server = make_discovery_server(test_domain(), port).value();
 
   const auto late = bus->participant().make_reader(command_topic()).value();
-  EXPECT_TRUE(bus->eventually([&] { return late->take(heard) > 0; }));
+  EXPECT_TRUE(bus->eventually([&] { return late->take(received) > 0; }));
 }
 
-TEST_F(FastDds, HearsNothingBeforeReceiveIsCalled) {
+TEST_F(FastDds, ReceivesNothingBeforeReceiveIsCalled) {
   const auto bus = join_fastdds_bus(server->address(), 0);
   const auto writer = bus->participant().make_writer(cell_topic({0, 0})).value();
   const auto reader = bus->participant().make_reader(cell_topic({0, 0})).value();
@@ -162,9 +162,9 @@ TEST_F(FastDds, HearsNothingBeforeReceiveIsCalled) {
 
   writer->write({.cell_x = 1});
 
-  std::vector<CellStatesMessage> heard;
-  EXPECT_EQ(reader->take(heard), 0U);
-  EXPECT_TRUE(bus->eventually([&] { return reader->take(heard) > 0; }));
+  std::vector<CellStatesMessage> received;
+  EXPECT_EQ(reader->take(received), 0U);
+  EXPECT_TRUE(bus->eventually([&] { return reader->take(received) > 0; }));
 }
 
 // A reader that never ticks must not hold up a reliable writer, nor make it grow.
@@ -176,22 +176,22 @@ TEST_F(FastDds, WritesOnWhileAReaderSleeps) {
   const auto asleep = sleeper->make_reader(event_topic()).value();
   ASSERT_TRUE(bus->eventually([&] { return writer->matched() == 2; }));
 
-  std::vector<EventMessage> heard;
+  std::vector<EventMessage> received;
   for (std::uint32_t i = 0; i < 1000; ++i) {
     EXPECT_TRUE(writer->write({.source = i}));
     bus->pump();
-    awake->take(heard);
+    awake->take(received);
   }
 
   EXPECT_TRUE(bus->eventually([&] {
-    awake->take(heard);
-    return !heard.empty() && heard.back().source == 999;
+    awake->take(received);
+    return !received.empty() && received.back().source == 999;
   }));
   EXPECT_TRUE(bus->eventually([&] {
     sleeper->receive();
-    heard.clear();
-    asleep->take(heard);
-    return !heard.empty() && heard.back().source == 999;
+    received.clear();
+    asleep->take(received);
+    return !received.empty() && received.back().source == 999;
   }));
 }
 

@@ -66,12 +66,12 @@ struct GatewayRun : testing::TestWithParam<Vendor> {
     return found;
   }
 
-  Meeting meeting{.domain = test_domain(), .hubs = 1};
+  Meeting meeting{.domain = test_domain(), .relays = 1};
   std::unique_ptr<Participant> launcher = join_as_launcher(meeting).value();
   std::unique_ptr<Participant> planner = join_as_planner(meeting, 1).value();
-  std::unique_ptr<Participant> hub = join_as_gateway(meeting).value();
+  std::unique_ptr<Participant> relay = join_as_gateway(meeting).value();
   std::unique_ptr<Gateway> gateway =
-      make_gateway(*hub,
+      make_gateway(*relay,
                    {.domain = test_domain(), .topic_cell_size_m = kTopicCell_m, .limits = limits()})
           .value();
   std::unique_ptr<StateChannel> groups;
@@ -89,7 +89,7 @@ TEST_P(GatewayRun, CarriesStatesBothWaysAndEachOnce) {
   start_other();
   ASSERT_TRUE(eventually([&] { return gateway->in_use(); }));
 
-  // Best effort, and the other may still be on its way: said until it is heard.
+  // Best effort, and the other may still be under way: said until it is received.
   ASSERT_TRUE(eventually([&] {
     groups->publish(std::vector{state(1, 10), state(2, 120)});
     return count(by_topics, 1) > 0 && count(by_topics, 2) > 0;
@@ -99,7 +99,7 @@ TEST_P(GatewayRun, CarriesStatesBothWaysAndEachOnce) {
     return count(by_groups, 3) > 0;
   }));
 
-  eventually([n = 0]() mutable { return ++n > 50; });  // what is on its way comes
+  eventually([n = 0]() mutable { return ++n > 50; });  // what is under way comes
   by_topics.clear();
   by_groups.clear();
   const auto once = state(4, 11);
@@ -107,7 +107,7 @@ TEST_P(GatewayRun, CarriesStatesBothWaysAndEachOnce) {
   ASSERT_TRUE(eventually([&] { return count(by_topics, 4) > 0; }));
   eventually([n = 0]() mutable { return ++n > 50; });
   EXPECT_EQ(count(by_topics, 4), 1U);
-  EXPECT_EQ(count(by_groups, 4), 1U) << "only what was said, no echo";
+  EXPECT_EQ(count(by_groups, 4), 1U) << "only what was published, no echo";
   const RefusalCounters& refused = gateway->refused();
   EXPECT_EQ(refused.total(), refused[RefusalReason::kDuplicate] + refused[RefusalReason::kStale])
       << "nothing but echoes";
@@ -124,7 +124,7 @@ TEST_P(GatewayRun, RefusesWhatAnAgentWouldRefuse) {
   EXPECT_EQ(count(by_groups, 99), 0U);
 }
 
-TEST_P(GatewayRun, DoesNothingWhileNobodyListens) {
+TEST_P(GatewayRun, DoesNothingWithoutReaders) {
   for (int i = 0; i < 100; ++i) {
     groups->publish(std::vector{state(1, 10)});
     gateway->relay(std::chrono::milliseconds(1), utc_now());
@@ -135,11 +135,11 @@ TEST_P(GatewayRun, DoesNothingWhileNobodyListens) {
 }
 
 TEST(Gateway, RefusesAMapOfTooManyCells) {
-  const Meeting meeting{.domain = test_domain(), .hubs = 1};
-  const auto hub = join_as_gateway(meeting).value();
+  const Meeting meeting{.domain = test_domain(), .relays = 1};
+  const auto relay = join_as_gateway(meeting).value();
 
   const auto made =
-      make_gateway(*hub, {.domain = test_domain(), .topic_cell_size_m = 5.0, .limits = limits()});
+      make_gateway(*relay, {.domain = test_domain(), .topic_cell_size_m = 5.0, .limits = limits()});
 
   ASSERT_FALSE(made);
   EXPECT_NE(made.error().message.find("link.cell_size_m"), std::string::npos);

@@ -31,9 +31,9 @@ class Stranger {
     ip_mreqn through_loopback{};
     through_loopback.imr_multiaddr = address_.sin_addr;
     through_loopback.imr_address.s_addr = htonl(INADDR_LOOPBACK);
-    const timeval patience{.tv_sec = 30, .tv_usec = 0};
+    const timeval timeout{.tv_sec = 30, .tv_usec = 0};
     ::setsockopt(fd_, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
-    ::setsockopt(fd_, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
+    ::setsockopt(fd_, SOL_SOCKET, SO_RCVTIMEO, &timeout, sizeof timeout);
     ::bind(fd_, reinterpret_cast<const sockaddr*>(&address_), sizeof address_);
     ::setsockopt(fd_, IPPROTO_IP, IP_ADD_MEMBERSHIP, &through_loopback, sizeof through_loopback);
     ::setsockopt(fd_, IPPROTO_IP, IP_MULTICAST_IF, &through_loopback, sizeof through_loopback);
@@ -42,13 +42,13 @@ class Stranger {
   Stranger(const Stranger&) = delete;
   Stranger& operator=(const Stranger&) = delete;
 
-  Datagram hear() const {
+  Datagram receive() const {
     Datagram bytes(65'536);
     const ssize_t size = ::recv(fd_, bytes.data(), bytes.size(), 0);
     bytes.resize(static_cast<std::size_t>(std::max<ssize_t>(size, 0)));
     return bytes;
   }
-  void say(const Datagram& bytes) const {
+  void send(const Datagram& bytes) const {
     ::sendto(fd_, bytes.data(), bytes.size(), 0, reinterpret_cast<const sockaddr*>(&address_),
              sizeof address_);
   }
@@ -69,30 +69,30 @@ struct GroupChannelTest : testing::Test {
   }
 
   const Vec2 place_m{2.0, 2.0};  // in cell (0, 0)
-  std::unique_ptr<StateChannel> hears = make();
+  std::unique_ptr<StateChannel> receives = make();
   std::unique_ptr<StateChannel> speaks = make();
 };
 
-TEST_F(GroupChannelTest, HearsAStateAtOnce) {
-  hears->listen_around({&place_m, 1});
+TEST_F(GroupChannelTest, ReceivesAStateAtOnce) {
+  receives->listen_around({&place_m, 1});
   const RobotStateMessage state{.robot_id = 7, .sequence_number = 1, .x_m = 2.0, .y_m = 2.0};
 
   EXPECT_EQ(speaks->publish({&state, 1}), 1U);
 
-  const auto heard = take(*hears);  // no discovery, no waiting: loopback delivers while it sends
-  ASSERT_EQ(heard.size(), 1U);
-  EXPECT_EQ(heard[0].states, std::vector{state});
+  const auto received = take(*receives);  // no discovery, no waiting: loopback delivers while it sends
+  ASSERT_EQ(received.size(), 1U);
+  EXPECT_EQ(received[0].states, std::vector{state});
 }
 
-TEST_F(GroupChannelTest, HearsNothingOfCellsItLeft) {
-  hears->listen_around({&place_m, 1});
+TEST_F(GroupChannelTest, ReceivesNothingFromCellsItLeft) {
+  receives->listen_around({&place_m, 1});
   const Vec2 elsewhere_m(100.0, 100.0);
   const RobotStateMessage state{.robot_id = 7, .x_m = 2.0, .y_m = 2.0};
 
-  hears->listen_around({&elsewhere_m, 1});
+  receives->listen_around({&elsewhere_m, 1});
   speaks->publish({&state, 1});
 
-  EXPECT_TRUE(take(*hears).empty());
+  EXPECT_TRUE(take(*receives).empty());
 }
 
 TEST_F(GroupChannelTest, ListensToMoreCellsThanASocketHasMemberships) {
@@ -102,15 +102,15 @@ TEST_F(GroupChannelTest, ListensToMoreCellsThanASocketHasMemberships) {
     places_m.emplace_back(2.0 + 20.0 * i, 2.0);
     states.push_back({.robot_id = i, .x_m = places_m.back().x(), .y_m = 2.0});
   }
-  hears->listen_around(places_m);
+  receives->listen_around(places_m);
 
   EXPECT_EQ(speaks->publish(states), 60U);
 
-  std::set<std::uint32_t> heard;
-  for (const auto& batch : take(*hears)) {
-    for (const auto& state : batch.states) heard.insert(state.robot_id);
+  std::set<std::uint32_t> received;
+  for (const auto& batch : take(*receives)) {
+    for (const auto& state : batch.states) received.insert(state.robot_id);
   }
-  EXPECT_EQ(heard.size(), 60U);
+  EXPECT_EQ(received.size(), 60U);
 }
 
 TEST_F(GroupChannelTest, GivesCellsOfAMapGroupsOfTheirOwn) {
@@ -121,7 +121,7 @@ TEST_F(GroupChannelTest, GivesCellsOfAMapGroupsOfTheirOwn) {
   EXPECT_EQ(groups.size(), 180U * 178U);
 }
 
-TEST_F(GroupChannelTest, DoesNotHearOtherDomains) {
+TEST_F(GroupChannelTest, DoesNotReceiveFromOtherDomains) {
   const auto other = make_group_channel({.domain = test_domain() + 100}).value();
   other->listen_around({&place_m, 1});
   const RobotStateMessage state{.x_m = 2.0, .y_m = 2.0};
@@ -137,28 +137,28 @@ TEST_F(GroupChannelTest, SurvivesWhateverIsSentToTheGroup) {
   const Stranger stranger({0, 0});
   const RobotStateMessage state{.robot_id = 7, .sequence_number = 1, .x_m = 2.0, .y_m = 2.0};
   speaks->publish({&state, 1});
-  const Datagram genuine = stranger.hear();
+  const Datagram genuine = stranger.receive();
   ASSERT_GT(genuine.size(), 20U);
-  hears->listen_around({&place_m, 1});
+  receives->listen_around({&place_m, 1});
 
   for (std::size_t size = 0; size < genuine.size(); ++size) {
-    stranger.say(Datagram(genuine.begin(), genuine.begin() + static_cast<std::ptrdiff_t>(size)));
+    stranger.send(Datagram(genuine.begin(), genuine.begin() + static_cast<std::ptrdiff_t>(size)));
   }
   for (std::size_t at = 0; at < genuine.size(); ++at) {
     for (const int value : {0x00, 0x01, 0x7F, 0x80, 0xFF}) {
       Datagram corrupt = genuine;
       corrupt[at] = static_cast<unsigned char>(value);
-      stranger.say(corrupt);
+      stranger.send(corrupt);
     }
-    for (const auto& batch : take(*hears)) EXPECT_LE(batch.states.size(), kMaxCellStates);
+    for (const auto& batch : take(*receives)) EXPECT_LE(batch.states.size(), kMaxCellStates);
   }
-  EXPECT_GT(hears->undecodable(), 0U);
+  EXPECT_GT(receives->undecodable(), 0U);
 
   const RobotStateMessage after{.robot_id = 7, .sequence_number = 2, .x_m = 2.0, .y_m = 2.0};
   speaks->publish({&after, 1});
-  const auto heard = take(*hears);
-  ASSERT_FALSE(heard.empty());
-  EXPECT_EQ(heard.back().states, std::vector{after});
+  const auto received = take(*receives);
+  ASSERT_FALSE(received.empty());
+  EXPECT_EQ(received.back().states, std::vector{after});
 }
 
 }  // namespace

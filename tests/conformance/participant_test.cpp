@@ -12,14 +12,14 @@
 namespace swarm::link::conformance {
 namespace {
 
-class Participants : public testing::TestWithParam<Back> {
+class Participants : public testing::TestWithParam<Backend> {
  protected:
   // The next `count` messages that a reader hears.
   template <class M>
-  std::vector<M> hear(const ReaderPtr<M>& reader, std::size_t count) {
-    std::vector<M> heard;
-    EXPECT_TRUE(bus->eventually([&] { return reader->take(heard), heard.size() >= count; }));
-    return heard;
+  std::vector<M> receive(const ReaderPtr<M>& reader, std::size_t count) {
+    std::vector<M> received;
+    EXPECT_TRUE(bus->eventually([&] { return reader->take(received), received.size() >= count; }));
+    return received;
   }
 
   template <class W, class R>
@@ -36,7 +36,7 @@ class Participants : public testing::TestWithParam<Back> {
     for (int i = 0; i < 3; ++i) {
       const M sent = sample<M>(rng);
       ASSERT_TRUE(writer->write(sent));
-      EXPECT_EQ(hear(reader, 1), std::vector{sent});
+      EXPECT_EQ(receive(reader, 1), std::vector{sent});
     }
     EXPECT_EQ(reader->undecodable(), 0U);
   }
@@ -46,7 +46,7 @@ class Participants : public testing::TestWithParam<Back> {
   Participant& b = bus->participant();
 };
 
-INSTANTIATE_TEST_SUITE_P(Backs, Participants, testing::ValuesIn(backs()), name_of);
+INSTANTIATE_TEST_SUITE_P(Backends, Participants, testing::ValuesIn(backends()), name_of);
 
 TEST_P(Participants, PassTheirSelfCheck) {
   const auto checked = a.self_check();
@@ -69,10 +69,10 @@ TEST_P(Participants, MatchExactlyWhereTheWriterOffersWhatTheReaderAsksFor) {
   };
   std::vector<Pair> pairs;
   for (int bits = 0; bits < 64; ++bits) {
-    const auto qos = [](int wish) {
-      return Qos{.reliability = wish & 1 ? Reliability::kReliable : Reliability::kBestEffort,
-                 .durability = wish & 2 ? Durability::kTransientLocal : Durability::kVolatile,
-                 .ownership = wish & 4 ? Ownership::kExclusive : Ownership::kShared};
+    const auto qos = [](int desired_velocity) {
+      return Qos{.reliability = desired_velocity & 1 ? Reliability::kReliable : Reliability::kBestEffort,
+                 .durability = desired_velocity & 2 ? Durability::kTransientLocal : Durability::kVolatile,
+                 .ownership = desired_velocity & 4 ? Ownership::kExclusive : Ownership::kShared};
     };
     const int offered = bits & 7;
     const int asked = bits >> 3;
@@ -86,7 +86,7 @@ TEST_P(Participants, MatchExactlyWhereTheWriterOffersWhatTheReaderAsksFor) {
     if (!pair.compatible) continue;
     await_match(pair.writer, pair.reader);
     ASSERT_TRUE(pair.writer->write({.command_id = 5}));
-    EXPECT_EQ(hear(pair.reader, 1), std::vector{CommandMessage{.command_id = 5}});
+    EXPECT_EQ(receive(pair.reader, 1), std::vector{CommandMessage{.command_id = 5}});
   }
   for (const auto& pair : pairs) {
     EXPECT_EQ(pair.writer->matched(), pair.compatible ? 1 : 0);
@@ -94,12 +94,12 @@ TEST_P(Participants, MatchExactlyWhereTheWriterOffersWhatTheReaderAsksFor) {
   }
 }
 
-TEST_P(Participants, HearThemselves) {
+TEST_P(Participants, ReceiveTheirOwnMessages) {
   const auto writer = a.make_writer(cell_topic({0, 0})).value();
   const auto reader = a.make_reader(cell_topic({0, 0})).value();
   await_match(writer, reader);
   writer->write({.cell_x = 1});
-  EXPECT_EQ(hear(reader, 1), std::vector{CellStatesMessage{.cell_x = 1}});
+  EXPECT_EQ(receive(reader, 1), std::vector{CellStatesMessage{.cell_x = 1}});
 }
 
 TEST_P(Participants, CarryTheLargestPlanInOnePiece) {
@@ -109,7 +109,7 @@ TEST_P(Participants, CarryTheLargestPlanInOnePiece) {
   const auto reader = b.make_reader(plan_topic()).value();
   await_match(writer, reader);
   ASSERT_TRUE(writer->write(plan));
-  EXPECT_EQ(hear(reader, 1), std::vector{plan});
+  EXPECT_EQ(receive(reader, 1), std::vector{plan});
 }
 
 TEST_P(Participants, RefuseToWriteMoreThanTheContractAllows) {
@@ -131,7 +131,7 @@ TEST_P(Participants, CutLongEventTexts) {
   await_match(writer, reader);
   ASSERT_TRUE(writer->write({.code = std::string(70, 'c'), .text = std::string(2000, 't')}));
   const EventMessage cut{.code = std::string(64, 'c'), .text = std::string(512, 't')};
-  EXPECT_EQ(hear(reader, 1), std::vector{cut});
+  EXPECT_EQ(receive(reader, 1), std::vector{cut});
 }
 
 TEST_P(Participants, GiveLateJoinersThePlan) {
@@ -144,7 +144,7 @@ TEST_P(Participants, GiveLateJoinersThePlan) {
 
   const auto late = b.make_reader(plan_topic()).value();
 
-  EXPECT_EQ(hear(late, 1), std::vector{second});
+  EXPECT_EQ(receive(late, 1), std::vector{second});
 }
 
 TEST_P(Participants, GiveLateJoinersAllCommandsInOrder) {
@@ -155,7 +155,7 @@ TEST_P(Participants, GiveLateJoinersAllCommandsInOrder) {
 
   const auto late = b.make_reader(command_topic()).value();
 
-  EXPECT_EQ(hear(late, commands.size()), commands);
+  EXPECT_EQ(receive(late, commands.size()), commands);
 }
 
 TEST_P(Participants, GiveLateJoinersNothingVolatile) {
@@ -167,7 +167,7 @@ TEST_P(Participants, GiveLateJoinersNothingVolatile) {
   await_match(writer, late);
   writer->write({.source = 2});
 
-  EXPECT_EQ(hear(late, 1), std::vector{EventMessage{.source = 2}});
+  EXPECT_EQ(receive(late, 1), std::vector{EventMessage{.source = 2}});
 }
 
 TEST_P(Participants, KeepTheLastOfEachGroupsStatus) {
@@ -184,8 +184,8 @@ TEST_P(Participants, KeepTheLastOfEachGroupsStatus) {
       writer->write({.first_robot_id = id, .plan_version = version});
     }
   }
-  ASSERT_EQ(hear(deep, 3 * kGroups).size(), 3 * kGroups);
-  bus->settle();
+  ASSERT_EQ(receive(deep, 3 * kGroups).size(), 3 * kGroups);
+  bus->converge();
 
   std::vector<StatusMessage> last;
   reader->take(last);
@@ -203,13 +203,13 @@ TEST_P(Participants, KeepTheLastOfManyCellBatches) {
   const auto reader = b.make_reader(topic).value();
   await_match(writer, reader);
   for (std::int32_t i = 0; i < 200; ++i) writer->write({.cell_x = i});
-  bus->settle();
+  bus->converge();
 
-  std::vector<CellStatesMessage> heard;
-  ASSERT_TRUE(bus->eventually([&] { return reader->take(heard) > 0; }));
+  std::vector<CellStatesMessage> received;
+  ASSERT_TRUE(bus->eventually([&] { return reader->take(received) > 0; }));
 
-  EXPECT_LE(heard.size(), static_cast<std::size_t>(topic.qos.depth));
-  EXPECT_EQ(heard.back().cell_x, 199);
+  EXPECT_LE(received.size(), static_cast<std::size_t>(topic.qos.depth));
+  EXPECT_EQ(received.back().cell_x, 199);
 }
 
 TEST_P(Participants, NoticeWhenWritersAndReadersGo) {
@@ -217,7 +217,7 @@ TEST_P(Participants, NoticeWhenWritersAndReadersGo) {
   auto reader = b.make_reader(command_topic()).value();
   await_match(writer, reader);
   writer->write({.command_id = 1});
-  EXPECT_EQ(hear(reader, 1).size(), 1U);
+  EXPECT_EQ(receive(reader, 1).size(), 1U);
 
   writer.reset();
   EXPECT_TRUE(bus->eventually([&] { return reader->matched() == 0; }));
@@ -228,7 +228,7 @@ TEST_P(Participants, NoticeWhenWritersAndReadersGo) {
   EXPECT_TRUE(bus->eventually([&] { return writer->matched() == 0; }));
 }
 
-TEST_P(Participants, ForgetWhatAGoneWriterSaid) {
+TEST_P(Participants, DropTheSamplesOfAWriterThatEnded) {
   auto gone = a.make_writer(command_topic()).value();
   gone->write({.command_id = 1});
   gone.reset();
@@ -237,10 +237,10 @@ TEST_P(Participants, ForgetWhatAGoneWriterSaid) {
 
   const auto late = b.make_reader(command_topic()).value();
 
-  EXPECT_EQ(hear(late, 1), std::vector{CommandMessage{.command_id = 2}});
+  EXPECT_EQ(receive(late, 1), std::vector{CommandMessage{.command_id = 2}});
 }
 
-TEST_P(Participants, HearTheStrongestPlannerAndTheNextWhenItGoes) {
+TEST_P(Participants, ReceiveTheStrongestPlannerAndTheNextWhenItEnds) {
   auto& primary = bus->participant(10);
   auto& stand_by = bus->participant(5);
   auto strong = primary.make_writer(plan_topic()).value();
@@ -249,25 +249,25 @@ TEST_P(Participants, HearTheStrongestPlannerAndTheNextWhenItGoes) {
   ASSERT_TRUE(bus->eventually([&] { return reader->matched() == 2 && strong->matched() == 1; }));
 
   strong->write({.version = 1});
-  EXPECT_EQ(hear(reader, 1), std::vector{PlanMessage{.version = 1}});
+  EXPECT_EQ(receive(reader, 1), std::vector{PlanMessage{.version = 1}});
   weak->write({.version = 2});
-  bus->settle();
+  bus->converge();
   strong->write({.version = 3});
-  EXPECT_EQ(hear(reader, 1), std::vector{PlanMessage{.version = 3}});
+  EXPECT_EQ(receive(reader, 1), std::vector{PlanMessage{.version = 3}});
 
   strong.reset();
   ASSERT_TRUE(bus->eventually([&] { return reader->matched() == 1; }));
   weak->write({.version = 4});
-  EXPECT_EQ(hear(reader, 1), std::vector{PlanMessage{.version = 4}});
+  EXPECT_EQ(receive(reader, 1), std::vector{PlanMessage{.version = 4}});
 
   strong = primary.make_writer(plan_topic()).value();  // and it returns
   ASSERT_TRUE(bus->eventually([&] { return reader->matched() == 2 && strong->matched() == 1; }));
   strong->write({.version = 5});
-  EXPECT_EQ(hear(reader, 1), std::vector{PlanMessage{.version = 5}});
+  EXPECT_EQ(receive(reader, 1), std::vector{PlanMessage{.version = 5}});
   weak->write({.version = 6});
-  bus->settle();
+  bus->converge();
   strong->write({.version = 7});
-  EXPECT_EQ(hear(reader, 1), std::vector{PlanMessage{.version = 7}});
+  EXPECT_EQ(receive(reader, 1), std::vector{PlanMessage{.version = 7}});
 }
 
 TEST_P(Participants, SurviveEndpointsThatComeAndGo) {
@@ -282,7 +282,7 @@ TEST_P(Participants, SurviveEndpointsThatComeAndGo) {
   const auto reader = b.make_reader(cell_topic({0, 0})).value();
   await_match(stay, reader);
   stay->write({.cell_x = 7});
-  EXPECT_EQ(hear(reader, 1), std::vector{CellStatesMessage{.cell_x = 7}});
+  EXPECT_EQ(receive(reader, 1), std::vector{CellStatesMessage{.cell_x = 7}});
 }
 
 }  // namespace

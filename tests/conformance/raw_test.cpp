@@ -46,8 +46,8 @@ MonitorTopic topic_named(const std::string& recorded) {
                        [&](const MonitorTopic& topic) { return topic.recorded == recorded; });
 }
 
-/// What a reader has heard so far, by when it was said.
-std::vector<RawMessage> heard(Participant& participant, RawReader& reader, std::size_t expected) {
+/// What a reader has heard so far, by when it was published.
+std::vector<RawMessage> received(Participant& participant, RawReader& reader, std::size_t expected) {
   std::vector<RawMessage> messages;
   EXPECT_TRUE(eventually([&] {
     participant.receive();
@@ -55,12 +55,12 @@ std::vector<RawMessage> heard(Participant& participant, RawReader& reader, std::
     return messages.size() >= expected;
   }));
   std::stable_sort(messages.begin(), messages.end(),
-                   [](const auto& a, const auto& b) { return a.said_utc_ns < b.said_utc_ns; });
+                   [](const auto& a, const auto& b) { return a.sent_utc_ns < b.sent_utc_ns; });
   return messages;
 }
 
-TEST(Raw, HearsByteForByteWhatALauncherSays) {
-  const Meeting meeting{.domain = test_domain(), .hubs = 1};
+TEST(Raw, ReceivesTheLaunchersBytesUnchanged) {
+  const Meeting meeting{.domain = test_domain(), .relays = 1};
   const auto launcher = join_as_launcher(meeting).value();
   const auto writer = launcher->make_writer(relayed_status_topic()).value();
   const auto monitor = join_as_monitor(meeting, 10).value();
@@ -71,22 +71,22 @@ TEST(Raw, HearsByteForByteWhatALauncherSays) {
     return writer->matched() == 1 && reader->matched() == 1;
   }));
 
-  std::vector<std::vector<std::byte>> said;
+  std::vector<std::vector<std::byte>> sent;
   for (std::uint32_t ticks = 0; ticks < 3; ++ticks) {
     for (std::uint32_t robot = 0; robot < 20; ++robot) {
       ASSERT_TRUE(writer->write(status_of(robot, ticks)));
-      said.push_back(bytes_of(status_of(robot, ticks)));
+      sent.push_back(bytes_of(status_of(robot, ticks)));
     }
   }
 
-  const auto messages = heard(*monitor, *reader, said.size());
-  ASSERT_EQ(messages.size(), said.size());
-  for (std::size_t i = 0; i < said.size(); ++i) EXPECT_EQ(messages[i].bytes, said[i]) << i;
+  const auto messages = received(*monitor, *reader, sent.size());
+  ASSERT_EQ(messages.size(), sent.size());
+  for (std::size_t i = 0; i < sent.size(); ++i) EXPECT_EQ(messages[i].bytes, sent[i]) << i;
 }
 
-TEST(Raw, SaysAgainWhatWasHeard) {
-  const Meeting meeting{.domain = test_domain(), .hubs = 1};
-  const auto stage = join_as_stage(meeting).value();
+TEST(Raw, RepublishesWhatWasReceived) {
+  const Meeting meeting{.domain = test_domain(), .relays = 1};
+  const auto stage = join_as_replay(meeting).value();
   const auto plans = stage.planner->make_writer(topic_named("swarm/plan").wire).value();
   const auto statuses = stage.launcher->make_writer(topic_named("swarm/status").wire).value();
   const auto monitor = join_as_monitor(meeting, 0).value();
@@ -106,22 +106,22 @@ TEST(Raw, SaysAgainWhatWasHeard) {
   RawMessage status{.bytes = bytes_of(status_of(5, 9))};
   ASSERT_TRUE(statuses->write(status.bytes));
 
-  const auto heard_status = heard(*monitor, *status_reader, 1);
-  EXPECT_EQ(heard_status.front().bytes, status.bytes);
-  std::vector<RawMessage> heard_plans;
+  const auto received_status = received(*monitor, *status_reader, 1);
+  EXPECT_EQ(received_status.front().bytes, status.bytes);
+  std::vector<RawMessage> received_plans;
   EXPECT_TRUE(eventually([&] {
     monitor->receive();
     stage.planner->receive();
-    plan_reader->take(heard_plans);
-    return !heard_plans.empty();
+    plan_reader->take(received_plans);
+    return !received_plans.empty();
   }));
-  ASSERT_EQ(heard_plans.size(), 1U);
-  EXPECT_EQ(heard_plans.front().bytes, message.bytes);
+  ASSERT_EQ(received_plans.size(), 1U);
+  EXPECT_EQ(received_plans.front().bytes, message.bytes);
 }
 
 TEST(Raw, RefusesWhatIsNoSample) {
-  const Meeting meeting{.domain = test_domain(), .hubs = 1};
-  const auto stage = join_as_stage(meeting).value();
+  const Meeting meeting{.domain = test_domain(), .relays = 1};
+  const auto stage = join_as_replay(meeting).value();
   const auto writer = stage.launcher->make_writer(topic_named("swarm/event").wire).value();
   EXPECT_FALSE(writer->write(std::array{std::byte{0}}));
 }

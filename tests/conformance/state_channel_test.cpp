@@ -12,12 +12,12 @@
 namespace swarm::link::conformance {
 namespace {
 
-class StateChannels : public testing::TestWithParam<Back> {
+class StateChannels : public testing::TestWithParam<Backend> {
  protected:
   struct Robot {
     std::unique_ptr<StateChannel> channel;
     RobotStateMessage state;
-    std::set<std::uint32_t> heard{};
+    std::set<std::uint32_t> received{};
 
     void tick() {
       const Vec2 position_m(state.x_m, state.y_m);
@@ -26,7 +26,7 @@ class StateChannels : public testing::TestWithParam<Back> {
       std::vector<CellStatesMessage> batches;
       channel->take(batches);
       for (const auto& batch : batches) {
-        for (const auto& other : batch.states) heard.insert(other.robot_id);
+        for (const auto& other : batch.states) received.insert(other.robot_id);
       }
     }
   };
@@ -38,25 +38,25 @@ class StateChannels : public testing::TestWithParam<Back> {
   std::unique_ptr<Bus> bus = GetParam().make();
 };
 
-INSTANTIATE_TEST_SUITE_P(Backs, StateChannels, testing::ValuesIn(channel_backs()), name_of);
+INSTANTIATE_TEST_SUITE_P(Backends, StateChannels, testing::ValuesIn(channel_backends()), name_of);
 
 using TopicChannels = StateChannels;
-INSTANTIATE_TEST_SUITE_P(Backs, TopicChannels, testing::ValuesIn(backs()), name_of);
+INSTANTIATE_TEST_SUITE_P(Backends, TopicChannels, testing::ValuesIn(backends()), name_of);
 
-TEST_P(StateChannels, HearNeighboursAcrossACellBorder) {
+TEST_P(StateChannels, ReceiveNeighboursAcrossACellBorder) {
   Robot left = robot(1, 18.0, 10.0);
   Robot right = robot(2, 22.0, 10.0);
   EXPECT_TRUE(bus->eventually([&] {
     left.tick();
     right.tick();
-    return left.heard.contains(2) && right.heard.contains(1);
+    return left.received.contains(2) && right.received.contains(1);
   }));
   EXPECT_EQ(left.channel->undecodable(), 0U);
 }
 
-TEST_P(StateChannels, HearTheirOwnProcessToo) {
+TEST_P(StateChannels, ReceiveTheirOwnProcess) {
   Robot alone = robot(1, 5.0, 5.0);
-  EXPECT_TRUE(bus->eventually([&] { return alone.tick(), alone.heard.contains(1); }));
+  EXPECT_TRUE(bus->eventually([&] { return alone.tick(), alone.received.contains(1); }));
 }
 
 TEST_P(StateChannels, LoseAndFindEachOtherAsTheyMove) {
@@ -66,24 +66,24 @@ TEST_P(StateChannels, LoseAndFindEachOtherAsTheyMove) {
     stays.tick();
     roams.tick();
   };
-  ASSERT_TRUE(bus->eventually([&] { return both_tick(), stays.heard.contains(2); }));
+  ASSERT_TRUE(bus->eventually([&] { return both_tick(), stays.received.contains(2); }));
 
   roams.state.x_m = 110.0;
   both_tick();
-  bus->settle();  // what was on its way
+  bus->converge();  // what was under way
   both_tick();
-  stays.heard.clear();
-  roams.heard.clear();
-  ASSERT_TRUE(bus->eventually([&] { return both_tick(), roams.heard.contains(2); }));
-  EXPECT_FALSE(stays.heard.contains(2));
-  EXPECT_FALSE(roams.heard.contains(1));
+  stays.received.clear();
+  roams.received.clear();
+  ASSERT_TRUE(bus->eventually([&] { return both_tick(), roams.received.contains(2); }));
+  EXPECT_FALSE(stays.received.contains(2));
+  EXPECT_FALSE(roams.received.contains(1));
 
   roams.state.x_m = 12.0;
   EXPECT_TRUE(bus->eventually(
-      [&] { return both_tick(), stays.heard.contains(2) && roams.heard.contains(1); }));
+      [&] { return both_tick(), stays.received.contains(2) && roams.received.contains(1); }));
 }
 
-TEST_P(TopicChannels, HearARobotFromItsFirstStateInANewCell) {
+TEST_P(TopicChannels, ReceiveARobotFromItsFirstStateInANewCell) {
   Robot left = robot(1, 18.0, 10.0);
   Robot right = robot(2, 24.0, 10.0);
   // Wait at the border until both cells' endpoints have found each other …
@@ -94,10 +94,10 @@ TEST_P(TopicChannels, HearARobotFromItsFirstStateInANewCell) {
   ASSERT_TRUE(bus->eventually([&] {
     left.tick();
     right.tick();
-    return right.heard.contains(1) && readers_of_right_cell->matched() == 3 &&
+    return right.received.contains(1) && readers_of_right_cell->matched() == 3 &&
            writers_in_right_cell->matched() == 3;
   }));
-  bus->settle();
+  bus->converge();
   std::vector<CellStatesMessage> before;
   writers_in_right_cell->take(before);
 
@@ -105,11 +105,11 @@ TEST_P(TopicChannels, HearARobotFromItsFirstStateInANewCell) {
   left.state.sequence_number = 1;
   left.tick();
 
-  std::vector<CellStatesMessage> heard;
-  ASSERT_TRUE(bus->eventually([&] { return writers_in_right_cell->take(heard) > 0; }));
-  ASSERT_EQ(heard[0].states.size(), 1U);
-  EXPECT_EQ(heard[0].states[0].robot_id, 1U);
-  EXPECT_EQ(heard[0].states[0].sequence_number, 1U);
+  std::vector<CellStatesMessage> received;
+  ASSERT_TRUE(bus->eventually([&] { return writers_in_right_cell->take(received) > 0; }));
+  ASSERT_EQ(received[0].states.size(), 1U);
+  EXPECT_EQ(received[0].states[0].robot_id, 1U);
+  EXPECT_EQ(received[0].states[0].sequence_number, 1U);
 }
 
 }  // namespace

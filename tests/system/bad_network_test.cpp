@@ -25,7 +25,7 @@ TEST(BadNetwork, IsFlownThrough) {
   EXPECT_GT(summary["belief_error_cm"]["max"], 0.0);
 }
 
-TEST(BadNetwork, IsToBeWellDescribed) {
+TEST(BadNetwork, RefusesAnInvalidDescription) {
   FlownRun run({"--fault", "loss=2"});
 
   EXPECT_EQ(run.launcher().wait(), 3);

@@ -11,7 +11,7 @@ namespace {
 
 class EveryProgram : public ::testing::TestWithParam<const char*> {};
 
-TEST_P(EveryProgram, SaysItsVersionAndHelp) {
+TEST_P(EveryProgram, ReportsItsVersionAndHelp) {
   Program version(GetParam(), {"--version"});
   EXPECT_EQ(version.wait(), 0);
   EXPECT_NE(version.out().find(GetParam()), std::string::npos);
@@ -47,7 +47,7 @@ INSTANTIATE_TEST_SUITE_P(CommandLine, EveryProgram,
                          ::testing::Values("planner_service", "robot_agent", "swarm_launcher",
                                            "swarm_monitor"));
 
-TEST(Launcher, SaysWhyAMissionCannotBePlanned) {
+TEST(Launcher, ReportsWhyAMissionCannotBePlanned) {
   // The goal lies behind a wall without a gap.
   TemporaryFolder folder;
   const auto file = folder.path() / "walled.yaml";
@@ -102,7 +102,7 @@ TEST(Launcher, RefusesADirectoryThatHoldsARun) {
   run.launcher().wait();
 }
 
-TEST(Monitor, SaysWhatIsNoRunDirectory) {
+TEST(Monitor, ReportsWhatIsNoRunDirectory) {
   TemporaryFolder folder;
   Program audit("swarm_monitor", {"audit", folder.path().string()});
 

@@ -112,7 +112,7 @@ std::set<std::string> reporters_of(const FlownRun& run, const std::string& text)
 }
 
 // Ids of commands are UTC stamps. One near 2^64, if accepted, would outrank all commands to come.
-TEST(HostileBus, ACommandWithAHugeIdLocksNobodyOut) {
+TEST(HostileBus, ACommandWithAHugeIdLocksNoOtherSenderOut) {
   constexpr std::size_t kRobots = 12;
   FlownRun run;
   ASSERT_TRUE(run.mission_started());

@@ -12,7 +12,7 @@
 namespace swarm::test {
 namespace {
 
-TEST(Loss, KilledRobotsAreNamedAndNobodyElseIsDisturbed) {
+TEST(Loss, KilledRobotsAreNamedAndOthersAreNotDisturbed) {
   FlownRun run;
   ASSERT_TRUE(run.mission_started());
   const auto agents = run.agents();

@@ -105,7 +105,7 @@ TEST(Mission, FliesOnMulticastGroups) {
   EXPECT_EQ(run.summary()["collisions_robot"], 0);
 }
 
-TEST(Mission, TwoRunsAtOnceDoNotHearEachOther) {
+TEST(Mission, TwoRunsAtOnceAreIsolated) {
   // On the same groups of the map, told apart by their domains.
   FlownRun one({"--robots", "6", "--seed", "1", "--channel", "groups"});
   FlownRun two({"--robots", "6", "--seed", "2", "--channel", "groups"});

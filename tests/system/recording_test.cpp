@@ -12,7 +12,7 @@
 namespace swarm::test {
 namespace {
 
-/// What was said on each topic, in order.
+/// What was published on each topic, in order.
 std::map<std::string, std::vector<std::string>> messages_of(const std::filesystem::path& file) {
   std::map<std::string, std::vector<std::string>> messages;
   const auto damage =
@@ -39,7 +39,7 @@ std::string audit(const std::filesystem::path& from) {
   return auditing.out();
 }
 
-std::uint64_t steps_in_boxes(const std::filesystem::path& run_dir) {
+std::uint64_t steps_in_logs(const std::filesystem::path& run_dir) {
   std::uint64_t steps = 0;
   for (const auto& box : std::filesystem::directory_iterator(run_dir / "blackbox")) {
     steps += messages_of(box.path())["blackbox/step"].size();
@@ -56,7 +56,7 @@ TEST(Recording, OfAFlightIsReplayedWithTheSameMessagesAndJudgedAlike) {
   EXPECT_EQ(merged["unended"], 0);
   const auto recording = run.dir() / "recording.mcap";
   auto first = messages_of(recording);
-  EXPECT_EQ(first["blackbox/step"].size(), steps_in_boxes(run.dir()));
+  EXPECT_EQ(first["blackbox/step"].size(), steps_in_logs(run.dir()));
   for (const char* topic : {"swarm/plan", "swarm/heartbeat", "swarm/command", "swarm/status",
                             "swarm/event", "swarm/cell"}) {
     EXPECT_FALSE(first[topic].empty()) << topic;
@@ -134,7 +134,7 @@ TEST(Recording, OnAFullDiskDoesNotTroubleTheFlight) {
   const std::string events = read_text(run->dir() / "events.jsonl");
   EXPECT_NE(events.find("blackbox-dropped"), std::string::npos);
   EXPECT_EQ(events.find("agent-exit"), std::string::npos);
-  EXPECT_GT(steps_in_boxes(run->dir()), 12U);
+  EXPECT_GT(steps_in_logs(run->dir()), 12U);
   auto bus = messages_of(run->dir() / "bus.mcap");
   EXPECT_FALSE(bus["swarm/cell"].empty());
 }

@@ -12,7 +12,7 @@ namespace {
 const std::string kChanging = std::string(SWARM_SOURCE_DIR) + "/deploy/missions/changing.yaml";
 
 /// Texts of all events with a code.
-std::vector<std::string> told(const std::filesystem::path& run_dir, const std::string& code) {
+std::vector<std::string> reported(const std::filesystem::path& run_dir, const std::string& code) {
   std::vector<std::string> texts;
   std::ifstream events(run_dir / "events.jsonl");
   for (std::string line; std::getline(events, line);) {
@@ -29,7 +29,7 @@ void expect_good(const nlohmann::json& summary, int robots) {
   EXPECT_EQ(summary["collisions_obstacle"], 0);
 }
 
-TEST(Scene, OfAScriptChangesAndTheSwarmFollows) {
+TEST(Scene, ChangesByScriptAndTheSwarmFollows) {
   FlownRun run({}, kChanging);
 
   ASSERT_EQ(run.launcher().wait(), 0) << run.launcher().err();
@@ -38,13 +38,13 @@ TEST(Scene, OfAScriptChangesAndTheSwarmFollows) {
   // Of the new goal: 3 and 9 by its weights, within two.
   ASSERT_EQ(run.summary()["arrived_per_goal"].size(), 2U);
   EXPECT_NEAR(run.summary()["arrived_per_goal"][0].get<double>(), 3.0, 2.0);
-  EXPECT_EQ(told(run.dir(), "scene").size(), 4U);
-  EXPECT_TRUE(told(run.dir(), "replan-failed").empty());
+  EXPECT_EQ(reported(run.dir(), "scene").size(), 4U);
+  EXPECT_TRUE(reported(run.dir(), "replan-failed").empty());
   // A plan for the start and one for each change; more while the obstacle moves.
-  EXPECT_GE(told(run.dir(), "planned").size(), 5U);
+  EXPECT_GE(reported(run.dir(), "planned").size(), 5U);
 }
 
-TEST(Scene, ChangesByCommandAndSaysWhatItMadeOfIt) {
+TEST(Scene, ChangesByCommandAndReportsWhatItMadeOfIt) {
   FlownRun run;
   ASSERT_TRUE(run.mission_started());
   const auto command = [&](const std::vector<std::string>& words) {
@@ -71,7 +71,7 @@ TEST(Scene, ChangesByCommandAndSaysWhatItMadeOfIt) {
 TEST(Scene, OutlivesThePlanner) {
   FlownRun run({}, kChanging);
   ASSERT_TRUE(run.mission_started());
-  ASSERT_TRUE(eventually([&] { return !told(run.dir(), "scene").empty(); }));
+  ASSERT_TRUE(eventually([&] { return !reported(run.dir(), "scene").empty(); }));
 
   ::kill(run.planners().at(0), SIGKILL);
 
@@ -89,8 +89,8 @@ TEST(Scene, ThatCannotBePlannedKeepsTheLastPlan) {
                                      "circle_m: {center: [33, 9], radius: 0.3}"});
   ASSERT_EQ(program.wait(), 0) << program.out();
 
-  EXPECT_TRUE(eventually([&] { return !told(run.dir(), "replan-failed").empty(); }));
-  EXPECT_NE(told(run.dir(), "replan-failed").front().find("goal component 1"), std::string::npos);
+  EXPECT_TRUE(eventually([&] { return !reported(run.dir(), "replan-failed").empty(); }));
+  EXPECT_NE(reported(run.dir(), "replan-failed").front().find("goal component 1"), std::string::npos);
   run.launcher().wait();
   EXPECT_EQ(run.summary()["collisions_obstacle"], 0);
   EXPECT_EQ(run.summary()["collisions_robot"], 0);

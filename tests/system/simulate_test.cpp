@@ -50,7 +50,7 @@ TEST(Simulate, GivesTheSameBytesOnAnyNumberOfThreads) {
     EXPECT_EQ(read_text(file.path()), read_text(three / relative)) << relative;
     ++compared;
   }
-  EXPECT_GT(compared, 12U);  // a black box each, the mission, plan and events
+  EXPECT_GT(compared, 12U);  // a robot log each, the mission, plan and events
 }
 
 /// A mission of deploy/missions with other keys in its control section.

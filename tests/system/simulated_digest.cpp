@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 
 #include "program.hpp"
-#include "swarm_core/blackbox/blackbox_file.hpp"
+#include "swarm_core/robot_log/robot_log_file.hpp"
 #include "swarm_core/mission/link_faults.hpp"
 #include "swarm_core/mission/scene_log.hpp"
 #include "swarm_core/plan/plan_json.hpp"
@@ -51,13 +51,13 @@ class Hash {
 struct LogHashes {
   Hash steps, estimates, notes, link;
 
-  void operator()(const blackbox::Header& r) {
+  void operator()(const robot_log::Header& r) {
     steps.add(r.robot.value());
     steps.add(r.robots);
     steps.add(r.radius_m);
     steps.add(r.stamp);
   }
-  void operator()(const blackbox::Step& r) {
+  void operator()(const robot_log::Step& r) {
     steps.add(r.stamp);
     steps.add(r.position_m);
     steps.add(r.velocity_mps);
@@ -70,19 +70,19 @@ struct LogHashes {
     steps.add(r.reference_x_m);
     steps.add(r.reference_y_m);
   }
-  void operator()(const blackbox::Belief& r) {
+  void operator()(const robot_log::Estimate& r) {
     estimates.add(r.stamp);
     estimates.add(r.neighbour.value());
     estimates.add(r.position_m);
   }
-  void operator()(const blackbox::LinkStats& r) {
+  void operator()(const robot_log::LinkStats& r) {
     link.add(r.stamp);
     link.add(r.states_sent);
     link.add(r.states_received);
     for (const std::uint32_t refused : r.refused) link.add(refused);
     for (std::size_t bin = 0; bin < Histogram::kBins; ++bin) link.add(r.state_age.bin(bin));
   }
-  void operator()(const blackbox::Note& r) {
+  void operator()(const robot_log::Note& r) {
     notes.add(r.stamp);
     notes.add(r.code);
   }
@@ -125,15 +125,15 @@ Result<std::string> simulated_digest(const DigestCase& flight) {
 
   // Through the files: what a reader finds in them is what counts.
   const TemporaryFolder folder;
-  std::filesystem::create_directories(blackbox::file_of(folder.path(), RobotId(0)).parent_path());
+  std::filesystem::create_directories(robot_log::file_of(folder.path(), RobotId(0)).parent_path());
   if (auto written = recording.write(folder.path()); !written) {
     return tl::unexpected(written.error());
   }
   LogHashes logs;
   for (std::uint32_t i = 0; i < mission->robots.count; ++i) {
     const auto read =
-        blackbox::read_records(blackbox::file_of(folder.path(), RobotId(i)),
-                               [&](const blackbox::Record& record) { std::visit(logs, record); });
+        robot_log::read_records(robot_log::file_of(folder.path(), RobotId(i)),
+                               [&](const robot_log::Record& record) { std::visit(logs, record); });
     if (!read) return tl::unexpected(read.error());
   }
   return fmt::format("steps={} estimates={} notes={} link={} plans={} clock={} scenes={}",

@@ -6,7 +6,7 @@
 namespace swarm::test {
 namespace {
 
-TEST(Soak, HearsEveryoneAndLosesNothing) {
+TEST(Soak, ReceivesEveryRobotWithoutLoss) {
   TemporaryFolder folder;
   const auto dir = folder.path() / "soak";
   Program soak("swarm_launcher",

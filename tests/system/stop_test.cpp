@@ -66,14 +66,14 @@ TEST(EmergencyStop, IsObeyedByEveryRobotAlsoWithoutAPlanner) {
 TEST(EmergencyStop, NamesWhoHasNotConfirmed) {
   FlownRun run;
   ASSERT_TRUE(run.mission_started());
-  const pid_t deaf = run.agents().at(4);
-  ::kill(deaf, SIGSTOP);
+  const pid_t frozen = run.agents().at(4);
+  ::kill(frozen, SIGSTOP);
 
   Program command("swarm_launcher", {"command", run.dir().string(), "stop"});
 
   EXPECT_EQ(command.wait(), 1);
   EXPECT_NE(command.out().find("not confirmed by robots 4"), std::string::npos) << command.out();
-  ::kill(deaf, SIGCONT);
+  ::kill(frozen, SIGCONT);
   EXPECT_EQ(run.launcher().wait(), 1);
 }
 

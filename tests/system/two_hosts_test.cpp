@@ -33,7 +33,7 @@ TEST(TwoHosts, FlyOneMission) {
   EXPECT_EQ(first.wait(), 0) << first.err();
   EXPECT_EQ(second.wait(), 0) << second.err();
   const auto summary = run.summary();
-  EXPECT_EQ(summary["arrived"], 12);  // by the black boxes, which came home
+  EXPECT_EQ(summary["arrived"], 12);  // by the robot logs, which came home
   EXPECT_EQ(summary["collisions_robot"], 0);
   EXPECT_EQ(summary["lost"], nlohmann::json::array());
 }
@@ -56,11 +56,11 @@ TEST(TwoHosts, AHostThatGoesTakesItsRobotsWithIt) {
   for (const pid_t agent : agents) EXPECT_NE(::kill(agent, 0), 0) << "an orphan";
 }
 
-TEST(TwoHosts, NobodyJoinsWhereNobodyAnswers) {
-  Program nobody("swarm_launcher", {"join", "127.0.0.1:1", "--robots", "1"});
+TEST(TwoHosts, JoinFailsWithoutALauncher) {
+  Program no_observer("swarm_launcher", {"join", "127.0.0.1:1", "--robots", "1"});
 
-  EXPECT_NE(nobody.wait(), 0);
-  EXPECT_NE(nobody.err().find("cannot connect to 127.0.0.1:1"), std::string::npos) << nobody.err();
+  EXPECT_NE(no_observer.wait(), 0);
+  EXPECT_NE(no_observer.err().find("cannot connect to 127.0.0.1:1"), std::string::npos) << no_observer.err();
 }
 
 }  // namespace

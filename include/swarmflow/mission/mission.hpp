@@ -31,7 +31,7 @@ struct BodySpec {
   double speed_max_mps = 1.5;               ///< its largest speed [m/s]
   double acceleration_max_mps2 = 3.0;  ///< of unicycle (along its heading) and double integrator
   double turn_rate_max_radps = 3.0;    ///< of unicycle [rad/s]
-  double hear_radius_m = 0.0;          ///< its communication radius; 0: link.hear_radius_m
+  double communication_radius_m = 0.0;          ///< its communication radius; 0: link.communication_radius_m
   double motion_noise_m = 0.0;         ///< σ of w(k) per control step [ROVER, eq. 9]
   double position_noise_m = 0.0;       ///< σ of its measured position [m]
   /// Longest time that it takes to reach a commanded velocity [s]. Unset, `auto` in the file: the
@@ -91,7 +91,7 @@ struct SafetySpec {
 /// Key `link`: which states are received, and when they are published.
 struct LinkSpec {
   double cell_size_m = 100.0;        ///< side of a cell of the topics channel [m]
-  double hear_radius_m = 4.0;        ///< communication radius [m]
+  double communication_radius_m = 4.0;        ///< communication radius [m]
   double join_margin_m = 6.0;        ///< a cell is joined this much before it is needed [m]
   double leave_margin_m = 9.0;       ///< and left this much after [m]
   double group_cell_size_m = 5.0;    ///< side of a cell of the groups channel [m]
@@ -158,7 +158,7 @@ struct CriteriaSpec {
 
 struct Mission;
 /// The largest communication radius of any robot [m]. O(groups).
-double hears_farthest_m(const Mission& mission);
+double largest_communication_radius_m(const Mission& mission);
 
 /// What script and operator may do to a running mission: a command to all, or a scene change.
 using MissionAction = std::variant<CommandKind, SceneChange>;

@@ -22,7 +22,7 @@ struct ReportedRobot {
   std::uint32_t plan_version = 0;  ///< version of the plan it follows; 0: none
   double plan_time_s = 0.0;        ///< time of that plan's clock, as the robot knows it [s]
   /// Leg of the plan in force that the robot is on, as an index into FlowPlan::legs(). Set only for
-  /// methods with PlanningTraits::uses_places, and only for robots that the planner has placed.
+  /// methods with PlanningTraits::uses_positions, and only for robots that the planner has placed.
   std::optional<std::uint32_t> leg{};
   /// Component of the goal mixture that the robot's route leads to; set as `leg` is.
   std::optional<std::uint32_t> goal{};

@@ -32,7 +32,7 @@ struct PlanningTraits {
   bool is_kept_in_time = false;
   double speed_mps = 0.0;  ///< speed of the means along their routes; 0: not constant [m/s]
   std::optional<double> density_cap_per_m2{};  ///< cap that every plan keeps, if any [robots/m²]
-  bool uses_places = false;  ///< whether ReportedRobot::leg and ReportedRobot::goal are needed
+  bool uses_positions = false;  ///< whether ReportedRobot::leg and ReportedRobot::goal are needed
 };
 
 /// Plans the flow of a swarm: the extension point of `planner.method` (planning_registry.hpp). One

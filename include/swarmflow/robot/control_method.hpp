@@ -51,7 +51,7 @@ struct TimeTracking {
 ///
 /// Calls, all from the thread of the control loop at `control.rate_hz`:
 ///
-///   see_goals(plan), begin(route, world)     at the first plan and at each one that differs
+///   set_goals(plan), begin(route, world)     at the first plan and at each one that differs
 ///   has_arrived(view)                        at every tick with a route, once the mission started
 ///   wish(view, …) or hold(view)              at every tick, unless the robot is stopped
 ///   goal(), tracking(), lag_s(), …           after these, for status and robot log
@@ -70,7 +70,7 @@ class ControlMethod {
 
   /// The plan that the route of the following begin() is taken from, for methods that need all of
   /// its goals. By default ignored. `plan` is valid during the call.
-  virtual void see_goals(const FlowPlan& /*plan*/) {}
+  virtual void set_goals(const FlowPlan& /*plan*/) {}
 
   /// Starts a route, the first or another one; the robot is at its begin or near it. May allocate.
   /// \param route the robot's path, schedule and goal; valid during the call
@@ -86,7 +86,7 @@ class ControlMethod {
   /// \param view inputs of this tick
   /// \param arrived the answer of has_arrived() at this tick; an arrived robot keeps its position
   /// \param rng the robot's own generator, the only source of randomness
-  virtual Vec2 wish(const ControlView& view, bool arrived, Rng& rng) = 0;
+  virtual Vec2 desired_velocity(const ControlView& view, bool arrived, Rng& rng) = 0;
 
   /// Desired velocity of a robot that is held (no plan yet, mission paused, planner silent): only
   /// avoidance of neighbours and obstacles, zero if nothing is near [m/s]. Time spent here must not

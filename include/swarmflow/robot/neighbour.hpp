@@ -18,10 +18,10 @@ struct Neighbour {
   /// Information age of its motion [s]: the transit time of its state updates, since it would have
   /// published another one had it turned; on a degraded link, for a robot that moves nearby, the
   /// time since its last state update.
-  double stale_s = 0.0;
+  double information_age_s = 0.0;
   /// Possible-stop age [s]: how long it may have been at rest by now if its process stalled right
   /// after its last state update and its last command ran out. 0 for a recent state update.
-  double stalled_s = 0.0;
+  double possible_stop_age_s = 0.0;
 };
 
 }  // namespace swarm::agent

@@ -26,7 +26,7 @@ class Polyline {
   const std::vector<Vec2>& vertices_m() const { return vertices_; }
 
   /// A point of the path.
-  struct Place {
+  struct Position {
     Vec2 point_m = Vec2::Zero();  ///< its position [m]
     Vec2 tangent = Vec2::Zero();  ///< unit vector along the path; zero for a path of one point
   };
@@ -41,7 +41,7 @@ class Polyline {
     /// Whether an arc length [m] belongs to it: begin_s_m ≤ s < end_s_m.
     bool holds(double s_m) const { return begin_s_m <= s_m && s_m < end_s_m; }
     /// The point at an arc length [m]; for an s outside of the segment its begin or end.
-    Place place(double s_m) const;
+    Position position(double s_m) const;
   };
   /// The segment that holds an arc length, or the first or last one for an s outside [0, length].
   /// O(segments between the `near`-th one and the answer), does not allocate.
@@ -50,7 +50,7 @@ class Polyline {
   /// \pre the path is not empty; not checked
   Segment segment(double s_m, std::size_t near = 0) const;
   /// The position at an arc length [m]; cost and precondition as of segment().
-  Vec2 at(double s_m, std::size_t near = 0) const { return segment(s_m, near).place(s_m).point_m; }
+  Vec2 at(double s_m, std::size_t near = 0) const { return segment(s_m, near).position(s_m).point_m; }
 
  private:
   std::vector<Vec2> vertices_;

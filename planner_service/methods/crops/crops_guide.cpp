@@ -29,10 +29,10 @@ Gaussian round_at(const Vec2& mean_m, double sigma_m) {
 }
 
 double distance_to_segment_m(const Vec2& p, const Vec2& from_m, const Vec2& to_m) {
-  const Vec2 way = to_m - from_m;
-  const double squared = way.squaredNorm();
-  const double t = squared > 0.0 ? std::clamp(way.dot(p - from_m) / squared, 0.0, 1.0) : 0.0;
-  return (from_m + t * way - p).norm();
+  const Vec2 segment = to_m - from_m;
+  const double squared = segment.squaredNorm();
+  const double t = squared > 0.0 ? std::clamp(segment.dot(p - from_m) / squared, 0.0, 1.0) : 0.0;
+  return (from_m + t * segment - p).norm();
 }
 
 // Index of the path's leg nearest to a point.

@@ -118,11 +118,11 @@ std::map<std::size_t, Members> most_likely(const RiskGraph& graph, const Members
 std::vector<RobotGroup> group_by_flow(std::span<const ReportedRobot> robots, const RiskGraph& graph,
                                       const Mixture& goal, const FlowGroupOptions& options) {
   SWARM_ASSERT(!robots.empty());
-  std::map<std::uint32_t, Members> at_home, on_leg;
+  std::map<std::uint32_t, Members> at_goal, on_leg;
   Members elsewhere;
   for (const ReportedRobot& robot : robots) {
     if (robot.arrived && robot.goal) {
-      at_home[*robot.goal].push_back(&robot);
+      at_goal[*robot.goal].push_back(&robot);
     } else if (robot.leg) {
       on_leg[*robot.leg].push_back(&robot);
     } else {
@@ -137,7 +137,7 @@ std::vector<RobotGroup> group_by_flow(std::span<const ReportedRobot> robots, con
   clusters.divide();
   clusters.join();
   std::vector<RobotGroup> groups;
-  for (const auto& [component, members] : at_home) {
+  for (const auto& [component, members] : at_goal) {
     groups.push_back({goal.components()[component].gaussian, ids_of(members)});
   }
   for (const Cluster& cluster : clusters.all()) {

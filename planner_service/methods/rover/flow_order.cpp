@@ -18,7 +18,7 @@ namespace {
 
 /// A route out of a source and the ranks whose shares draw it.
 struct SourceRoute {
-  FlowPlace place;
+  FlowPosition place;
   std::vector<std::uint32_t> ranks;
 };
 
@@ -27,7 +27,7 @@ std::vector<SourceRoute> routes_of(const FlowPlan& plan, std::size_t source, std
   const MissionTime begin = plan.nodes()[plan.sources()[source]].time;
   for (std::uint32_t rank = 0; rank < size; ++rank) {
     const double share = PlanEntry::share_of(stratified_share(rank, size)) / 65536.0;
-    const FlowPlace place = place_in_flow(plan, source, share, begin);
+    const FlowPosition place = position_in_flow(plan, source, share, begin);
     ranks[{place.leg, place.sink}].push_back(rank);
   }
   std::vector<SourceRoute> routes;
@@ -41,7 +41,7 @@ class Costs {
         const std::vector<SourceRoute>& routes)
       : from_m_(group.gaussian.mean_m()) {
     for (const SourceRoute& route : routes) {
-      const bool moves = route.place.leg != FlowPlace::kAtSink;
+      const bool moves = route.place.leg != FlowPosition::kAtSink;
       const Gaussian& to =
           moves ? plan.nodes()[plan.legs()[route.place.leg].to].gaussian : group.gaussian;
       ends_.push_back({to.mean_m(), transport_map(group.gaussian, to),

@@ -45,7 +45,7 @@ constexpr double kDensityReach2 = 46.0;
 constexpr double kNegligibleSigmas = 5.0;
 
 // The relative decrease of J below which the sequence has settled.
-constexpr double kSettled = 1e-6;
+constexpr double kConverged = 1e-6;
 
 // What a row stands for.
 struct Constraint {
@@ -320,10 +320,10 @@ Result<HorizonPlan> solve_ftmpc(const RiskGraph& graph, std::span<const VertexMa
     ++plan.iterations;
     plan.pivots += solution.pivots;
     if (solution.status != LpStatus::kOptimal) break;
-    const bool settled = same_rows && (distance(solution.x, last_x) <= options.eta ||
+    const bool converged = same_rows && (distance(solution.x, last_x) <= options.eta ||
                                        last_cost - solution.objective <=
-                                           kSettled * (1.0 + std::abs(solution.objective)));
-    if (settled) break;
+                                           kConverged * (1.0 + std::abs(solution.objective)));
+    if (converged) break;
     last_x = solution.x;
     last_cost = solution.objective;
     bool changed = false;

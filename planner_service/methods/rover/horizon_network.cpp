@@ -40,8 +40,8 @@ HorizonNetwork::HorizonNetwork(const RiskGraph& graph, std::span<const VertexMas
       std::uint32_t index = graph.first_arc_of(from);
       for (const RiskGraph::Arc& arc : graph.arcs_of(from)) {
         if (!in_layer(stage + 1, arc.to)) join(stage + 1, arc.to, 0.0, next);
-        const double way = arc.w2_m / unit_m;
-        columns_.push_back({stage, from, arc.to, index++, lambda * way * way});
+        const double path = arc.w2_m / unit_m;
+        columns_.push_back({stage, from, arc.to, index++, lambda * path * path});
       }
     }
     layer = std::move(next);
@@ -50,40 +50,40 @@ HorizonNetwork::HorizonNetwork(const RiskGraph& graph, std::span<const VertexMas
   right_side_.insert(right_side_.end(), goal_weights.begin(), goal_weights.end());
   for (const std::uint32_t from : layer) {
     for (std::uint32_t n = 0; n < goals_; ++n) {
-      const double way = graph.to_goal_m(from, n) / unit_m;
-      if (!std::isfinite(way)) continue;
+      const double path = graph.to_goal_m(from, n) / unit_m;
+      if (!std::isfinite(path)) continue;
       columns_.push_back(
-          {static_cast<std::uint32_t>(horizon_), from, n, 0, costs.lambda_terminal * way * way});
+          {static_cast<std::uint32_t>(horizon_), from, n, 0, costs.lambda_terminal * path * path});
     }
   }
 }
 
-HorizonNetwork::Ways HorizonNetwork::ways_to(std::size_t goal) const {
-  Ways ways{std::vector<double>(goal_row_, kInfinity),
+HorizonNetwork::Paths HorizonNetwork::paths_to(std::size_t goal) const {
+  Paths paths{std::vector<double>(goal_row_, kInfinity),
             std::vector<std::size_t>(goal_row_, columns_.size())};
   // Columns are ordered by stage: from the last to the first every layer is ready when it is read.
   for (std::size_t c = columns_.size(); c-- > 0;) {
     const Column& column = columns_[c];
     if (column.stage == horizon_ && column.to != goal) continue;
     const double beyond =
-        column.stage == horizon_ ? 0.0 : ways.cost[row(column.stage + 1, column.to)];
+        column.stage == horizon_ ? 0.0 : paths.cost[row(column.stage + 1, column.to)];
     const std::size_t from = row(column.stage, column.from);
-    if (column.cost + beyond >= ways.cost[from]) continue;
-    ways.cost[from] = column.cost + beyond;
-    ways.column[from] = c;
+    if (column.cost + beyond >= paths.cost[from]) continue;
+    paths.cost[from] = column.cost + beyond;
+    paths.column[from] = c;
   }
-  return ways;
+  return paths;
 }
 
 std::vector<std::size_t> HorizonNetwork::cheapest_routes() const {
   std::vector<std::size_t> routes;
   for (std::size_t n = 0; n < goals_; ++n) {
-    const Ways ways = ways_to(n);
+    const Paths paths = paths_to(n);
     for (std::size_t source = 0; source < sources_; ++source) {
-      for (std::size_t c = ways.column[source]; c < columns_.size();) {
+      for (std::size_t c = paths.column[source]; c < columns_.size();) {
         routes.push_back(c);
         if (columns_[c].stage == horizon_) break;
-        c = ways.column[row(columns_[c].stage + 1, columns_[c].to)];
+        c = paths.column[row(columns_[c].stage + 1, columns_[c].to)];
       }
     }
   }
@@ -93,7 +93,7 @@ std::vector<std::size_t> HorizonNetwork::cheapest_routes() const {
 std::vector<double> HorizonNetwork::detours() const {
   std::vector<double> least(columns_.size(), kInfinity);
   for (std::size_t n = 0; n < goals_; ++n) {
-    const std::vector<double> to_go = ways_to(n).cost;
+    const std::vector<double> to_go = paths_to(n).cost;
     // Least cost from a source, less all that this source's cheapest way costs.
     std::vector<double> so_far(goal_row_, kInfinity);
     for (std::size_t c = 0; c < columns_.size(); ++c) {

@@ -75,11 +75,11 @@ class HorizonNetwork {
   std::vector<double> arc_weights(std::size_t step, std::span<const double> x) const;
 
  private:
-  struct Ways {
+  struct Paths {
     std::vector<double> cost;         // by row below goal_row(0), +∞ where there is none
     std::vector<std::size_t> column;  // taken first
   };
-  Ways ways_to(std::size_t goal) const;
+  Paths paths_to(std::size_t goal) const;
 
   std::size_t horizon_ = 0;
   std::size_t vertices_ = 0;

@@ -36,11 +36,11 @@ HorizonProgram::HorizonProgram(const HorizonNetwork& network, std::span<const st
   std::nth_element(sorted.begin(), sorted.begin() + last, sorted.end());
   const double limit = sorted[static_cast<std::size_t>(last)];
   for (std::size_t n = network.goal_row(0); n < is_met_.size(); ++n) is_met_[n] = 1;
-  const Offers ways = offers(std::vector<double>(network.right_side().size(), 0.0));
-  for (const std::size_t c : network.cheapest_routes()) enter(c, ways);
-  for (const std::size_t c : likely) enter(c, ways);
+  const Offers paths = offers(std::vector<double>(network.right_side().size(), 0.0));
+  for (const std::size_t c : network.cheapest_routes()) enter(c, paths);
+  for (const std::size_t c : likely) enter(c, paths);
   for (std::size_t c = 0; c < detours.size(); ++c) {
-    if (detours[c] <= limit && std::isfinite(detours[c])) enter(c, ways);
+    if (detours[c] <= limit && std::isfinite(detours[c])) enter(c, paths);
   }
 }
 
@@ -63,7 +63,7 @@ HorizonProgram::Offers HorizonProgram::offers(std::span<const double> row_price)
       if (reduced - price[from] < -kPriceTolerance) offers.columns.push_back(c);
     } else if (reduced < price[from]) {
       price[from] = reduced;
-      offers.way_on[from] = c;
+      offers.path_on[from] = c;
     }
   }
   return offers;
@@ -80,8 +80,8 @@ void HorizonProgram::enter(std::size_t index, const Offers& offers) {
 // Takes a row into the program with the way on from there. Its first column takes the row's place
 // in the basis, which stays triangular and as feasible as it was.
 void HorizonProgram::meet(std::size_t row, const Offers& offers) {
-  while (is_met_[row] == 0 && offers.way_on[row] < is_active_.size()) {
-    const std::size_t c = offers.way_on[row];
+  while (is_met_[row] == 0 && offers.path_on[row] < is_active_.size()) {
+    const std::size_t c = offers.path_on[row];
     const HorizonNetwork::Column& column = network_->columns()[c];
     is_met_[row] = 1;
     row_basic_[row] = 0;

@@ -59,7 +59,7 @@ class HorizonProgram {
   LinearProgram program(std::span<const std::size_t> columns) const;
   // Where to go on from rows that are not met yet, and columns worth to enter, at these prices.
   struct Offers {
-    std::vector<std::size_t> way_on;  // column by row, columns() where it is met or a dead end
+    std::vector<std::size_t> path_on;  // column by row, columns() where it is met or a dead end
     std::vector<std::size_t> columns;
   };
   Offers offers(std::span<const double> row_price) const;

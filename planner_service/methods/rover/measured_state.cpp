@@ -13,7 +13,7 @@ namespace swarm::planner {
 namespace {
 
 constexpr int kMaxRounds = 2000;
-constexpr double kSettled = 1e-9;
+constexpr double kConverged = 1e-9;
 
 // A robot speaks for this many components: those around it on the grid.
 constexpr std::size_t kPerRobot = 4;
@@ -80,7 +80,7 @@ std::vector<double> estimate_weights(std::span<const Gaussian> components,
       change = std::max(change, std::abs(next[j] - weights[j]));
     }
     std::swap(weights, next);
-    if (change < kSettled) break;
+    if (change < kConverged) break;
   }
   return weights;
 }

@@ -18,7 +18,7 @@ namespace swarm::planner {
 namespace {
 
 // Flows below this join the others that leave the same component: no robot would ride them.
-constexpr double kDust = 1e-6;
+constexpr double kNegligibleMass = 1e-6;
 
 // What joining dust of dozens of sources may have moved: a tenth of one of 500 robots.
 constexpr double kArrivedTolerance = 2e-4;
@@ -59,7 +59,7 @@ double highest_density_per_m2(const Mixture& mixture, double robots) {
 }
 
 // Without dust: what leaves each vertex is what was there.
-std::vector<StageFlow> without_dust(std::span<const StageFlow> flows,
+std::vector<StageFlow> without_negligible(std::span<const StageFlow> flows,
                                     std::span<const VertexMass> sources) {
   std::vector<StageFlow> kept;
   for (const VertexMass& source : sources) {
@@ -69,7 +69,7 @@ std::vector<StageFlow> without_dust(std::span<const StageFlow> flows,
     for (const StageFlow& flow : flows) {
       if (flow.from != source.vertex) continue;
       if (flow.mass > largest.mass) largest = flow;
-      if (flow.mass < kDust) continue;
+      if (flow.mass < kNegligibleMass) continue;
       kept.push_back(flow);
       sum += flow.mass;
     }
@@ -215,7 +215,7 @@ Result<RoverStep> Rover::step_from(std::span<const VertexMass> sources) {
   step.from = mixture_of(sources);
   std::vector<VertexMass> masses(sources.begin(), sources.end());
   for (std::size_t p = 0; p < horizon->stages.size(); ++p) {
-    horizon->stages[p] = without_dust(horizon->stages[p], masses);
+    horizon->stages[p] = without_negligible(horizon->stages[p], masses);
     std::vector<VertexMass> after = masses_after(horizon->stages[p]);
     Mixture mixture = mixture_of(after);
     step.cvar_m.push_back(max_mixture_cvar_m(mixture, graph_.world(), options_.graph.risk.alpha));

@@ -79,7 +79,7 @@ PlanningTraits RoverMethod::traits() const {
   PlanningTraits traits{.risk_promise = RiskPromise::kMixture,
                         .is_kept_in_time = true,
                         .speed_mps = options_.speed_mps,
-                        .uses_places = true};
+                        .uses_positions = true};
   if (cap_per_m2 > 0.0) traits.density_cap_per_m2 = cap_per_m2;
   return traits;
 }

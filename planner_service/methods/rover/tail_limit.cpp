@@ -67,10 +67,10 @@ TailAtLimit tail_at_limit(std::span<const LineComponent> components, double epsi
     const double slope = -(epsilon_m - z_m) * tail.density;
     double next_m = slope < 0.0 ? z_m - slack / slope : z_m;
     if (!(next_m > low_m && next_m < high_m)) next_m = 0.5 * (low_m + high_m);
-    const bool settled = std::abs(next_m - z_m) <= 1e-12 * (1.0 + std::abs(z_m));
+    const bool converged = std::abs(next_m - z_m) <= 1e-12 * (1.0 + std::abs(z_m));
     z_m = next_m;
     tail = tail_of(components, z_m);
-    if (settled) break;
+    if (converged) break;
   }
   return {z_m, tail.probability};
 }

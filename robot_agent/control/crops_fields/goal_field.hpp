@@ -24,11 +24,11 @@ struct GoalFieldOptions {
 /// 1, the measure of all fields.
 inline Vec2 goal_field(const Vec2& position_m, const Vec2& goal_m,
                        const GoalFieldOptions& options) {
-  const Vec2 way_m = goal_m - position_m;
-  const double distance_m = way_m.norm();
+  const Vec2 path_m = goal_m - position_m;
+  const double distance_m = path_m.norm();
   if (distance_m < 1e-9) return Vec2::Zero();
   const double sigmoid = 1.0 + options.offset * std::exp(-options.steepness_per_m * distance_m);
-  return way_m / distance_m * (options.floor + options.rise / sigmoid);
+  return path_m / distance_m * (options.floor + options.rise / sigmoid);
 }
 
 }  // namespace swarm::agent

@@ -35,8 +35,8 @@ inline Vec2 heading_field(const Vec2& position_m, std::span<const Neighbour> nei
     sum += weight / speed_mps * n.velocity_mps;
     weights += weight;
   }
-  constexpr double kNobody = 0.05;  // one that is 2.4 σ off
-  if (weights < kNobody) return Vec2::Zero();
+  constexpr double kNegligibleWeight = 0.05;  // one that is 2.4 σ off
+  if (weights < kNegligibleWeight) return Vec2::Zero();
   return options.strength / weights * sum;
 }
 

@@ -15,9 +15,9 @@ flat out float vHalf;
 flat out float vDash;
 flat out vec4 vColour;
 void main() {
-  vec2 way = (aTo - aFrom) * uScale;
-  float far = length(way);
-  vec2 along = far > 0.0 ? way / far : vec2(1.0, 0.0);
+  vec2 path = (aTo - aFrom) * uScale;
+  float far = length(path);
+  vec2 along = far > 0.0 ? path / far : vec2(1.0, 0.0);
   vec2 across = vec2(-along.y, along.x);
   vec2 c = corner();
   vHalf = max(0.5 * aWidth * uPx, 0.5);

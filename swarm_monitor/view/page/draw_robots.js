@@ -3,14 +3,14 @@
 // Robots, straight from the bytes of a picture: the 16 of a robot are one texel, so there is no object each and
 // nothing to copy. Two pictures stay on the GPU, which moves robots from the older to the newer.
 import { Program } from './draw_gl.js';
-import { HEADER_BYTES, ROBOT_BYTES } from './picture.js';
+import { HEADER_BYTES, ROBOT_BYTES } from './view_frame.js';
 
 const WIDTH = 1024;
 
 // Also used by the trails, which begin where the robots are drawn. First of all: read().
 export const ROBOT = `
-uniform usampler2D uBeforePicture;
-uniform usampler2D uNowPicture;
+uniform usampler2D uBeforeFrame;
+uniform usampler2D uNowFrame;
 uniform float uMix;
 uniform bool uByMode;
 uniform vec3 uGoals[9];  // the last: none
@@ -19,8 +19,8 @@ uvec4 before;  // x, y, heading, and the bytes: mode, goal, flags, neighbours
 uvec4 now;
 void read(int id) {
   ivec2 at = ivec2(id % ${WIDTH}, id / ${WIDTH});
-  before = texelFetch(uBeforePicture, at, 0);
-  now = texelFetch(uNowPicture, at, 0);
+  before = texelFetch(uBeforeFrame, at, 0);
+  now = texelFetch(uNowFrame, at, 0);
 }
 bool drawn() { return (now.w & 0x50000u) != 0u; }
 bool lost() { return (now.w & 0x40000u) != 0u; }
@@ -103,13 +103,13 @@ export class Robots {
     this.count = 0;
   }
 
-  set(picture) {
+  set(viewFrame) {
     const { gl } = this;
-    const anew = picture.n !== this.count;
-    if (anew) this.#allocate(picture.n);
+    const anew = viewFrame.n !== this.count;
+    if (anew) this.#allocate(viewFrame.n);
     this.now = 1 - this.now;
-    const texels = new Uint32Array(picture.buffer, HEADER_BYTES, picture.n * ROBOT_BYTES / 4);
-    const rows = Math.floor(picture.n / WIDTH), rest = picture.n % WIDTH;
+    const texels = new Uint32Array(viewFrame.buffer, HEADER_BYTES, viewFrame.n * ROBOT_BYTES / 4);
+    const rows = Math.floor(viewFrame.n / WIDTH), rest = viewFrame.n % WIDTH;
     for (const which of anew ? [0, 1] : [this.now]) {
       gl.bindTexture(gl.TEXTURE_2D, this.textures[which]);
       const put = (y, width, height, data) => {
@@ -141,8 +141,8 @@ export class Robots {
     gl.bindTexture(gl.TEXTURE_2D, this.textures[1 - this.now]);
     gl.activeTexture(gl.TEXTURE0);
     gl.bindTexture(gl.TEXTURE_2D, this.textures[this.now]);
-    gl.uniform1i(at.uNowPicture, 0);
-    gl.uniform1i(at.uBeforePicture, 1);
+    gl.uniform1i(at.uNowFrame, 0);
+    gl.uniform1i(at.uBeforeFrame, 1);
     gl.uniform1f(at.uMix, mix);
     gl.uniform1i(at.uByMode, byMode ? 1 : 0);
     gl.uniform3fv(at.uGoals, theme.goalsFlat);

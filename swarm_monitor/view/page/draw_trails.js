@@ -29,7 +29,7 @@ void main() {
   int k = (gl_VertexID >> 1) % uCount + end;
   read(id);
   vec2 at = past(id, k);
-  // A robot not heard of then has no trail there: the line shrinks to nothing.
+  // A robot not received then has no trail there: the line shrinks to nothing.
   if (at.x > 1e29) at = past(id, end == 1 ? k - 1 : k + 1);
   if (!drawn() || at.x > 1e29) { gl_Position = kNowhere; return; }
   float alpha = uAlpha * (1.0 - float(k) / float(uCount + 1));
@@ -53,14 +53,14 @@ export class Trails {
   }
 
   /** Takes a snapshot if the last one is old enough. Going back in time begins anew. */
-  add(picture) {
-    if (picture.n !== this.n) this.#allocate(picture.n);
-    if (picture.t < this.last_t || picture.t > this.last_t + TRAIL_S) this.clear();
-    if (picture.n === 0 || picture.t < this.last_t + TRAIL_S / this.keep) return;
-    this.last_t = picture.t;
+  add(viewFrame) {
+    if (viewFrame.n !== this.n) this.#allocate(viewFrame.n);
+    if (viewFrame.t < this.last_t || viewFrame.t > this.last_t + TRAIL_S) this.clear();
+    if (viewFrame.n === 0 || viewFrame.t < this.last_t + TRAIL_S / this.keep) return;
+    this.last_t = viewFrame.t;
     this.newest = (this.newest + 1) % SNAPSHOTS;
     this.count = Math.min(this.count + 1, this.keep);
-    const { robots, info } = picture;
+    const { robots, info } = viewFrame;
     for (let i = 0; i < this.n; ++i) {
       const drawn = (info[16 * i + 14] & 5) !== 0;
       this.staging[2 * i] = drawn ? robots[4 * i] : MISSING;

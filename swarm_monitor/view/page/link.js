@@ -60,7 +60,7 @@ export class Link {
         this.on.message(JSON.parse(data));
       } else {
         this.#asked = false;
-        this.on.picture(data);
+        this.on.viewFrame(data);
       }
     } catch (error) {
       console.error('message not understood:', error);

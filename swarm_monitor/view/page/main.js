@@ -14,7 +14,7 @@ import { Legend } from './panel_legend.js';
 import { RobotPanel } from './panel_robot.js';
 import { Status } from './panel_status.js';
 import { Timeline } from './panel_timeline.js';
-import { countRobots, decode, HEARD, LOST, nearestRobot, robotOf } from './picture.js';
+import { countRobots, decode, RECEIVED, LOST, nearestRobot, robotOf } from './view_frame.js';
 import { Player } from './player.js';
 import { Scenes } from './scenes.js';
 import { byId, put } from './text.js';
@@ -48,10 +48,10 @@ let pointer = null;   // CSS px on the canvas
 let dirty = true;
 let panelsDirty = true;
 let asked = { key: '', at_ms: 0, sought: false, still: false };
-const measured = { framesDrawn: 0, picturesReceived: 0, fps: 0, last: { at_ms: 0, frames: 0, pictures: 0 } };
+const measured = { framesDrawn: 0, viewFramesReceived: 0, fps: 0, last: { at_ms: 0, frames: 0, viewFrames: 0 } };
 
 const map = makeMap();
-const link = new Link({ open: opened, message: received, picture: pictured, status: (...s) => status.connection(...s) });
+const link = new Link({ open: opened, message: received, viewFrame: receivedViewFrame, status: (...s) => status.connection(...s) });
 const control = new Control((order) => link.send(order), (tool) => {
   canvas.classList.toggle('aiming', tool !== null);
   byId('crosshair').hidden = tool === null;
@@ -130,15 +130,15 @@ function chooseScene() {
   moved();
 }
 
-function pictured(buffer) {
-  const picture = decode(buffer);
-  measured.picturesReceived += 1;
-  const { fresh, jumped } = motion.add(picture, asked.sought, performance.now());
+function receivedViewFrame(buffer) {
+  const viewFrame = decode(buffer);
+  measured.viewFramesReceived += 1;
+  const { fresh, jumped } = motion.add(viewFrame, asked.sought, performance.now());
   asked.still = !fresh;
-  map?.setPicture(picture, fresh, jumped);
+  map?.setViewFrame(viewFrame, fresh, jumped);
   chooseScene();
-  if (fresh) counts = countRobots(picture, scene?.goal.length ?? 0);
-  robotPanel.observe(robotOf(picture, focusId()), picture.t);
+  if (fresh) counts = countRobots(viewFrame, scene?.goal.length ?? 0);
+  robotPanel.observe(robotOf(viewFrame, focusId()), viewFrame.t);
   rehover();
   dirty = panelsDirty = true;
 }
@@ -186,15 +186,15 @@ function select(id) {
 }
 
 function selectNext(step) {
-  const picture = motion.now;
-  if (!picture || picture.n === 0) return;
-  let id = selected ?? (step > 0 ? -1 : picture.n);
-  for (let tries = 0; tries < picture.n; ++tries) {
-    id = (id + step + picture.n) % picture.n;
-    if (picture.info[16 * id + 14] & (HEARD | LOST)) break;
+  const viewFrame = motion.now;
+  if (!viewFrame || viewFrame.n === 0) return;
+  let id = selected ?? (step > 0 ? -1 : viewFrame.n);
+  for (let tries = 0; tries < viewFrame.n; ++tries) {
+    id = (id + step + viewFrame.n) % viewFrame.n;
+    if (viewFrame.info[16 * id + 14] & (RECEIVED | LOST)) break;
   }
   select(id);
-  const robot = robotOf(picture, id);
+  const robot = robotOf(viewFrame, id);
   const [x, y] = camera.toScreen(robot.x, robot.y);
   if (x < 0 || y < 0 || x > camera.width || y > camera.height) {
     camera.pan(camera.width / 2 - x, camera.height / 2 - y);
@@ -284,9 +284,9 @@ function draw(now_ms) {
   dirty = mix < 1;
   const robot = robotOf(motion.now, focusId());
   let chosen = null;
-  if (robot && (robot.heard || robot.lost)) {
+  if (robot && (robot.received || robot.lost)) {
     const [x, y] = motion.position(robot, mix);
-    chosen = { x, y, held: selected !== null, beliefs: motion.now.focus === robot.id ? motion.now.beliefs : [] };
+    chosen = { x, y, held: selected !== null, estimates: motion.now.focus === robot.id ? motion.now.estimates : [] };
   }
   map?.draw(mix, chosen);
   measured.framesDrawn += 1;
@@ -299,7 +299,7 @@ function showPanels() {
   events.show(t);
   charts.mark(t);
   if (!motion.now || !scene || !counts) return;
-  status.picture(motion.now.phase, counts, scene.robots);
+  status.viewFrame(motion.now.phase, counts, scene.robots);
   legend.update(scene, counts, byId('show-modes').checked);
   robotPanel.show(robotOf(motion.now, focusId()), selected !== null, motion.now);
 }
@@ -309,8 +309,8 @@ function measure(now_ms) {
   const elapsed_s = (now_ms - last.at_ms) / 1000;
   if (elapsed_s < 1) return;
   measured.fps = (measured.framesDrawn - last.frames) / elapsed_s;
-  status.rate(Math.round((measured.picturesReceived - last.pictures) / elapsed_s), Math.round(measured.fps));
-  measured.last = { at_ms: now_ms, frames: measured.framesDrawn, pictures: measured.picturesReceived };
+  status.rate(Math.round((measured.viewFramesReceived - last.viewFrames) / elapsed_s), Math.round(measured.fps));
+  measured.last = { at_ms: now_ms, frames: measured.framesDrawn, viewFrames: measured.viewFramesReceived };
 }
 
 let lastFrame_ms = performance.now();
@@ -341,7 +341,7 @@ window.swarmflow = Object.freeze({
   state: () => ({
     connected: link.connected, t: motion.now?.t ?? null, robots: motion.now?.n ?? 0, phase: motion.now?.phase ?? null,
     selected, playing: player.playing, framesDrawn: measured.framesDrawn,
-    picturesReceived: measured.picturesReceived, fps: measured.fps,
+    viewFramesReceived: measured.viewFramesReceived, fps: measured.fps,
   }),
   robot: (id) => robotOf(motion.now, id),
   toScreen: (x, y) => camera.toScreen(x, y),

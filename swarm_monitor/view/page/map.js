@@ -22,7 +22,7 @@ export class SwarmMap {
     });
     if (!this.gl) throw new Error('no WebGL2');
     this.scene = null;
-    this.picture = null;
+    this.viewFrame = null;
     this.layers = { trails: true, plan: true, mixture: true, cells: false };
     this.byMode = false;
     this.build();
@@ -48,14 +48,14 @@ export class SwarmMap {
     this.chosenLines = new Lines(gl, lines);
     this.chosenRings = new Ellipses(gl, ellipses);
     if (this.theme) this.setTheme(this.theme);
-    if (this.picture) this.setPicture(this.picture, true, true);
+    if (this.viewFrame) this.setViewFrame(this.viewFrame, true, true);
   }
 
   setTheme(theme) {
     this.theme = theme;
     this.backdrop.forget();
     if (this.scene) this.setScene(this.scene);
-    if (this.picture) showMixture(this.picture, theme, this.mixture);
+    if (this.viewFrame) showMixture(this.viewFrame, theme, this.mixture);
   }
 
   setScene(scene) {
@@ -68,13 +68,13 @@ export class SwarmMap {
   }
 
   /** `fresh`: shows another moment than the last one, not just more about it. `jumped`: not the one after it. */
-  setPicture(picture, fresh, jumped) {
-    this.picture = picture;
+  setViewFrame(viewFrame, fresh, jumped) {
+    this.viewFrame = viewFrame;
     if (!fresh) return;
-    this.robots.set(picture);
+    this.robots.set(viewFrame);
     if (jumped) this.trails.clear();
-    this.trails.add(picture);
-    showMixture(picture, this.theme, this.mixture);
+    this.trails.add(viewFrame);
+    showMixture(viewFrame, this.theme, this.mixture);
   }
 
   /** Matches the canvas to its size on the page. */

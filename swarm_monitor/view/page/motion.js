@@ -14,10 +14,10 @@ export class Motion {
   #jumped = true;
 
   /** Returns {fresh, jumped}: whether it shows another moment, and one that does not follow. */
-  add(picture, sought, at_ms) {
-    const step = this.now ? picture.t - this.now.t : NaN;
-    const fresh = step !== 0 || picture.n !== this.now.n;
-    const jumped = sought || !(step >= 0 && step < 5) || picture.n !== this.now.n;
+  add(viewFrame, sought, at_ms) {
+    const step = this.now ? viewFrame.t - this.now.t : NaN;
+    const fresh = step !== 0 || viewFrame.n !== this.now.n;
+    const jumped = sought || !(step >= 0 && step < 5) || viewFrame.n !== this.now.n;
     if (fresh) {
       const interval_ms = Math.min(at_ms - this.#arrived_ms, LONGEST_MS);
       this.#interval_ms += 0.2 * (interval_ms - this.#interval_ms);
@@ -25,7 +25,7 @@ export class Motion {
       this.#jumped = jumped;
       this.before = this.now;
     }
-    this.now = picture;
+    this.now = viewFrame;
     return { fresh, jumped };
   }
 

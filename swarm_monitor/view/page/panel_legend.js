@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
 // What the colours mean, how long a metre is, and the goals' names on the map.
-import { MODES } from './picture.js';
+import { MODES } from './view_frame.js';
 import { goalVariable } from './theme.js';
 import { byId, make, put } from './text.js';
 

@@ -25,32 +25,32 @@ export class RobotPanel {
     return Math.hypot(last[1] - first[1], last[2] - first[2]) / (last[0] - first[0]);
   }
 
-  show(robot, held, picture) {
+  show(robot, held, viewFrame) {
     byId('robot-none').hidden = robot !== null;
     byId('robot-facts').hidden = robot === null;
     if (robot === null) return put(byId('robot-title'), 'Robot');
     put(byId('robot-title'), `Robot ${robot.id}${held ? '' : ' (under the pointer)'}`);
     const speed = robot.id === this.#id ? this.#speed() : null;
     const put_fact = (name, text) => put(byId(`robot-${name}`), text);
-    put_fact('mode', robot.lost ? `${robot.mode}, lost` : robot.heard ? robot.mode : 'not heard of');
+    put_fact('mode', robot.lost ? `${robot.mode}, lost` : robot.received ? robot.mode : 'not received');
     put_fact('goal', robot.goal === null ? 'none' : String(robot.goal));
     put_fact('position', `${robot.x.toFixed(2)}, ${robot.y.toFixed(2)} m`);
     put_fact('heading', `${Math.round(robot.heading * 180 / Math.PI)}°`);
     put_fact('speed', speed === null ? '–' : `${speed.toFixed(2)} m/s`);
     put_fact('neighbours', robot.neighbours === 255 ? '255 or more' : String(robot.neighbours));
-    put_fact('error', picture.focus === robot.id ? worstBelief(picture) : '–');
-    put_fact('time', clock(picture.t));
+    put_fact('error', viewFrame.focus === robot.id ? worstEstimate(viewFrame) : '–');
+    put_fact('time', clock(viewFrame.t));
   }
 }
 
 /** How far off the worst belief is from where that neighbour is in the same picture. */
-function worstBelief(picture) {
+function worstEstimate(viewFrame) {
   let worst = -1, who = 0;
-  for (let i = 0; i < picture.k; ++i) {
-    const id = picture.believed[3 * i];
-    if (id >= picture.n) continue;
-    const off = Math.hypot(picture.beliefs[3 * i + 1] - picture.robots[4 * id],
-      picture.beliefs[3 * i + 2] - picture.robots[4 * id + 1]);
+  for (let i = 0; i < viewFrame.k; ++i) {
+    const id = viewFrame.estimated[3 * i];
+    if (id >= viewFrame.n) continue;
+    const off = Math.hypot(viewFrame.estimates[3 * i + 1] - viewFrame.robots[4 * id],
+      viewFrame.estimates[3 * i + 2] - viewFrame.robots[4 * id + 1]);
     if (off > worst) [worst, who] = [off, id];
   }
   return worst < 0 ? 'no neighbours' : `${worst.toFixed(2)} m (robot ${who})`;

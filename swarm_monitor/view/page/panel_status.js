@@ -19,16 +19,16 @@ export class Status {
     put(byId('excess'), `${(scene.plan_excess_m ?? 0).toFixed(2)} m`);
   }
 
-  picture(phase, counts, robots) {
+  viewFrame(phase, counts, robots) {
     put(byId('phase'), phase);
     byId('phase').dataset.phase = phase;
-    put(byId('heard'), `${counts.heard} / ${robots}`);
+    put(byId('heard'), `${counts.received} / ${robots}`);
     for (const name of ['moving', 'arrived', 'lost']) put(byId(name), String(counts[name]));
     byId('lost').classList.toggle('bad', counts.lost > 0);
   }
 
-  rate(pictures, frames) {
-    put(byId('rate'), `${pictures}/s`);
-    byId('rate').title = `${pictures} pictures received and ${frames} frames drawn in the last second`;
+  rate(viewFrames, frames) {
+    put(byId('rate'), `${viewFrames}/s`);
+    byId('rate').title = `${viewFrames} viewFrames received and ${frames} frames drawn in the last second`;
   }
 }

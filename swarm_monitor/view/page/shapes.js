@@ -57,12 +57,12 @@ export function showRegions(scene, theme, regions) {
 }
 
 /** Where the plan wants the swarm at the picture's time. */
-export function showMixture(picture, theme, mixture) {
+export function showMixture(viewFrame, theme, mixture) {
   mixture.records.clear();
   let most = 1e-12;
-  for (let i = 0; i < picture.m; ++i) most = Math.max(most, picture.mixture[6 * i + 5]);
-  for (let i = 0; i < picture.m; ++i) {
-    const [x, y, xx, xy, yy, weight] = picture.mixture.subarray(6 * i, 6 * i + 6);
+  for (let i = 0; i < viewFrame.m; ++i) most = Math.max(most, viewFrame.mixture[6 * i + 5]);
+  for (let i = 0; i < viewFrame.m; ++i) {
+    const [x, y, xx, xy, yy, weight] = viewFrame.mixture.subarray(6 * i, 6 * i + 6);
     if (weight <= 0) continue;
     const strength = 0.35 + 0.65 * Math.sqrt(weight / most);
     mixture.addGaussian(x, y, xx, xy, yy, SIGMAS_99,
@@ -78,10 +78,10 @@ export function showChosen(chosen, scene, camera, theme, lines, rings) {
   lines.records.clear();
   rings.records.clear();
   if (chosen) {
-    const { x, y, held, beliefs } = chosen;
+    const { x, y, held, estimates } = chosen;
     const arm = 4.5 / camera.scale;
-    for (let i = 0; i + 2 < beliefs.length; i += 3) {
-      const bx = beliefs[i + 1], by = beliefs[i + 2];
+    for (let i = 0; i + 2 < estimates.length; i += 3) {
+      const bx = estimates[i + 1], by = estimates[i + 2];
       lines.add([x, y], [bx, by], 1, theme.chosen, 0.45);
       lines.add([bx - arm, by - arm], [bx + arm, by + arm], 1.5, theme.chosen, 1);
       lines.add([bx - arm, by + arm], [bx + arm, by - arm], 1.5, theme.chosen, 1);

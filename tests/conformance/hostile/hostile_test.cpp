@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
 // Samples from a peer that does not keep to the contract: refused or counted, never a crash, and
-// the next good sample is heard.
+// the next good sample is received.
 #include <gtest/gtest.h>
 
 #include "swarm_link/gate/content_checks.hpp"
@@ -17,10 +17,10 @@ struct HostilePeers : testing::Test {
   std::vector<M> provoke(const ReaderPtr<M>& reader, Send send) {
     const auto before = reader->undecodable();
     EXPECT_TRUE(bus->eventually(send));
-    std::vector<M> heard;
+    std::vector<M> received;
     EXPECT_TRUE(
-        bus->eventually([&] { return reader->take(heard) > 0 || reader->undecodable() > before; }));
-    return heard;
+        bus->eventually([&] { return reader->take(received) > 0 || reader->undecodable() > before; }));
+    return received;
   }
 
   template <class M>
@@ -28,12 +28,12 @@ struct HostilePeers : testing::Test {
     auto& friendly = bus->participant(1);
     const auto writer = friendly.make_writer(topic).value();
     ASSERT_TRUE(bus->eventually([&] { return writer->matched() > 0; }));
-    std::vector<M> heard;
+    std::vector<M> received;
     ASSERT_TRUE(bus->eventually([&] {
       writer->write(M{});
-      return reader->take(heard) > 0;
+      return reader->take(received) > 0;
     }));
-    EXPECT_EQ(heard.back(), M{});
+    EXPECT_EQ(received.back(), M{});
   }
 
   std::unique_ptr<DiscoveryServer> server = make_discovery_server(test_domain(), 0).value();
@@ -46,8 +46,8 @@ struct HostilePeers : testing::Test {
 TEST_F(HostilePeers, SendBatchesThatAreTooLong) {
   const auto reader = us.make_reader(cell_topic({0, 0})).value();
   for (const std::size_t states : {257, 1'000, 20'000}) {  // the last spans 17 datagrams
-    const auto heard = provoke(reader, [&] { return peer.send_batch(states); });
-    for (const auto& batch : heard) {
+    const auto received = provoke(reader, [&] { return peer.send_batch(states); });
+    for (const auto& batch : received) {
       EXPECT_EQ(batch.states.size(), states);
       EXPECT_EQ(check_batch(batch).error(), RefusalReason::kOversized);
     }
@@ -58,10 +58,10 @@ TEST_F(HostilePeers, SendBatchesThatAreTooLong) {
 TEST_F(HostilePeers, SendPlansThatAreTooLong) {
   const auto reader = us.make_reader(plan_topic()).value();
   for (const auto& [nodes, legs] : {std::pair{4'097, 0}, {0, 8'193}, {20'000, 20'000}}) {
-    const auto heard = provoke(reader, [&] {
+    const auto received = provoke(reader, [&] {
       return peer.send_plan(static_cast<std::size_t>(nodes), static_cast<std::size_t>(legs));
     });
-    for (const auto& plan : heard) {
+    for (const auto& plan : received) {
       EXPECT_EQ(check_plan(plan, limits).error(), RefusalReason::kOversized);
     }
   }
@@ -70,8 +70,8 @@ TEST_F(HostilePeers, SendPlansThatAreTooLong) {
 
 TEST_F(HostilePeers, SendTextsThatAreTooLong) {
   const auto reader = us.make_reader(event_topic()).value();
-  const auto heard = provoke(reader, [&] { return peer.send_event(1'000, 50'000); });
-  for (const auto& event : heard) {
+  const auto received = provoke(reader, [&] { return peer.send_event(1'000, 50'000); });
+  for (const auto& event : received) {
     EXPECT_LE(event.code.size(), 64U);
     EXPECT_LE(event.text.size(), 512U);
   }

@@ -92,7 +92,7 @@ class AgentReceiver final : public QueueReceiver<PlanMessage, SceneMessage, Hear
         inbox_(agent::Readers{reader<PlanMessage>(), reader<SceneMessage>(),
                               reader<HeartbeatMessage>(), reader<CommandMessage>()},
                channel_, wire_limits(mission), agent::MissionWatch(std::chrono::seconds(2)),
-               std::chrono::seconds(2), mission.link.hear_radius_m) {}
+               std::chrono::seconds(2), mission.link.communication_radius_m) {}
 
   std::string state() override {
     const auto plan_time = inbox_.plan_time(kSteady);
@@ -110,7 +110,7 @@ class AgentReceiver final : public QueueReceiver<PlanMessage, SceneMessage, Hear
       return id.value() == kOwnRobot ? &own_ : nullptr;
     });
     if (const auto scene = inbox_.take_scene()) scene_ = scene->version;
-    inbox_.heard().visit_near({10, 10}, [this](const agent::HeardState&) { ++states_; });
+    inbox_.received().visit_near({10, 10}, [this](const agent::ReceivedState&) { ++states_; });
   }
 
   QueueChannel channel_;
@@ -194,7 +194,7 @@ class MonitorReceiver final : public Receiver {
     if (!encoded) return false;
     const auto* begin = reinterpret_cast<const unsigned char*>(bytes.data());
     const std::vector<unsigned char> sample(begin, begin + bytes.size());
-    sut_.take({.topic = topic_of(message), .heard = now, .said = now, .bytes = sample});
+    sut_.take({.topic = topic_of(message), .received = now, .sent = now, .bytes = sample});
     return true;
   }
 

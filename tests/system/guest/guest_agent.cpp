@@ -34,9 +34,9 @@ class Faulty final : public ControlMethod {
 
   void begin(const Route& route, const World& world) override { inner_->begin(route, world); }
   bool has_arrived(const ControlView& view) override { return inner_->has_arrived(view); }
-  Vec2 wish(const ControlView& view, bool arrived, Rng& rng) override {
+  Vec2 desired_velocity(const ControlView& view, bool arrived, Rng& rng) override {
     if (++ticks_ == 20) fail();
-    return ticks_ == 20 ? wrong_mps_ : inner_->wish(view, arrived, rng);
+    return ticks_ == 20 ? wrong_mps_ : inner_->desired_velocity(view, arrived, rng);
   }
   Vec2 hold(const ControlView& view) override { return inner_->hold(view); }
   std::uint32_t goal(const Vec2& position_m) const override { return inner_->goal(position_m); }

@@ -45,7 +45,7 @@ class KeeperBench {
   }
 
   void report(RobotId robot) {
-    keeper.hear({.robot = robot,
+    keeper.receive({.robot = robot,
                  .position_m = positions_m[robot.value()],
                  .lag_s = lag_s,
                  .plan_version = robots_version,

@@ -33,7 +33,7 @@ FlowPlan through_a_door() {
       .value();
 }
 
-TEST(PassageTimes, FindTheNarrowestPlaceThatIsPassed) {
+TEST(PassageTimes, FindTheNarrowestPassage) {
   // The door, a narrower gap that no mean passes, and a wider one behind.
   const World world =
       World::make({{-50, -50}, {100, 100}},
@@ -65,9 +65,9 @@ TEST(PassageTimes, AreThoseOfEachGroup) {
   EXPECT_DOUBLE_EQ(groups[0].passes->half.count(), 20.0 + 50.0 / 4.0);
   EXPECT_DOUBLE_EQ(groups[1].passes->half.count(), 30.0 + 40.0 / 4.0);
   EXPECT_DOUBLE_EQ(groups[1].arrives.last.count(), 70.0);
-  const double way_m = std::hypot(20.0, 10.0) + 40.0;
-  EXPECT_NEAR(groups[0].waits_on_average.count(), 70.0 - way_m / 1.25, 1e-9);
-  EXPECT_NEAR(groups[1].waits_on_average.count(), 70.0 - way_m / 1.25, 1e-9);
+  const double path_m = std::hypot(20.0, 10.0) + 40.0;
+  EXPECT_NEAR(groups[0].waits_on_average.count(), 70.0 - path_m / 1.25, 1e-9);
+  EXPECT_NEAR(groups[1].waits_on_average.count(), 70.0 - path_m / 1.25, 1e-9);
 }
 
 double speed_mps(const Mission& mission) {

@@ -13,7 +13,7 @@ namespace {
 using testing::has;
 using Bench = testing::KeeperBench;
 
-TEST(PlanKeeperClock, RunsWithTheMissionAndStandsStillInAPause) {
+TEST(PlanKeeperClock, RunsWithTheMissionAndStopsInAPause) {
   Bench bench;
   bench.run_for(3);
   EXPECT_EQ(bench.keeper.clock(bench.utc).plan_time_s, 0.0);
@@ -43,7 +43,7 @@ TEST(PlanKeeperClock, ItsReadingsAreTheClock) {
   }
 }
 
-TEST(PlanKeeperClock, WaitsForASwarmThatIsBehindAndSaysSo) {
+TEST(PlanKeeperClock, WaitsForASwarmThatIsBehindAndReportsIt) {
   Bench bench;
   bench.keeper.set_phase(MissionPhase::kRunning);
   bench.lag_s = 5.0;

@@ -50,7 +50,7 @@ TEST(PlanLimits, CapTheDensityOnlyWhereRobotsDoNotFit) {
   EXPECT_LE(planned_max_cvar_m(many->plan, standin(500).world, 0.05), -0.2 + 1e-3);
 }
 
-TEST(PlanLimits, NameThePlaceAndTimeOfADensityThatIsNotCapped) {
+TEST(PlanLimits, NameThePositionAndTimeOfADensityThatIsNotCapped) {
   Mission mission = standin(500);
   mission.planner.density_cap_per_m2 = 0.0;
   const auto result = plan_of(mission);
@@ -99,8 +99,8 @@ TEST(PlanLimits, LowerTheSpeedOfBodiesWithLagUnlessADensityIsAskedFor) {
     for (const PlanLeg& leg : plan.legs()) {
       const PlanNode& from = plan.nodes()[leg.from];
       const PlanNode& to = plan.nodes()[leg.to];
-      const double way_m = (to.gaussian.mean_m() - from.gaussian.mean_m()).norm();
-      fastest = std::max(fastest, way_m / (to.time - from.time).count());
+      const double path_m = (to.gaussian.mean_m() - from.gaussian.mean_m()).norm();
+      fastest = std::max(fastest, path_m / (to.time - from.time).count());
     }
     return fastest;
   };

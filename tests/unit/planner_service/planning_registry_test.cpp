@@ -126,7 +126,7 @@ TEST(PlanKeeperMethod, PlansAnewAtThePeriodOfTheMethodOnly) {
   }
 }
 
-TEST(PlanKeeperMethod, TellsTheMethodWhereRobotsAreStuckAndWhatRiskIsAllowed) {
+TEST(PlanKeeperMethod, PassesStuckRobotsAndAllowedRiskToTheMethod) {
   Calls calls;
   auto bench = bench_with(calls, std::nullopt);
   bench.run_for(0.1);

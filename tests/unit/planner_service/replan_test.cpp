@@ -59,7 +59,7 @@ TEST(Replan, GivesEveryRobotAnEntryThatMakesTheCountsComeOutRight) {
   }
 }
 
-TEST(Replan, FindsAWayAroundAnObstacleThatWasDropped) {
+TEST(Replan, FindsAPathAroundAnObstacleThatWasDropped) {
   const auto robots = testing::robots_in_flight(100);
   std::vector<Obstacle> obstacles = scene().world.obstacles();
   obstacles.push_back(Circle{{100, 50}, 5.0});

@@ -21,7 +21,7 @@ TEST(AgentOptions, AreOneForRobotsWithTheSameBody) {
   EXPECT_EQ(options_of(RobotId(1))->safety.radius_m, 0.5);
 }
 
-TEST(AgentOptions, OutliveWhoeverMadeThem) {
+TEST(AgentOptions, OutliveTheirMaker) {
   Shared<SafetyOptions> safety;
   {
     Mission mission;

@@ -73,7 +73,7 @@ struct Swarm {
     for (std::size_t i = 0; i < agents.size(); ++i) {
       for (std::size_t j = 0; j < agents.size(); ++j) {
         if (i == j) continue;
-        agents[i].hear(
+        agents[i].receive(
             {RobotId(static_cast<std::uint32_t>(j)), sequence, now, positions[j], velocities[j]},
             positions[i]);
       }
@@ -97,7 +97,7 @@ struct Swarm {
   }
 };
 
-TEST(Agent, CarriesACrowdAroundTheBlockWithoutAContact) {
+TEST(Agent, MovesADenseGroupAroundTheBlockWithoutContact) {
   Swarm sut(20);
   for (std::size_t i = 0; i < sut.agents.size(); ++i)
     sut.agents[i].accept_plan(plan_over_the_block(), sut.positions[i]);
@@ -140,7 +140,7 @@ TEST(Agent, ChangesOverToAnotherPlanWithoutAJump) {
     std::optional<PlanEntry> entry;
     if (i % 3 != 0) entry = PlanEntry{static_cast<std::uint32_t>(i % 2), 0.5};
     sut.agents[i].accept_plan(plan_from_the_middle(), sut.positions[i], entry);
-    EXPECT_LT((sut.agents[i].way_begin_m() - sut.positions[i]).norm(), 1e-6);
+    EXPECT_LT((sut.agents[i].route_begin_m() - sut.positions[i]).norm(), 1e-6);
   }
   int steps = 0;
   const auto all_arrived = [&] {
@@ -184,7 +184,7 @@ TEST(Agent, DoesNotGoBackToItsStartWhenItIsRespawned) {
   EXPECT_EQ(sut.outputs[0].mode, RobotMode::kArrived);
 }
 
-TEST(Agent, KeepsItsPlaceInTheGoalWhenItIsPlannedFromAnotherGroup) {
+TEST(Agent, KeepsItsSlotInTheGoalWhenItIsPlannedFromAnotherGroup) {
   Swarm sut(1);
   sut.positions[0] = {46.0, 10.0};
   const Gaussian goal = Gaussian::from_parameters({50, 8}, 2, 2, 0);
@@ -196,14 +196,14 @@ TEST(Agent, KeepsItsPlaceInTheGoalWhenItIsPlannedFromAnotherGroup) {
   sut.agents[0].accept_plan(from({46, 10}, 1), sut.positions[0], PlanEntry{0, 0.5});
   for (int step = 0; step < 100; ++step) sut.tick(MissionPhase::kRunning, true);
   ASSERT_EQ(sut.outputs[0].mode, RobotMode::kArrived);
-  const Vec2 place_m = sut.positions[0];
+  const Vec2 slot_m = sut.positions[0];
 
   // By this plan alone it would go to the other side of the goal.
-  sut.agents[0].accept_plan(from(place_m + Vec2(2, 2), 1), place_m, PlanEntry{0, 0.5});
+  sut.agents[0].accept_plan(from(slot_m + Vec2(2, 2), 1), slot_m, PlanEntry{0, 0.5});
   for (int step = 0; step < 100; ++step) sut.tick(MissionPhase::kRunning, true);
 
   EXPECT_EQ(sut.outputs[0].mode, RobotMode::kArrived);
-  EXPECT_LT((sut.positions[0] - place_m).norm(), 0.2);
+  EXPECT_LT((sut.positions[0] - slot_m).norm(), 0.2);
 }
 
 TEST(Agent, StaysWhereItArrivedWhenThePlanLeavesItThere) {
@@ -220,7 +220,7 @@ TEST(Agent, StaysWhereItArrivedWhenThePlanLeavesItThere) {
   EXPECT_LT((sut.positions[0] - Vec2(49.0, 9.0)).norm(), 0.1);
 }
 
-TEST(Agent, TellsHowItsBodyMovesIfThatDiffersFromItsCommand) {
+TEST(Agent, ReportsTheMeasuredVelocityIfItDiffersFromTheCommand) {
   Swarm sut(1);
   sut.agents[0].accept_plan(plan_over_the_block(), sut.positions[0]);
   AgentInput input{sut.now, sut.positions[0], MissionPhase::kRunning, true};
@@ -228,8 +228,8 @@ TEST(Agent, TellsHowItsBodyMovesIfThatDiffersFromItsCommand) {
   input.velocity_mps = Vec2(0.1, -0.2);
   const AgentOutput lags = sut.agents[0].tick(input, sut.rngs[0]);
 
-  EXPECT_EQ(obeys.told_mps, obeys.velocity_mps);
-  EXPECT_EQ(lags.told_mps, Vec2(0.1, -0.2));
+  EXPECT_EQ(obeys.reported_mps, obeys.velocity_mps);
+  EXPECT_EQ(lags.reported_mps, Vec2(0.1, -0.2));
 }
 
 TEST(Agent, WaitsUntilTheMissionStarts) {
@@ -244,7 +244,7 @@ TEST(Agent, WaitsUntilTheMissionStarts) {
   EXPECT_EQ(sut.outputs[0].velocity_mps, Vec2::Zero());
 }
 
-TEST(Agent, HoldsWhenThePlannerIsSilentAndGoesOnWhenItIsBack) {
+TEST(Agent, HoldsWithoutHeartbeatsAndContinuesWhenTheyResume) {
   Swarm sut(1);
   sut.agents[0].accept_plan(plan_over_the_block(), sut.positions[0]);
   sut.tick(MissionPhase::kRunning, true);
@@ -262,7 +262,7 @@ TEST(Agent, EvadesWhileItHolds) {
   Swarm sut(1);
   sut.agents[0].accept_plan(plan_over_the_block(), sut.positions[0]);
   sut.tick(MissionPhase::kRunning, true);
-  sut.agents[0].hear({RobotId(0), 1, sut.now, sut.positions[0] + Vec2(0.5, 0), {-1, 0}},
+  sut.agents[0].receive({RobotId(0), 1, sut.now, sut.positions[0] + Vec2(0.5, 0), {-1, 0}},
                      sut.positions[0]);
 
   const AgentOutput out =
@@ -272,7 +272,7 @@ TEST(Agent, EvadesWhileItHolds) {
   EXPECT_LT(out.velocity_mps.x(), 0.0);
 }
 
-TEST(Agent, StandsStillForGoodAfterAStop) {
+TEST(Agent, StaysStoppedAfterAnEmergencyStop) {
   Swarm sut(2);
   for (std::size_t i = 0; i < 2; ++i)
     sut.agents[i].accept_plan(plan_over_the_block(), sut.positions[i]);

@@ -34,7 +34,7 @@ class Drift final : public ControlMethod {
   explicit Drift(const DriftOptions& options) : options_(options) {}
   void begin(const Route&, const World&) override {}
   bool has_arrived(const ControlView&) override { return false; }
-  Vec2 wish(const ControlView&, bool, Rng&) override {
+  Vec2 desired_velocity(const ControlView&, bool, Rng&) override {
     if (options_.fault == "throw") throw std::runtime_error("no compass");
     if (options_.fault == "nan") return {std::numeric_limits<double>::quiet_NaN(), 0};
     return {options_.speed_mps, 0};
@@ -75,7 +75,7 @@ Result<Mission> mission(const std::string& more, const ControlRegistry& registry
   return parse_mission(kMission + more + "}\n", "m.yaml", {}, catalogue);
 }
 
-/// The robot of such a mission after a second on its way.
+/// The robot of such a mission after a second under way.
 struct Flown {
   AgentOutput output;
   std::string fault;

@@ -54,8 +54,8 @@ std::pair<double, double> fly(const BodySpec& spec, const World& world, std::vec
         neighbours.push_back(
             {RobotId(static_cast<std::uint32_t>(j)), positions[j], velocities[j], spec.radius_m});
       }
-      const Vec2 wish = 1.5 * (goals[i] - positions[i]).normalized();
-      bodies[i].command(now, filter.filter(positions[i], wish, neighbours), milliseconds(200));
+      const Vec2 desired_velocity = 1.5 * (goals[i] - positions[i]).normalized();
+      bodies[i].command(now, filter.filter(positions[i], desired_velocity, neighbours), milliseconds(200));
     }
     for (std::size_t i = 0; i < n; ++i) {
       const Measurement m = bodies[i].measure(now + milliseconds(100));
@@ -72,7 +72,7 @@ std::pair<double, double> fly(const BodySpec& spec, const World& world, std::vec
   return {gap_m, obstacle_m};
 }
 
-TEST(LaggingBodies, DoNotMeetWhenTheyWantToSwapPlaces) {
+TEST(LaggingBodies, DoNotMeetWhenTheySwapPositions) {
   const World world =
       *World::make({{-20, -20}, {20, 20}}, {*Polygon::make({{-1, -1}, {1, -1}, {1, 1}, {-1, 1}})});
   std::vector<Vec2> starts;
@@ -103,7 +103,7 @@ TEST(LaggingBodies, StopBeforeAWallAtFullSpeed) {
   }
 }
 
-TEST(LaggingBodies, TakeAsLongAsTheirLimitsSay) {
+TEST(LaggingBodies, TakeAsLongAsTheirLimitsDemand) {
   EXPECT_EQ(body_lag_s(body("single_integrator")), 0.0);
   EXPECT_DOUBLE_EQ(body_lag_s(body("double_integrator")), 1.5 / 3.0);
   EXPECT_NEAR(body_lag_s(body("unicycle")), 0.5 + 1.5708 / 3.0, 1e-4);

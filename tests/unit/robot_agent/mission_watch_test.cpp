@@ -32,7 +32,7 @@ TEST(MissionWatch, ObeysAStopAndNothingAfterIt) {
   EXPECT_EQ(sut.phase(), MissionPhase::kStopped);
 }
 
-TEST(MissionWatch, NoticesTheSilenceOfThePlanner) {
+TEST(MissionWatch, DetectsMissingHeartbeats) {
   MissionWatch sut(kSilence);
   const SteadyTime t0{std::chrono::seconds(100)};
   EXPECT_FALSE(sut.planner_alive(t0));
@@ -43,21 +43,21 @@ TEST(MissionWatch, NoticesTheSilenceOfThePlanner) {
   EXPECT_FALSE(sut.planner_alive(t0 + kSilence + Duration(1)));
 }
 
-TEST(MissionWatch, HearsOthersBeforeItTrustsAPlannerThatIsBack) {
-  constexpr Duration kSettle = std::chrono::milliseconds(700);
-  MissionWatch sut(kSilence, kSettle);
+TEST(MissionWatch, WaitsForNeighbourUpdatesAfterHeartbeatsResume) {
+  constexpr Duration kResumeDelay = std::chrono::milliseconds(700);
+  MissionWatch sut(kSilence, kResumeDelay);
   const SteadyTime t0{std::chrono::seconds(100)};
   sut.on_heartbeat(t0);
-  sut.on_heartbeat(t0 + kSettle);
-  EXPECT_TRUE(sut.planner_alive(t0 + kSettle));
+  sut.on_heartbeat(t0 + kResumeDelay);
+  EXPECT_TRUE(sut.planner_alive(t0 + kResumeDelay));
 
-  const SteadyTime back = t0 + kSettle + 2 * kSilence;
+  const SteadyTime back = t0 + kResumeDelay + 2 * kSilence;
   sut.on_heartbeat(back);
   EXPECT_FALSE(sut.planner_alive(back));
-  sut.on_heartbeat(back + kSettle / 2);
-  EXPECT_FALSE(sut.planner_alive(back + kSettle / 2));
-  sut.on_heartbeat(back + kSettle);
-  EXPECT_TRUE(sut.planner_alive(back + kSettle));
+  sut.on_heartbeat(back + kResumeDelay / 2);
+  EXPECT_FALSE(sut.planner_alive(back + kResumeDelay / 2));
+  sut.on_heartbeat(back + kResumeDelay);
+  EXPECT_TRUE(sut.planner_alive(back + kResumeDelay));
 }
 
 }  // namespace

@@ -18,7 +18,7 @@ SteadyTime at(int ms) { return SteadyTime(milliseconds(ms)); }
 NeighbourTable table() {
   return NeighbourTable(NeighbourOptions{.radius_m = 0.2,
                                          .fleet = Fleet(Fleet::Body{0.2, 1.5}),
-                                         .keep_radius_m = 6.0,
+                                         .communication_radius_m = 6.0,
                                          .near_m = 1.0,
                                          .period = milliseconds(100),
                                          .expected_silence = milliseconds(700),
@@ -42,17 +42,17 @@ TEST(NeighbourTable, ExtrapolatesAlongTheLastVelocity) {
   EXPECT_DOUBLE_EQ(now[0].radius_m, 0.2);
 }
 
-TEST(NeighbourTable, TellsForHowLongARobotMayHaveStood) {
+TEST(NeighbourTable, ReportsThePossibleStopAge) {
   auto sut = table();
   sut.take(report(3, 1, 0, {1, 0}, {1, 0}), Vec2::Zero());
 
-  EXPECT_DOUBLE_EQ(sut.at(at(200), Vec2::Zero()).all[0].stalled_s, 0.0);  // its command still holds
-  EXPECT_NEAR(sut.at(at(500), Vec2::Zero()).all[0].stalled_s, 0.3, 1e-12);
+  EXPECT_DOUBLE_EQ(sut.at(at(200), Vec2::Zero()).all[0].possible_stop_age_s, 0.0);  // its command still holds
+  EXPECT_NEAR(sut.at(at(500), Vec2::Zero()).all[0].possible_stop_age_s, 0.3, 1e-12);
   EXPECT_NEAR(sut.at(at(500), Vec2::Zero()).all[0].position_m.x(), 1.5, 1e-12);
 }
 
 /// Hears robot 3, one metre away, ten times a second; the first `lost` of them do not come.
-void hear_at_every_tick(NeighbourTable& sut, int count, int lost) {
+void receive_at_every_tick(NeighbourTable& sut, int count, int lost) {
   static std::uint32_t sequence = 0;
   for (int i = 0; i < count; ++i) {
     ++sequence;
@@ -63,20 +63,20 @@ void hear_at_every_tick(NeighbourTable& sut, int count, int lost) {
   }
 }
 
-TEST(NeighbourTable, TakesALinkForPoorWhileWordsAreMissing) {
+TEST(NeighbourTable, RatesALinkDegradedWhileUpdatesAreMissing) {
   auto sut = table();
 
-  hear_at_every_tick(sut, 20, 0);
+  receive_at_every_tick(sut, 20, 0);
   EXPECT_FALSE(sut.link().poor);
-  hear_at_every_tick(sut, 10, 1);
+  receive_at_every_tick(sut, 10, 1);
   EXPECT_FALSE(sut.link().poor) << "one word may get lost";
-  hear_at_every_tick(sut, 10, 3);
+  receive_at_every_tick(sut, 10, 3);
   EXPECT_TRUE(sut.link().poor);
-  hear_at_every_tick(sut, 200, 0);
+  receive_at_every_tick(sut, 200, 0);
   EXPECT_FALSE(sut.link().poor);
 }
 
-TEST(NeighbourTable, DoesNotTakeARobotThatWasOutOfRangeForLostWords) {
+TEST(NeighbourTable, DoesNotCountARobotThatWasOutOfRangeAsLostUpdates) {
   auto sut = table();
   for (std::uint32_t i = 0; i < 40; ++i) {
     sut.take(report(3, 4 * i, static_cast<int>(400 * i), {5.5, 0}), Vec2::Zero());
@@ -86,23 +86,23 @@ TEST(NeighbourTable, DoesNotTakeARobotThatWasOutOfRangeForLostWords) {
   EXPECT_FALSE(sut.link().poor);
 }
 
-TEST(NeighbourTable, KnowsAMotionAsLateAsWordsComeAndWhereTheyAreLostAsOldAsTheLast) {
+TEST(NeighbourTable, InformationAgeIsTheDelayAndOnADegradedLinkTheTimeSinceTheLastUpdate) {
   auto sut = table();
-  NeighbourReport word = report(4, 1, 0, {1, 0.5}, {1, 0});
-  sut.take(word, Vec2::Zero(), milliseconds(50));
-  EXPECT_NEAR(sut.at(at(400), Vec2::Zero()).all[0].stale_s, 0.05, 1e-6);
+  NeighbourReport state = report(4, 1, 0, {1, 0.5}, {1, 0});
+  sut.take(state, Vec2::Zero(), milliseconds(50));
+  EXPECT_NEAR(sut.at(at(400), Vec2::Zero()).all[0].information_age_s, 0.05, 1e-6);
 
-  hear_at_every_tick(sut, 20, 5);
+  receive_at_every_tick(sut, 20, 5);
   ASSERT_TRUE(sut.link().poor);
-  word.sequence = 2;
-  word.as_of = at(1000000);
-  sut.take(word, Vec2::Zero(), milliseconds(50));
+  state.sequence = 2;
+  state.as_of = at(1000000);
+  sut.take(state, Vec2::Zero(), milliseconds(50));
   const auto later = sut.at(at(1000400), Vec2::Zero()).all;
   ASSERT_EQ(later.size(), 1U);
-  EXPECT_NEAR(later[0].stale_s, 0.4, 1e-6);
+  EXPECT_NEAR(later[0].information_age_s, 0.4, 1e-6);
 }
 
-TEST(NeighbourTable, GrowsARobotThatIsSilentForTooLong) {
+TEST(NeighbourTable, GrowsTheRadiusOfARobotWithoutUpdates) {
   auto sut = table();
   sut.take(report(3, 1, 0, {1, 0}), Vec2::Zero());
 
@@ -119,7 +119,7 @@ TEST(NeighbourTable, ForgetsRobotsOlderThanTheHorizon) {
   EXPECT_TRUE(sut.at(at(1001), Vec2::Zero()).all.empty());
 }
 
-TEST(NeighbourTable, DropsWhoLeavesTheSensingRangeUnheard) {
+TEST(NeighbourTable, DropsRobotsThatLeaveTheCommunicationRadiusBetweenUpdates) {
   auto sut = table();
   sut.take(report(3, 1, 0, {5.9, 0}, {1, 0}), Vec2::Zero());
   sut.take(report(4, 1, 0, {5.9, 0}), Vec2::Zero());
@@ -129,7 +129,7 @@ TEST(NeighbourTable, DropsWhoLeavesTheSensingRangeUnheard) {
   EXPECT_EQ(sut.at(at(200), Vec2::Zero()).all.size(), 0U);   // and must hear it again
 }
 
-TEST(NeighbourTable, RefusesOldAndRepeatedReports) {
+TEST(NeighbourTable, RefusesOldAndRepeatedUpdates) {
   auto sut = table();
   sut.take(report(3, 5, 100, {1, 0}), Vec2::Zero());
 
@@ -152,7 +152,7 @@ TEST(NeighbourTable, LetsARestartedRobotStartOver) {
   EXPECT_EQ(sut.take(report(3, 1, 1500, {2, 0}), Vec2::Zero()), NeighbourTable::Outcome::kTaken);
 }
 
-TEST(NeighbourTable, KnowsPlacesToMicrometresFarOffAndLateInAMission) {
+TEST(NeighbourTable, PositionsAreExactToMicrometresFarAwayAndLateInAMission) {
   auto sut = table();
   const Vec2 far_m(40'000.123456, -70'000.654321);
   for (int s = 0; s < 400; ++s) {  // both go north at 2 m/s
@@ -165,7 +165,7 @@ TEST(NeighbourTable, KnowsPlacesToMicrometresFarOffAndLateInAMission) {
 
     ASSERT_EQ(now.size(), 1U);
     EXPECT_LT((now[0].position_m - (other_m + Vec2(0.0, 0.6))).norm(), 1e-5);
-    EXPECT_NEAR(now[0].stalled_s, 0.1, 1e-9);
+    EXPECT_NEAR(now[0].possible_stop_age_s, 0.1, 1e-9);
   }
 }
 
@@ -180,37 +180,37 @@ class Naive {
     }
   }
   std::map<std::uint32_t, Vec2> at(SteadyTime now, const Vec2& own_m) {
-    std::map<std::uint32_t, Vec2> believed;
+    std::map<std::uint32_t, Vec2> estimated;
     for (auto it = known_.begin(); it != known_.end();) {
       const double age_s = to_seconds(now - it->second.as_of);
       const Vec2 position_m = it->second.position_m + age_s * it->second.velocity_mps;
       if (age_s > 1.0 || (position_m - own_m).norm() > 6.0) {
         it = known_.erase(it);
       } else {
-        believed[it++->first] = position_m;
+        estimated[it++->first] = position_m;
       }
     }
-    return believed;
+    return estimated;
   }
 
  private:
   std::map<std::uint32_t, NeighbourReport> known_;
 };
 
-TEST(NeighbourTable, BelievesWhatLookingAtEverybodyWould) {
+TEST(NeighbourTable, EstimatesEqualAScanOfAllRobots) {
   Rng rng(7);
   auto sut = table();
   Naive naive;
-  std::size_t believed = 0;
+  std::size_t estimated = 0;
   for (std::uint32_t tick = 0; tick < 3000; ++tick) {
     const Vec2 own_m(0.1 * tick, 0.0);
-    for (int word = 0; word < 8; ++word) {
+    for (int state = 0; state < 8; ++state) {
       const auto robot = static_cast<std::uint32_t>(rng() % 500);
       const Vec2 offset_m(uniform(rng, -8.0, 8.0), uniform(rng, -8.0, 8.0));
       const Vec2 velocity_mps(uniform(rng, -1.5, 1.5), uniform(rng, -1.5, 1.5));
-      const NeighbourReport said =
+      const NeighbourReport sent =
           report(robot, tick + 1, 100 * static_cast<int>(tick), own_m + offset_m, velocity_mps);
-      if (sut.take(said, own_m) != NeighbourTable::Outcome::kDuplicate) naive.take(said, own_m);
+      if (sut.take(sent, own_m) != NeighbourTable::Outcome::kDuplicate) naive.take(sent, own_m);
     }
 
     const SteadyTime now = at(100 * static_cast<int>(tick) + 50);
@@ -220,17 +220,17 @@ TEST(NeighbourTable, BelievesWhatLookingAtEverybodyWould) {
       ASSERT_TRUE(expected.contains(n.robot.value()));
       EXPECT_LT((n.position_m - expected[n.robot.value()]).norm(), 1e-4);
       expected.erase(n.robot.value());
-      ++believed;
+      ++estimated;
     }
     EXPECT_TRUE(expected.empty());
     EXPECT_EQ(sut.known(), naive.at(now, own_m).size());
   }
-  EXPECT_GT(believed, 10'000U);
+  EXPECT_GT(estimated, 10'000U);
 }
 
-TEST(NeighbourTable, TellsThoseFirstWhoAreClose) {
+TEST(NeighbourTable, ReportsCloseNeighboursFirst) {
   NeighbourTable sut(NeighbourOptions{.fleet = Fleet(Fleet::Body{0.2, 1.5}),
-                                      .keep_radius_m = 6.0,
+                                      .communication_radius_m = 6.0,
                                       .reach_m = 4.0,
                                       .close_m = 1.5,
                                       .reach_growth_mps = 2.0,
@@ -253,7 +253,7 @@ TEST(NeighbourTable, TellsThoseFirstWhoAreClose) {
   EXPECT_EQ(old.close.size(), 12U);
 }
 
-TEST(NeighbourTable, DropsWhoLeavesTheNeighbourhood) {
+TEST(NeighbourTable, DropsRobotsThatLeaveTheNeighbourhood) {
   auto sut = table();
   sut.take(report(3, 1, 0, {1, 0}), Vec2::Zero());
 

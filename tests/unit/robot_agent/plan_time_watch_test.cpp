@@ -37,7 +37,7 @@ TEST(PlanTimeWatch, AHeartbeatMayComeBeforeItsPlan) {
   EXPECT_NEAR(sut.at(at_s(4))->plan_time_s, 4.0, 1e-6);
 }
 
-TEST(PlanTimeWatch, StandsStillWhenThePlannerIsSilent) {
+TEST(PlanTimeWatch, StopsWithoutHeartbeats) {
   PlanTimeWatch sut(std::chrono::seconds(2));
   sut.on_plan(1, false);
   sut.on_heartbeat(beat(10, 0), at_s(10));

@@ -186,7 +186,7 @@ TEST(Unicycle, TurnsOnTheSpotForWhatIsBehindIt) {
   EXPECT_NEAR((sut.velocity_mps() - Vec2(-1, 0)).norm(), 0.0, 1e-9);
 }
 
-TEST(Unicycle, KeepsItsHeadingWhenToldToStand) {
+TEST(Unicycle, KeepsItsHeadingWhenCommandedToStop) {
   Unicycle sut({0, 0}, 1.0, {});
 
   sut.advance(1.0, {0, 0});

@@ -29,7 +29,7 @@ TEST(ChannelChoice, RefusesGroupsWhereThereIsNoMulticast) {
   EXPECT_EQ(refused.error().code, ErrorCode::kEnvironment);
 }
 
-TEST(ChannelChoice, ObeysAndSaysWhy) {
+TEST(ChannelChoice, FollowsTheOptionAndReportsWhy) {
   const auto asked = choose_channel({.wanted = Channel::kGroups, .agents = 1});
   ASSERT_TRUE(asked);
   EXPECT_EQ(asked->channel, Channel::kGroups);

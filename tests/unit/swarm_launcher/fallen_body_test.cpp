@@ -36,7 +36,7 @@ TEST(CircleOfFallen, CoversTheBodyFromTheLastTickToItsRest) {
     for (int i = 0; i < 300; ++i) {
       const SteadyTime begin{std::chrono::seconds(1)};
       agent::SimulatedRobot body = agent::make_simulated_body(mission.robots, begin, {5, 5}, rng());
-      std::vector<blackbox::Step> log;
+      std::vector<robot_log::Step> log;
       SteadyTime now = begin;
       Vec2 command_mps = Vec2::Zero();
       for (int tick = 0; tick < 12; ++tick, now += milliseconds(100)) {

@@ -10,16 +10,16 @@ namespace {
 constexpr HostLimits kRoomy{.open_files = 1024, .threads = 100'000};
 
 TEST(HostLimits, LeaveAUsualRunAlone) {
-  EXPECT_TRUE(shortcomings(kRoomy, {.agents = 500, .hubs = 20}).empty());
+  EXPECT_TRUE(shortcomings(kRoomy, {.agents = 500, .relays = 20}).empty());
   EXPECT_GT(read_host_limits().open_files, 0U);
 }
 
-TEST(HostLimits, SayWhichFallsShortAndHowToMendIt) {
+TEST(HostLimits, ReportWhichFallsShortAndHowToMendIt) {
   HostLimits limits = kRoomy;
   limits.open_files = 64;
   limits.threads = 500;
   limits.autogroup = true;
-  const auto list = shortcomings(limits, {.agents = 300, .hubs = 12});
+  const auto list = shortcomings(limits, {.agents = 300, .relays = 12});
   ASSERT_EQ(list.size(), 3U);
   EXPECT_NE(list[0].find("may open 64 files and needs about 272: run 'ulimit -n 544'"),
             std::string::npos)
@@ -32,7 +32,7 @@ TEST(HostLimits, CountTheRobotsOfPackedProcesses) {
   EXPECT_EQ(shortcomings(kRoomy, {.agents = 4, .robots_per_process = 5000}).size(), 1U);
 }
 
-TEST(HostLimits, DoNotSpeakOfPrioritiesToTheFew) {
+TEST(HostLimits, DoNotMentionPrioritiesInSmallRuns) {
   HostLimits limits = kRoomy;
   limits.autogroup = true;
   EXPECT_TRUE(shortcomings(limits, {.agents = 12}).empty());

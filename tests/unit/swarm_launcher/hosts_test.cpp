@@ -12,9 +12,9 @@ namespace {
 using std::chrono::milliseconds;
 SteadyTime at(int ms) { return SteadyTime(milliseconds(ms)); }
 
-TEST(HostWatch, TellsOnceThatAHostIsCutOffAndOnceThatItIsBack) {
+TEST(HostWatch, ReportsOnceThatAHostIsCutOffAndOnceThatItIsBack) {
   HostWatch sut(50, 1.0);
-  EXPECT_FALSE(sut.step(at(5000))) << "one that was never heard is not cut off";
+  EXPECT_FALSE(sut.step(at(5000))) << "one that was never received is not cut off";
 
   sut.on_status(at(5000));
   EXPECT_FALSE(sut.step(at(5900)));
@@ -51,7 +51,7 @@ TEST(HostPort, IsReadOrRefused) {
 
 HostOffer offer() {
   return {
-      .run = {.domain = 7, .hubs = 2, .host = "10.0.0.1", .channel = Channel::kGroups, .seed = 3},
+      .run = {.domain = 7, .relays = 2, .host = "10.0.0.1", .channel = Channel::kGroups, .seed = 3},
       .first_robot = 50,
       .robots = 25,
       .per_process = 1,
@@ -64,7 +64,7 @@ TEST(HostOffer, ComesBackAsItWas) {
 
   ASSERT_TRUE(back) << back.error().message;
   EXPECT_EQ(back->run.domain, 7U);
-  EXPECT_EQ(back->run.hubs, 2U);
+  EXPECT_EQ(back->run.relays, 2U);
   EXPECT_EQ(back->run.host, "10.0.0.1");
   EXPECT_EQ(back->run.seed, 3U);
   EXPECT_EQ(back->first_robot, 50U);

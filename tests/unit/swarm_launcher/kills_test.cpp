@@ -34,7 +34,7 @@ TEST(ParseKill, ReadsNumbersIdsAndBoxes) {
   EXPECT_EQ(boxed->in_m->max_m, Vec2(4.5, 2));
 }
 
-TEST(ParseKill, SaysHowItIsWritten) {
+TEST(ParseKill, ReportsHowItIsWritten) {
   for (const char* bad : {"", "10", "@60", "10@", "10@-1", "10@x", "10@nan", "0@60", "-3@60",
                           "ids:@60", "ids:3,x@60", "ids:3@60,in=0:0:1:1", "10@60,in=0:0:1",
                           "10@60,in=0:0:1:1:2", "10@60,in=2:0:1:1", "10@60,at=0:0:1:1", "1.5@60"}) {

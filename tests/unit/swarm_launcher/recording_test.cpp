@@ -29,7 +29,7 @@ using Places = std::vector<double>;
 
 TEST(Recording, KeepsEveryPeriod) { EXPECT_EQ(kept_m(1, 4), (Places{0, 1, 2, 3})); }
 
-TEST(Recording, KeepsEverySoManiethPeriodAndTheLast) {
+TEST(Recording, KeepsEveryNthPeriodAndTheLast) {
   EXPECT_EQ(kept_m(5, 12), (Places{0, 5, 10, 11}));
   EXPECT_EQ(kept_m(5, 11), (Places{0, 5, 10}));
   EXPECT_EQ(kept_m(Recording::kFirstAndLast, 7), (Places{0, 6}));

@@ -91,7 +91,7 @@ struct Bench {
   Supervisor supervisor{{.robots = kRobots, .remote_processes = 2, .launcher = {}, .script = {}},
                         now};
   RemoteHosts hosts{*LineServer::listen({"127.0.0.1", 0}),
-                    {.run = {.domain = 1, .hubs = 1},
+                    {.run = {.domain = 1, .relays = 1},
                      .first_robot = 2,
                      .robots = 2,
                      .first_process = 2,
@@ -127,7 +127,7 @@ TEST(RemoteHosts, GivesTheRobotsOfOneThatFailedAtTheStartToTheNext) {
   EXPECT_TRUE(bench.supervisor.lost().empty());
 }
 
-TEST(RemoteHosts, OneThatComesAndGoesAtOnceHoldsNobodyUp) {
+TEST(RemoteHosts, OneThatDisconnectsAtOnceDelaysNoOther) {
   Bench bench;
   {
     LineSocket hasty = bench.connect();
@@ -152,7 +152,7 @@ TEST(RemoteHosts, OneThatDoesNotEndIsGivenUp) {
   bench.step(10);
 
   EXPECT_EQ(bench.supervisor.stage(), Supervisor::Stage::kDone);
-  EXPECT_EQ(bench.hosts.missing_boxes(), 2U);
+  EXPECT_EQ(bench.hosts.missing_logs(), 2U);
 }
 
 TEST(RemoteHosts, PausesTheOthersWhileAHostIsSilentUnlessSomebodyResumes) {
@@ -176,7 +176,7 @@ TEST(RemoteHosts, PausesTheOthersWhileAHostIsSilentUnlessSomebodyResumes) {
   EXPECT_EQ(bench.supervisor.phase(), MissionPhase::kPaused) << "somebody wants it so";
 }
 
-TEST(RemoteHosts, TakesBlackBoxesHome) {
+TEST(RemoteHosts, CollectsRobotLogs) {
   Bench bench;
   LineSocket host = bench.join(2);
   host.send(R"({"over":true})");
@@ -185,16 +185,16 @@ TEST(RemoteHosts, TakesBlackBoxesHome) {
   host.send(R"({"box":3,"bytes":5})");
   host.send_bytes("de");  // and no more
   host.flush();
-  EXPECT_TRUE(bench.until([&] { return bench.hosts.missing_boxes() == 1; }));
+  EXPECT_TRUE(bench.until([&] { return bench.hosts.missing_logs() == 1; }));
   EXPECT_EQ(std::filesystem::file_size(bench.dir / "blackbox" / "robot-00002.mcap"), 3U);
   EXPECT_FALSE(bench.hosts.collect());
 
   host.close();
   EXPECT_TRUE(bench.until([&] { return bench.hosts.collect(); }));
-  EXPECT_EQ(bench.hosts.missing_boxes(), 1U) << "half a box is none";
+  EXPECT_EQ(bench.hosts.missing_logs(), 1U) << "half a box is none";
 }
 
-TEST(RemoteHosts, DropsWhoeverSaysSomethingElse) {
+TEST(RemoteHosts, DropsClientsWithAnotherProtocol) {
   Bench bench;
   for (const std::string line :
        {"GET / HTTP/1.1", "[]", R"({"join":0})", R"({"join":-1})", R"({"join":1e300})",

@@ -22,8 +22,8 @@ Mission small_mission() {
   return *std::move(mission);
 }
 
-struct Told final : SimulationObserver {
-  explicit Told(const Mission& mission) : scenes{first_scene(mission.world.obstacles().size())} {}
+struct RecordedCalls final : SimulationObserver {
+  explicit RecordedCalls(const Mission& mission) : scenes{first_scene(mission.world.obstacles().size())} {}
   void on_event(UtcTime, const std::string&, bool, const std::string& code,
                 const std::string& text) override {
     events.push_back(code + ": " + text);
@@ -40,7 +40,7 @@ struct Told final : SimulationObserver {
 struct Flight {
   Outcome outcome = Outcome::kNone;
   std::vector<monitor::Track> tracks{};
-  Told told;
+  RecordedCalls reported;
 
   std::vector<std::uint32_t> dead() const {
     std::vector<std::uint32_t> ids;
@@ -59,8 +59,8 @@ struct Flight {
 
 Flight fly(const Mission& mission, const SimulationOptions& options) {
   Recording recording(mission, Simulation::begin_utc(), 1);
-  Flight flight{.told = Told(mission)};
-  auto simulation = Simulation::make(mission, options, recording, flight.told);
+  Flight flight{.reported = RecordedCalls(mission)};
+  auto simulation = Simulation::make(mission, options, recording, flight.reported);
   EXPECT_TRUE(simulation.has_value());
   while ((*simulation)->step()) {
   }
@@ -81,11 +81,11 @@ double gap_to_dead_m(const Flight& flight) {
       for (std::size_t k = 1; k < track.points.size(); ++k) {
         if (track.points[k - 1].time_s < dead.points.back().time_s) continue;
         const Vec2& a = track.points[k - 1].position_m;
-        const Vec2 way = track.points[k].position_m - a;
-        const double length2 = way.squaredNorm();
+        const Vec2 path = track.points[k].position_m - a;
+        const double length2 = path.squaredNorm();
         const double share =
-            length2 > 0.0 ? std::clamp((rest_m - a).dot(way) / length2, 0.0, 1.0) : 0.0;
-        const double distance_m = (a + share * way - rest_m).norm();
+            length2 > 0.0 ? std::clamp((rest_m - a).dot(path) / length2, 0.0, 1.0) : 0.0;
+        const double distance_m = (a + share * path - rest_m).norm();
         least_m = std::min(least_m, distance_m - dead.radius_m - track.radius_m);
       }
     }
@@ -102,7 +102,7 @@ TEST(SimulationDeaths, LeaveBodiesThatTheOthersGetAround) {
     EXPECT_EQ(flight.dead().size(), 4U) << seed;
     EXPECT_EQ(flight.arrived(), 8U) << seed;
     EXPECT_GT(gap_to_dead_m(flight), 0.0) << seed;
-    const auto bodies = bodies_of(flight.told.scenes);
+    const auto bodies = bodies_of(flight.reported.scenes);
     ASSERT_EQ(bodies.size(), 4U) << seed;
     for (const FallenBody& body : bodies) {
       const monitor::Track& track = flight.tracks[body.robot.value()];
@@ -135,7 +135,7 @@ TEST(SimulationDeaths, StopABodyWhenItsLastCommandRunsOut) {
   ASSERT_EQ(flight.dead(), std::vector<std::uint32_t>{5});
   const auto& points = flight.tracks[5].points;
   const double died_s =
-      to_seconds(bodies_of(flight.told.scenes).at(0).from - Simulation::begin_utc());
+      to_seconds(bodies_of(flight.reported.scenes).at(0).from - Simulation::begin_utc());
   const auto last_tick = std::find_if(points.rbegin(), points.rend(), [&](const auto& point) {
     return point.time_s < died_s - 1e-6;
   });
@@ -152,7 +152,7 @@ TEST(SimulationDeaths, OfRobotsThatComeBackAreNoObstaclesAnyMore) {
   EXPECT_EQ(flight.outcome, Outcome::kCompleted);
   EXPECT_TRUE(flight.dead().empty());
   EXPECT_EQ(flight.arrived(), 12U);
-  const auto bodies = bodies_of(flight.told.scenes);
+  const auto bodies = bodies_of(flight.reported.scenes);
   ASSERT_EQ(bodies.size(), 4U);
   for (const FallenBody& body : bodies) {
     ASSERT_TRUE(body.cleared.has_value());
@@ -167,11 +167,11 @@ TEST(SimulationDeaths, CanBeClearedByTheScript) {
                     {.at_s = 9.5, .action = SceneChange(ClearBody{RobotId(6)})}};
   const Flight flight = fly(mission, {.kills = {{.at_s = 8.0, .robots = {RobotId(5)}}}});
 
-  const auto bodies = bodies_of(flight.told.scenes);
+  const auto bodies = bodies_of(flight.reported.scenes);
   ASSERT_EQ(bodies.size(), 1U);
   ASSERT_TRUE(bodies[0].cleared.has_value());
   EXPECT_NEAR(to_seconds(*bodies[0].cleared - bodies[0].from), 1.0, 0.11);
-  EXPECT_TRUE(flight.told.event("scene-refused: robot 6 has no body"));
+  EXPECT_TRUE(flight.reported.event("scene-refused: robot 6 has no body"));
 }
 
 TEST(SimulationDeaths, AreTheSameOnAnyNumberOfThreads) {
@@ -188,7 +188,7 @@ TEST(SimulationDeaths, AreTheSameOnAnyNumberOfThreads) {
   const Flight one = flown(1);
   const Flight three = flown(3);
 
-  ASSERT_EQ(one.told.events, three.told.events);
+  ASSERT_EQ(one.reported.events, three.reported.events);
   for (std::size_t i = 0; i < one.tracks.size(); ++i) {
     ASSERT_EQ(one.tracks[i].points.size(), three.tracks[i].points.size()) << i;
     for (std::size_t k = 0; k < one.tracks[i].points.size(); ++k) {

@@ -26,8 +26,8 @@ struct Flight {
 
 Flight fly(const Mission& mission, const SimulationOptions& options) {
   Recording recording(mission, Simulation::begin_utc(), 1);
-  SimulationObserver nobody;
-  auto simulation = Simulation::make(mission, options, recording, nobody);
+  SimulationObserver no_observer;
+  auto simulation = Simulation::make(mission, options, recording, no_observer);
   EXPECT_TRUE(simulation.has_value());
   while ((*simulation)->step()) {
   }
@@ -60,7 +60,7 @@ void expect_same(const std::vector<monitor::Track>& a, const std::vector<monitor
   }
 }
 
-TEST(Simulation, BringsEveryoneHomeWithoutContact) {
+TEST(Simulation, AllArriveWithoutContact) {
   const Flight flight = fly(small_mission(12), {});
 
   EXPECT_EQ(flight.outcome, Outcome::kCompleted);
@@ -87,7 +87,7 @@ TEST(Simulation, IsTheSameToTheLastBitOnAnyNumberOfThreads) {
   expect_same(one.tracks, three.tracks);
 }
 
-// At 3 m/s and with a sensing range of 1.2 m robots leave each other's range all the time.
+// At 3 m/s and with a communication radius of 1.2 m robots leave each other's range all the time.
 TEST(Simulation, FormsShapes) {
   for (const char* name : {"diffusion_q.yaml", "diffusion_jie.yaml"}) {
     const auto mission =
@@ -121,48 +121,48 @@ TEST(Simulation, PlaysTheScript) {
   EXPECT_EQ(flight.tracks[0].points.back().mode, RobotMode::kStopped);
 }
 
-TEST(Air, LosesItsShareAndDeliversTheRestOnceAndInTime) {
+TEST(SimulatedNetwork, LosesItsShareAndDeliversTheRestOnceAndInTime) {
   const LinkFaults faults{.loss = 0.25,
                           .delay = std::chrono::milliseconds(150),
                           .jitter = std::chrono::milliseconds(50)};
   const SteadyTime begin{std::chrono::seconds(1)};
-  Air air({{0, 0}, {10, 10}}, 4.0, faults, 7, begin);
+  SimulatedNetwork network({{0, 0}, {10, 10}}, 4.0, faults, 7, begin);
   const Duration period = std::chrono::milliseconds(100);
-  constexpr std::uint32_t kSaid = 4000;
-  std::uint32_t heard = 0;
-  for (std::uint32_t k = 0; k < kSaid + 10; ++k) {
+  constexpr std::uint32_t kSent = 4000;
+  std::uint32_t received = 0;
+  for (std::uint32_t k = 0; k < kSent + 10; ++k) {
     const SteadyTime now = begin + k * period;
-    air.hear(RobotId(0), {5, 5}, 4.0, now - period, now, [&](const auto& report) {
-      ++heard;
+    network.receive(RobotId(0), {5, 5}, 4.0, now - period, now, [&](const auto& report) {
+      ++received;
       EXPECT_GE(now - report.as_of, std::chrono::milliseconds(100));
       EXPECT_LE(now - report.as_of, std::chrono::milliseconds(300));
     });
-    if (k < kSaid) {
-      const std::vector<agent::NeighbourReport> said = {
+    if (k < kSent) {
+      const std::vector<agent::NeighbourReport> sent = {
           {.robot = RobotId(1), .sequence = k, .as_of = now, .position_m = {6, 5}},
           {.robot = RobotId(2), .sequence = k, .as_of = now, .position_m = {9.5, 5}}};
-      air.post(now, said);
+      network.post(now, sent);
     }
-    air.forget(now - period);
+    network.forget(now - period);
   }
-  EXPECT_NEAR(heard, 0.75 * kSaid, 0.03 * kSaid);
+  EXPECT_NEAR(received, 0.75 * kSent, 0.03 * kSent);
 }
 
-TEST(Air, IsBadOnlyWhenItIsToBe) {
+TEST(SimulatedNetwork, IsBadOnlyWhenItIsToBe) {
   const LinkFaults faults{
       .loss = 1.0, .from = std::chrono::seconds(10), .until = std::chrono::seconds(20)};
   const SteadyTime begin{std::chrono::seconds(1)};
-  Air air({{0, 0}, {10, 10}}, 4.0, faults, 7, begin);
-  std::vector<std::uint32_t> heard;
+  SimulatedNetwork network({{0, 0}, {10, 10}}, 4.0, faults, 7, begin);
+  std::vector<std::uint32_t> received;
   for (const std::uint32_t s : {9U, 10U, 19U, 20U}) {
     const SteadyTime now = begin + std::chrono::seconds(s);
-    const std::vector<agent::NeighbourReport> said = {
+    const std::vector<agent::NeighbourReport> sent = {
         {.robot = RobotId(1), .sequence = s, .as_of = now, .position_m = {6, 5}}};
-    air.post(now, said);
-    air.hear(RobotId(0), {5, 5}, 4.0, now, now + std::chrono::seconds(1),
-             [&](const auto& report) { heard.push_back(report.sequence); });
+    network.post(now, sent);
+    network.receive(RobotId(0), {5, 5}, 4.0, now, now + std::chrono::seconds(1),
+             [&](const auto& report) { received.push_back(report.sequence); });
   }
-  EXPECT_EQ(heard, std::vector({9U, 20U}));
+  EXPECT_EQ(received, std::vector({9U, 20U}));
 }
 
 }  // namespace

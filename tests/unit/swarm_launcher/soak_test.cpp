@@ -21,9 +21,9 @@ using std::chrono::microseconds;
 
 constexpr UtcTime kNow{std::chrono::seconds(1'000'000)};
 
-void hear(link::StreamMeter& meter, std::uint32_t robot, std::uint32_t number,
+void receive(link::StreamMeter& meter, std::uint32_t robot, std::uint32_t number,
           Duration age = microseconds(500)) {
-  meter.hear({.robot_id = robot,
+  meter.receive({.robot_id = robot,
               .sequence_number = number,
               .stamp_utc_ns = (kNow - age).time_since_epoch().count()},
              kNow);
@@ -31,8 +31,8 @@ void hear(link::StreamMeter& meter, std::uint32_t robot, std::uint32_t number,
 
 TEST(StreamMeter, CountsWhatIsSkipped) {
   link::StreamMeter meter(2);
-  for (const std::uint32_t number : {1U, 2U, 5U, 6U, 8U}) hear(meter, 0, number);
-  hear(meter, 1, 40);  // begins wherever it is first heard
+  for (const std::uint32_t number : {1U, 2U, 5U, 6U, 8U}) receive(meter, 0, number);
+  receive(meter, 1, 40);  // begins wherever it is first heard
 
   EXPECT_EQ(meter.counts().received, 6U);
   EXPECT_EQ(meter.counts().lost, 3U);
@@ -40,9 +40,9 @@ TEST(StreamMeter, CountsWhatIsSkipped) {
   EXPECT_EQ(meter.counts().sent(), 9U);
 }
 
-TEST(StreamMeter, TellsWhatComesLateFromWhatComesTwice) {
+TEST(StreamMeter, DistinguishesReorderedFromDuplicatedStates) {
   link::StreamMeter meter(1);
-  for (const std::uint32_t number : {1U, 4U, 2U, 2U, 4U, 3U}) hear(meter, 0, number);
+  for (const std::uint32_t number : {1U, 4U, 2U, 2U, 4U, 3U}) receive(meter, 0, number);
 
   EXPECT_EQ(meter.counts().received, 4U);
   EXPECT_EQ(meter.counts().lost, 0U);
@@ -52,9 +52,9 @@ TEST(StreamMeter, TellsWhatComesLateFromWhatComesTwice) {
 
 TEST(StreamMeter, LetsARestartedRobotBeginAnew) {
   link::StreamMeter meter(1);
-  hear(meter, 0, 1000);
-  hear(meter, 0, 1);
-  hear(meter, 0, 2);
+  receive(meter, 0, 1000);
+  receive(meter, 0, 1);
+  receive(meter, 0, 2);
 
   EXPECT_EQ(meter.counts().received, 3U);
   EXPECT_EQ(meter.counts().lost, 0U);
@@ -63,9 +63,9 @@ TEST(StreamMeter, LetsARestartedRobotBeginAnew) {
 
 TEST(StreamMeter, IsNotMisledByALongGap) {
   link::StreamMeter meter(1);
-  hear(meter, 0, 1);
-  hear(meter, 0, 1000);
-  hear(meter, 0, 999);
+  receive(meter, 0, 1);
+  receive(meter, 0, 1000);
+  receive(meter, 0, 999);
 
   EXPECT_EQ(meter.counts().lost, 997U);
   EXPECT_EQ(meter.counts().reordered, 1U);
@@ -73,11 +73,11 @@ TEST(StreamMeter, IsNotMisledByALongGap) {
 
 TEST(StreamMeter, MeasuresLatencyInAllAndSinceLastAsked) {
   link::StreamMeter meter(3);
-  hear(meter, 0, 1, microseconds(100));
-  hear(meter, 2, 1, microseconds(9'000));
+  receive(meter, 0, 1, microseconds(100));
+  receive(meter, 2, 1, microseconds(9'000));
   EXPECT_EQ(meter.take_recent_latency().count(), 2U);
-  hear(meter, 0, 2, microseconds(100));
-  hear(meter, 7, 1, microseconds(100'000));  // there is no such robot
+  receive(meter, 0, 2, microseconds(100));
+  receive(meter, 7, 1, microseconds(100'000));  // there is no such robot
 
   EXPECT_EQ(meter.take_recent_latency().count(), 1U);
   EXPECT_EQ(meter.latency().count(), 3U);
@@ -125,7 +125,7 @@ TEST(Growth, IsNoneOfNothingOrOneSample) {
 SoakResult good_result() {
   SoakResult result{.processes = 2, .discovery_s = 0.3, .flown = true};
   result.measured.samples = samples(std::vector<double>(20, 50.0));
-  result.measured.heard = link::StreamMeter::Counts{.received = 1000};
+  result.measured.received = link::StreamMeter::Counts{.received = 1000};
   for (int i = 0; i < 1000; ++i) result.measured.latency.add(200);
   result.measured.states_used = 5000;
   return result;
@@ -149,7 +149,7 @@ TEST(Soak, FailsByEachOfItsCriteria) {
     for (int i = 0; i < 20; ++i) r.measured.latency.add(2000);
   }));
   EXPECT_TRUE(fails([](SoakResult& r) { r.measured.latency = {}; }));
-  EXPECT_TRUE(fails([](SoakResult& r) { r.measured.heard->lost = 1; }));
+  EXPECT_TRUE(fails([](SoakResult& r) { r.measured.received->lost = 1; }));
   EXPECT_TRUE(fails([](SoakResult& r) { r.measured.receive_drops = 1; }));
   EXPECT_TRUE(fails([](SoakResult& r) { r.measured.samples.back().rss_mb = 60.0; }));
   EXPECT_FALSE(fails([](SoakResult& r) { r.collisions = 1; }));

@@ -146,7 +146,7 @@ TEST(Supervisor, GoesOnWithoutAHostThatNeverCame) {
   EXPECT_EQ(bench.sut->lost(), std::vector<RobotId>{RobotId(3)});
 }
 
-TEST(Supervisor, WaitsUntilEveryRobotHearsItsNeighbours) {
+TEST(Supervisor, WaitsUntilEveryRobotReceivesItsNeighbours) {
   Bench bench(3);
   bench.run_for(seconds(1));
   for (std::uint32_t i = 0; i < 3; ++i) {
@@ -160,7 +160,7 @@ TEST(Supervisor, WaitsUntilEveryRobotHearsItsNeighbours) {
   bench.run_for(milliseconds(100));
 
   EXPECT_EQ(bench.commands.size(), 1U);
-  EXPECT_GE(bench.sut->hearing_s(), 0.9);
+  EXPECT_GE(bench.sut->neighbour_discovery_s(), 0.9);
 }
 
 TEST(Supervisor, NamesWhoIsMissingAndGivesUp) {
@@ -230,7 +230,7 @@ TEST(Supervisor, CountsAKilledAgentAsLostAndFliesOn) {
 
 RobotReport report_of(SteadyTime sent_at) {
   return {
-      .has_plan = true, .hears_neighbours = true, .mode = RobotMode::kMoving, .sent_at = sent_at};
+      .has_plan = true, .receives_neighbours = true, .mode = RobotMode::kMoving, .sent_at = sent_at};
 }
 
 using Robots = std::vector<std::vector<RobotId>>;

@@ -22,10 +22,10 @@ TEST(InprocBus, DeliversAtOnceInTheOrderOfWriting) {
   from_b->write(event(2));
   from_a->write(event(3));
 
-  std::vector<EventMessage> heard;
-  EXPECT_EQ(reader->take(heard), 3U);
-  EXPECT_EQ(heard, (std::vector{event(1), event(2), event(3)}));
-  EXPECT_EQ(reader->take(heard), 0U);
+  std::vector<EventMessage> received;
+  EXPECT_EQ(reader->take(received), 3U);
+  EXPECT_EQ(received, (std::vector{event(1), event(2), event(3)}));
+  EXPECT_EQ(reader->take(received), 0U);
 }
 
 TEST(InprocBus, MayEndBeforeItsEndpoints) {
@@ -37,8 +37,8 @@ TEST(InprocBus, MayEndBeforeItsEndpoints) {
   bus.reset();
 
   EXPECT_TRUE(writer->write(event(1)));
-  std::vector<EventMessage> heard;
-  EXPECT_EQ(reader->take(heard), 1U);
+  std::vector<EventMessage> received;
+  EXPECT_EQ(reader->take(received), 1U);
 }
 
 TEST(InprocBus, KeepsTopicsOfDifferentTypesApart) {

@@ -26,7 +26,7 @@ Bytes message(const Bytes& payload) {
   return out;
 }
 
-TEST(RtpsDatagram, IsWhatTheStandardSays) {
+TEST(RtpsDatagram, FollowsTheStandard) {
   const Bytes expected = bytes_of({'R',  'T',  'P',  'S', 2, 3, 0, 0,                 //
                                    1,    2,    3,    4,   5, 6, 7, 8, 9, 10, 11, 12,  // GUID prefix
                                    0x15, 0x05, 0,    0,                               // DATA

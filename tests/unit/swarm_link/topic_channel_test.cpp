@@ -14,7 +14,7 @@ namespace swarm::link {
 namespace {
 
 constexpr CellOptions kOptions{
-    .cell_size_m = 10.0, .hear_radius_m = 4.0, .join_margin_m = 1.5, .leave_margin_m = 3.0};
+    .cell_size_m = 10.0, .communication_radius_m = 4.0, .join_margin_m = 1.5, .leave_margin_m = 3.0};
 
 double distance_to_cell_m(const Vec2& p, const Cell& cell) {
   const Vec2 low(cell.x * kOptions.cell_size_m, cell.y * kOptions.cell_size_m);
@@ -33,7 +33,7 @@ struct TopicChannelTest : testing::Test {
     }
   }
   bool listens_to(const Cell& cell) { return writers[cell]->matched() > 1; }  // 1: the own probe
-  bool speaks_in(const Cell& cell) { return readers[cell]->matched() > 1; }
+  bool publishes_in(const Cell& cell) { return readers[cell]->matched() > 1; }
 
   InprocBus bus;
   std::unique_ptr<Participant> probe = bus.make_participant();
@@ -54,9 +54,9 @@ TEST_F(TopicChannelTest, ListensToAllCellsItNeedsAndToNoneItDoesNot) {
 
     for (const auto& [cell, writer] : writers) {
       const double d = distance_to_cell_m(p, cell);
-      if (d <= kOptions.hear_radius_m + kOptions.join_margin_m) {
+      if (d <= kOptions.communication_radius_m + kOptions.join_margin_m) {
         EXPECT_TRUE(listens_to(cell));
-      } else if (d > kOptions.hear_radius_m + kOptions.leave_margin_m) {
+      } else if (d > kOptions.communication_radius_m + kOptions.leave_margin_m) {
         EXPECT_FALSE(listens_to(cell));
       } else {
         joined_between += listens_to(cell) ? 1 : 0;  // hysteresis: either is right
@@ -72,7 +72,7 @@ TEST_F(TopicChannelTest, HasItsWritersBeforeTheRobotCrosses) {
     channel->listen_around({&p, 1});
     for (const auto& [cell, reader] : readers) {
       if (distance_to_cell_m(p, cell) <= kOptions.join_margin_m) {
-        EXPECT_TRUE(speaks_in(cell));
+        EXPECT_TRUE(publishes_in(cell));
       }
     }
   }
@@ -86,13 +86,13 @@ TEST_F(TopicChannelTest, KeepsFewWritersOfLeftCells) {
     EXPECT_EQ(channel->publish({&state, 1}), 1U);
 
     int open = 0;
-    for (const auto& [cell, reader] : readers) open += speaks_in(cell) ? 1 : 0;
+    for (const auto& [cell, reader] : readers) open += publishes_in(cell) ? 1 : 0;
     EXPECT_LE(open, 8);
-    EXPECT_TRUE(speaks_in(cell_of(p, kOptions.cell_size_m)));
+    EXPECT_TRUE(publishes_in(cell_of(p, kOptions.cell_size_m)));
   }
 }
 
-TEST_F(TopicChannelTest, SpeaksInMoreCellsAtOnceThanItKeeps) {
+TEST_F(TopicChannelTest, PublishesInMoreCellsAtOnceThanItKeeps) {
   std::vector<RobotStateMessage> states;
   std::vector<Vec2> positions_m;
   for (int i = 0; i < 36; ++i) {
@@ -106,8 +106,8 @@ TEST_F(TopicChannelTest, SpeaksInMoreCellsAtOnceThanItKeeps) {
     EXPECT_EQ(channel->publish(states), 36U);
   }
   for (auto& [cell, reader] : readers) {
-    std::vector<CellStatesMessage> heard;
-    EXPECT_EQ(reader->take(heard), 3U);
+    std::vector<CellStatesMessage> received;
+    EXPECT_EQ(reader->take(received), 3U);
   }
 }
 
@@ -121,7 +121,7 @@ TEST_F(TopicChannelTest, SplitsBatchesOverTheBoundAndLosesNone) {
 
   EXPECT_EQ(channel->publish(states), 700U);
 
-  std::array<int, 700> heard_times{};
+  std::array<int, 700> received_times{};
   for (auto& [cell, reader] : readers) {
     std::vector<CellStatesMessage> batches;
     reader->take(batches);
@@ -130,11 +130,11 @@ TEST_F(TopicChannelTest, SplitsBatchesOverTheBoundAndLosesNone) {
       EXPECT_LE(batch.states.size(), kMaxCellStates);
       for (const auto& state : batch.states) {
         EXPECT_EQ(cell_of({state.x_m, state.y_m}, kOptions.cell_size_m), cell);
-        ++heard_times[state.robot_id];
+        ++received_times[state.robot_id];
       }
     }
   }
-  for (const int times : heard_times) EXPECT_EQ(times, 1);
+  for (const int times : received_times) EXPECT_EQ(times, 1);
 }
 
 TEST_F(TopicChannelTest, LeavesEveryCellWithTheLastRobot) {

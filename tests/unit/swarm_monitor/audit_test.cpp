@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "swarm_core/blackbox/blackbox_file.hpp"
+#include "swarm_core/robot_log/robot_log_file.hpp"
 #include "synthetic_run.hpp"
 
 namespace swarm::monitor {
@@ -50,8 +50,8 @@ TEST(Audit, PassesAGoodRun) {
 TEST(Audit, CallsARobotWithoutAnExitLost) {
   SyntheticRun files(8);
   files.write_good_run();
-  std::filesystem::remove(blackbox::file_of(files.dir(), RobotId(3)));
-  std::filesystem::remove(blackbox::file_of(files.dir(), RobotId(5)));
+  std::filesystem::remove(robot_log::file_of(files.dir(), RobotId(3)));
+  std::filesystem::remove(robot_log::file_of(files.dir(), RobotId(5)));
   files.write(5, {.positions_m = straight({6, 13}, {29, 15}, 100), .goal = 1, .graceful = false});
 
   const Audit audit = audit_of(files);
@@ -86,7 +86,7 @@ TEST(Audit, WantsTheLastPositionInsideTheGoalsEllipse) {
   EXPECT_EQ(audit.reasons, (std::vector<std::string>{"1 not arrived: robot 1"}));
 }
 
-TEST(Audit, DoesNotBelieveTheModeArrived) {
+TEST(Audit, DoesNotTrustTheModeArrived) {
   SyntheticRun files(1);
   files.write(0, {.positions_m = straight({5, 5}, {12, 5}, 100)});
 
@@ -242,10 +242,10 @@ TEST(Audit, CarriesOverOnlyWhatTheLauncherMeasured) {
   EXPECT_EQ(audit.arrived, 2U);
 }
 
-TEST(Audit, SurvivesADamagedBlackBox) {
+TEST(Audit, SurvivesADamagedRobotLog) {
   SyntheticRun files(2);
   files.write_good_run();
-  const auto box = blackbox::file_of(files.dir(), RobotId(1));
+  const auto box = robot_log::file_of(files.dir(), RobotId(1));
   std::fstream file(box, std::ios::in | std::ios::out | std::ios::binary);
   file.seekp(4000);  // behind its schemas
   file.write("\x01\x02\x03", 3);
@@ -257,7 +257,7 @@ TEST(Audit, SurvivesADamagedBlackBox) {
   EXPECT_TRUE(audit.ok());
 }
 
-TEST(Audit, SaysHowMuchRobotsSay) {
+TEST(Audit, ReportsTheMessageRateOfRobots) {
   SyntheticRun files(2);
   files.write(0, {.positions_m = straight({5, 5}, {12, 5}, 100), .states_sent = 20});
   files.write(1, {.positions_m = straight({5, 15}, {12, 15}, 100), .states_sent = 30});

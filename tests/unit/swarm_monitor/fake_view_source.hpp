@@ -30,7 +30,7 @@ class FakeViewSource final : public ViewSource {
   const std::vector<std::string>& scenes() const override { return scene_texts; }
   const std::vector<std::string>& events() const override { return event_texts; }
   const std::vector<std::string>& series() const override { return rows; }
-  void picture(std::optional<double> time_s, std::optional<RobotId> focus,
+  void view_frame(std::optional<double> time_s, std::optional<RobotId> focus,
                std::vector<std::byte>& out) override {
     asked.resize(asked.size() % 64);
     asked.emplace_back(time_s, focus);
@@ -42,8 +42,8 @@ class FakeViewSource final : public ViewSource {
     append_raw(out, std::uint32_t{1});
     for (std::uint32_t i = 0; i < robots; ++i) {
       for (const float value : {static_cast<float>(i), 2.0F, 0.5F}) append_raw(out, value);
-      const std::uint32_t heard_of = i == 1 ? 0 : 1;  // robot 1 is not
-      append_raw(out, heard_of << 16U);
+      const std::uint32_t was_received = i == 1 ? 0 : 1;  // robot 1 is not
+      append_raw(out, was_received << 16U);
     }
     for (const float value : {10.0F, 20.0F, 4.0F, 0.0F, 1.0F, 0.5F}) append_raw(out, value);
     append_raw(out, std::uint32_t{0xFFFFFFFF});

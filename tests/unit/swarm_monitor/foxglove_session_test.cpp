@@ -66,21 +66,21 @@ void expect_entity(CdrReader& cdr, const std::string& id) {
 
 const UtcTime kNow{Duration(5'000'000'007)};
 
-Picture picture_of(FakeViewSource& source) {
+ViewFrame view_frame_of(FakeViewSource& source) {
   std::vector<std::byte> bytes;
-  source.picture(std::nullopt, std::nullopt, bytes);
-  const auto picture = read_picture(bytes);
-  EXPECT_TRUE(picture.has_value());
-  return picture.value_or(Picture{});
+  source.view_frame(std::nullopt, std::nullopt, bytes);
+  const auto view_frame = read_view_frame(bytes);
+  EXPECT_TRUE(view_frame.has_value());
+  return view_frame.value_or(ViewFrame{});
 }
 
 std::string text_of(const Outgoing& out) {
   return {reinterpret_cast<const char*>(out.bytes.data()), out.bytes.size()};
 }
 
-TEST(FoxgloveMessages, PosesAreOfWhoWasHeardOf) {
+TEST(FoxgloveMessages, PosesAreOfReceivedRobots) {
   FakeViewSource source;
-  const auto bytes = foxglove::poses_in_frame(kNow, picture_of(source));
+  const auto bytes = foxglove::poses_in_frame(kNow, view_frame_of(source));
   CdrReader cdr(bytes);
   EXPECT_EQ(cdr.get<std::uint32_t>(), 5U);
   EXPECT_EQ(cdr.get<std::uint32_t>(), 7U);
@@ -97,7 +97,7 @@ TEST(FoxgloveMessages, PosesAreOfWhoWasHeardOf) {
 
 TEST(FoxgloveMessages, TheMixtureIsOfEllipses) {
   FakeViewSource source;
-  const auto bytes = foxglove::mixture_scene(kNow, picture_of(source));
+  const auto bytes = foxglove::mixture_scene(kNow, view_frame_of(source));
   CdrReader cdr(bytes);
   expect_entity(cdr, "mixture");
   ASSERT_EQ(cdr.get<std::uint32_t>(), 1U) << "cylinders";
@@ -140,15 +140,15 @@ TEST(FoxgloveMessages, AnySceneWillDo) {
   }
 }
 
-TEST(FoxgloveMessages, ABrokenPictureIsNone) {
+TEST(FoxgloveMessages, RefusesABrokenFrame) {
   FakeViewSource source;
   std::vector<std::byte> bytes;
-  source.picture(std::nullopt, std::nullopt, bytes);
+  source.view_frame(std::nullopt, std::nullopt, bytes);
   for (std::size_t size = 0; size < 24 + 3 * 16 + 24; ++size) {
-    EXPECT_FALSE(read_picture(std::span(bytes).first(size)).has_value()) << size;
+    EXPECT_FALSE(read_view_frame(std::span(bytes).first(size)).has_value()) << size;
   }
   std::memset(bytes.data() + 4, 0xFF, 4);
-  EXPECT_FALSE(read_picture(bytes).has_value()) << "more robots than bytes";
+  EXPECT_FALSE(read_view_frame(bytes).has_value()) << "more robots than bytes";
 }
 
 TEST(FoxgloveSchemas, NeedNothingElse) {
@@ -183,7 +183,7 @@ class FoxgloveClient : public ::testing::Test {
                            counters_};
 };
 
-TEST_F(FoxgloveClient, IsGreetedAndToldTheChannels) {
+TEST_F(FoxgloveClient, ReceivesServerInfoAndChannels) {
   const auto info = next_json();
   EXPECT_EQ(info["op"], "serverInfo");
   EXPECT_EQ(info["capabilities"], nlohmann::json::array({"time"}));
@@ -233,7 +233,7 @@ TEST_F(FoxgloveClient, GetsTheNewestSampleOfWhatItSubscribed) {
   EXPECT_FALSE(session_.has_something());
 }
 
-TEST_F(FoxgloveClient, GetsPicturesTenTimesASecondWhileSubscribed) {
+TEST_F(FoxgloveClient, GetsFramesTenTimesASecondWhileSubscribed) {
   greet();
   step();
   EXPECT_TRUE(source_.asked.empty()) << "nobody wants them";
@@ -259,7 +259,7 @@ TEST_F(FoxgloveClient, GetsObstaclesAtOnceAndOnChange) {
   EXPECT_EQ(text_of(next())[0], 1);
 }
 
-TEST_F(FoxgloveClient, IsToldWhatItDoesWrong) {
+TEST_F(FoxgloveClient, ReceivesAnErrorForEachMistake) {
   greet();
   const std::vector<std::string> wrong = {
       "",
@@ -285,7 +285,7 @@ TEST_F(FoxgloveClient, IsToldWhatItDoesWrong) {
   EXPECT_EQ(counters_.frames_refused, wrong.size() + 1);
 }
 
-TEST_F(FoxgloveClient, MaySayAnything) {
+TEST_F(FoxgloveClient, MaySendAnything) {
   greet();
   FrameMutator mutator(11, {R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":3}]})",
                             R"({"op":"unsubscribe","subscriptionIds":[1]})",

@@ -60,7 +60,7 @@ TEST(ObserveRecording, ReportsPlansAndEvents) {
   EXPECT_EQ(notebook.events[0].code, "start");
 }
 
-TEST(ObserveRecording, SaysWhatIsNoRun) {
+TEST(ObserveRecording, ReportsWhatIsNoRun) {
   Notebook notebook;
   const auto observed = observe_recording("/nonexistent", notebook);
   ASSERT_FALSE(observed);

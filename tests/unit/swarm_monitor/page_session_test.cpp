@@ -123,7 +123,7 @@ TEST(PageSession, SendsALongRecordingInParts) {
   EXPECT_EQ(events, 10'000U);
 }
 
-TEST(PageSession, SendsOnePictureForAnyNumberOfRequests) {
+TEST(PageSession, SendsOneFrameForAnyNumberOfRequests) {
   FakeViewSource source;
   ViewCounters counters;
   PageSession session(source, no_control, counters);
@@ -138,7 +138,7 @@ TEST(PageSession, SendsOnePictureForAnyNumberOfRequests) {
   ASSERT_EQ(source.asked.size(), 1U);
   EXPECT_EQ(source.asked[0].first, 1.5);
   EXPECT_EQ(source.asked[0].second, RobotId(2));
-  EXPECT_EQ(counters.pictures_sent, 1U);
+  EXPECT_EQ(counters.view_frames_sent, 1U);
 }
 
 TEST(PageSession, AnswersControl) {

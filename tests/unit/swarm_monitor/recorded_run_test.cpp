@@ -25,7 +25,7 @@ TEST(RecordedRun, CountsTimeFromTheFirstStepOfAll) {
   EXPECT_EQ(run->tracks[1].points.front().time_s, 0.0);
 }
 
-TEST(RecordedRun, JoinsTheLivesOfARobot) {
+TEST(RecordedRun, JoinsTheIncarnationsOfARobot) {
   SyntheticRun files(1);
   files.write(0, {.positions_m = straight({5, 5}, {6, 5}, 10),
                   .graceful = false,
@@ -52,7 +52,7 @@ TEST(RecordedRun, JoinsTheLivesOfARobot) {
 TEST(RecordedRun, LeavesOutStepsBackInTime) {
   TrackMaker maker(RobotId(0), at_s(0.0));
   for (const double time_s : {0.0, 0.2, 0.1, 0.3}) {
-    maker.add(blackbox::Step{.stamp = at_s(time_s)});
+    maker.add(robot_log::Step{.stamp = at_s(time_s)});
   }
 
   const Track track = maker.finish();
@@ -140,7 +140,7 @@ TEST(RecordedRun, ReadsTheDensityCapOfThePlanningMethod) {
 
 TEST(RecordedRun, ReadsWhatARobotTakesAsItsReference) {
   TrackMaker maker(RobotId(0), at_s(0.0));
-  maker.add(blackbox::Step{.stamp = at_s(0.1),
+  maker.add(robot_log::Step{.stamp = at_s(0.1),
                            .plan_version = 3,
                            .plan_time_s = 12.5F,
                            .reference_x_m = 4.0F,
@@ -154,11 +154,11 @@ TEST(RecordedRun, ReadsWhatARobotTakesAsItsReference) {
   EXPECT_EQ(track.points[0].reference_m(), Vec2(4.0, -2.5));
 }
 
-TEST(RecordedRun, NeedsAMissionAndABlackBox) {
+TEST(RecordedRun, NeedsAMissionAndARobotLog) {
   SyntheticRun files(1);
-  const auto without_boxes = read_run(files.dir());
-  ASSERT_FALSE(without_boxes.has_value());
-  EXPECT_EQ(without_boxes.error().code, ErrorCode::kEnvironment);
+  const auto without_logs = read_run(files.dir());
+  ASSERT_FALSE(without_logs.has_value());
+  EXPECT_EQ(without_logs.error().code, ErrorCode::kEnvironment);
 
   std::filesystem::remove(files.dir() / "mission.resolved.yaml");
   const auto without_mission = read_run(files.dir());

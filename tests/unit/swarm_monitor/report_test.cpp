@@ -66,7 +66,7 @@ TEST(Report, NamesWhatWentWrongAndWhere) {
   EXPECT_EQ(count_of(html, "criteria not met"), 1U);
   EXPECT_EQ(count_of(html, "<li>2 lost: robot 0, 2</li>"), 1U);
   EXPECT_EQ(count_of(html, "class=\"contact\""), 3U) << "one pair, two robots at the obstacle";
-  EXPECT_EQ(count_of(html, "no-black-box"), 1U);
+  EXPECT_EQ(count_of(html, "no-robot-log"), 1U);
 }
 
 TEST(Report, IsSafeAgainstHostileTexts) {

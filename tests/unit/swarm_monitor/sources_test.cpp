@@ -31,12 +31,12 @@ struct ShownRobot {
 };
 
 /// The robots of a picture, by PROTOCOL.md.
-std::vector<ShownRobot> robots_in(const std::vector<std::byte>& picture) {
+std::vector<ShownRobot> robots_in(const std::vector<std::byte>& view_frame) {
   std::uint32_t n = 0;
-  std::memcpy(&n, picture.data() + 4, sizeof n);
+  std::memcpy(&n, view_frame.data() + 4, sizeof n);
   std::vector<ShownRobot> robots(n);
   for (std::uint32_t i = 0; i < n; ++i) {
-    const std::byte* robot = picture.data() + 24 + 16 * i;
+    const std::byte* robot = view_frame.data() + 24 + 16 * i;
     std::memcpy(&robots[i].x_m, robot, sizeof(float));
     std::memcpy(&robots[i].y_m, robot + 4, sizeof(float));
     robots[i].flags = std::to_integer<int>(robot[14]);
@@ -58,37 +58,37 @@ std::uint32_t topic_named(const std::string& name) {
 class FakeTap final : public BusTap {
  public:
   template <class M>
-  void say(const std::string& topic, const M& message, UtcTime heard) {
+  void send_text(const std::string& topic, const M& message, UtcTime received) {
     std::vector<std::byte> bytes;
     ASSERT_TRUE(link::encode(message, bytes));
     const auto* begin = reinterpret_cast<const unsigned char*>(bytes.data());
-    samples_.push_back({topic_named(topic), heard, {begin, begin + bytes.size()}});
+    samples_.push_back({topic_named(topic), received, {begin, begin + bytes.size()}});
   }
-  void say_state(std::uint32_t robot, std::uint32_t number, Vec2 at, Vec2 velocity, UtcTime heard) {
+  void send_state(std::uint32_t robot, std::uint32_t number, Vec2 at, Vec2 velocity, UtcTime received) {
     link::CellStatesMessage batch;
     batch.states.push_back({.robot_id = robot,
                             .sequence_number = number,
-                            .stamp_utc_ns = heard.time_since_epoch().count(),
+                            .stamp_utc_ns = received.time_since_epoch().count(),
                             .x_m = at.x(),
                             .y_m = at.y(),
                             .vx_mps = velocity.x(),
                             .vy_mps = velocity.y(),
                             .mode = RobotMode::kMoving});
-    say("swarm/cell", batch, heard);
+    send_text("swarm/cell", batch, received);
   }
 
   void take(Duration, const Sink& sink) override {
     for (const Sample& s : samples_) {
-      sink({.topic = s.topic, .heard = s.heard, .said = s.heard, .bytes = s.bytes});
+      sink({.topic = s.topic, .received = s.received, .sent = s.received, .bytes = s.bytes});
     }
     samples_.clear();
   }
-  bool hears_somebody() const override { return true; }
+  bool receives_anything() const override { return true; }
 
  private:
   struct Sample {
     std::uint32_t topic;
-    UtcTime heard;
+    UtcTime received;
     std::vector<unsigned char> bytes;
   };
   std::vector<Sample> samples_;
@@ -98,7 +98,7 @@ class Live : public testing::Test {
  protected:
   std::vector<ShownRobot> shown() {
     std::vector<std::byte> bytes;
-    source_.picture({}, {}, bytes);
+    source_.view_frame({}, {}, bytes);
     return robots_in(bytes);
   }
 
@@ -107,7 +107,7 @@ class Live : public testing::Test {
 };
 
 TEST_F(Live, CarriesRobotsOnFromTheirLastState) {
-  tap_->say_state(3, 1, {10, 10}, {1, 0}, at_ms(1000));
+  tap_->send_state(3, 1, {10, 10}, {1, 0}, at_ms(1000));
   source_.poll(at_ms(1000));
   source_.poll(at_ms(1500));
 
@@ -118,8 +118,8 @@ TEST_F(Live, CarriesRobotsOnFromTheirLastState) {
   EXPECT_EQ(robots[2].flags, 0);
 }
 
-TEST_F(Live, TakesWhoIsSilentForLost) {
-  tap_->say_state(3, 1, {10, 10}, {1, 0}, at_ms(1000));
+TEST_F(Live, MarksRobotsWithoutUpdatesAsLost) {
+  tap_->send_state(3, 1, {10, 10}, {1, 0}, at_ms(1000));
   source_.poll(at_ms(1000));
   source_.poll(at_ms(4100));
 
@@ -128,10 +128,10 @@ TEST_F(Live, TakesWhoIsSilentForLost) {
 }
 
 TEST_F(Live, CountsWhatIsMissingAndWhatIsRefused) {
-  tap_->say_state(3, 1, {10, 10}, {1, 0}, at_ms(1000));
-  tap_->say_state(3, 4, {10, 10}, {1, 0}, at_ms(1100));
-  tap_->say_state(99, 1, {10, 10}, {1, 0}, at_ms(1100));
-  tap_->say_state(3, 5, {NAN, 10}, {1, 0}, at_ms(1200));
+  tap_->send_state(3, 1, {10, 10}, {1, 0}, at_ms(1000));
+  tap_->send_state(3, 4, {10, 10}, {1, 0}, at_ms(1100));
+  tap_->send_state(99, 1, {10, 10}, {1, 0}, at_ms(1100));
+  tap_->send_state(3, 5, {NAN, 10}, {1, 0}, at_ms(1200));
   source_.poll(at_ms(1200));
 
   EXPECT_EQ(source_.state().meter().counts().lost, 2U);
@@ -148,8 +148,8 @@ TEST_F(Live, ShowsAPlanAsSoonAsItIsThere) {
   const auto plan = FlowPlan::make(nodes, {{.from = 0, .to = 1, .mass = 1.0}}).value();
   link::PlanMessage message = link::to_message(plan, PlannerEpoch(1), PlanVersion(1), at_ms(0));
   message.excess_m = 0.25;
-  tap_->say("swarm/plan", message, at_ms(1000));
-  tap_->say("swarm/heartbeat",
+  tap_->send_text("swarm/plan", message, at_ms(1000));
+  tap_->send_text("swarm/heartbeat",
             link::HeartbeatMessage{.phase = MissionPhase::kRunning,
                                    .version = 1,
                                    .epoch = 1,
@@ -165,15 +165,15 @@ TEST_F(Live, ShowsAPlanAsSoonAsItIsThere) {
   EXPECT_EQ(scene["plan_excess_m"], 0.25);
   EXPECT_TRUE(scene["control"]);
   std::vector<std::byte> bytes;
-  source_.picture({}, {}, bytes);
+  source_.view_frame({}, {}, bytes);
   // Head, robots, then one component half-way between start and goal.
   float mean_x = 0;
   std::memcpy(&mean_x, bytes.data() + 24 + 12 * 16, sizeof mean_x);
   EXPECT_NEAR(mean_x, 0.5 * (6 + 33), 1e-4);
 }
 
-TEST_F(Live, TellsEventsOnce) {
-  tap_->say("swarm/event",
+TEST_F(Live, ReportsEventsOnce) {
+  tap_->send_text("swarm/event",
             link::EventMessage{.severity = link::Severity::kWarning,
                                .source = link::kLauncherSource,
                                .stamp_utc_ns = 5,
@@ -190,7 +190,7 @@ TEST_F(Live, TellsEventsOnce) {
 }
 
 TEST_F(Live, IsShownInATerminal) {
-  tap_->say_state(3, 1, {10, 10}, {1, 0}, at_ms(1000));
+  tap_->send_state(3, 1, {10, 10}, {1, 0}, at_ms(1000));
   source_.poll(at_ms(1000));
 
   const std::string text = top_text(source_.state(), {.name = "small"}, at_ms(1000));
@@ -206,7 +206,7 @@ TEST(Recorded, IsShownAtAnyTime) {
   RecordedSource source(read_run(files.dir()).value());
   const auto shown = [&](double time_s) {
     std::vector<std::byte> bytes;
-    source.picture(time_s, {}, bytes);
+    source.view_frame(time_s, {}, bytes);
     return robots_in(bytes);
   };
 
@@ -221,7 +221,7 @@ TEST(Recorded, IsShownAtAnyTime) {
   EXPECT_EQ(source.series().size(), 11U);
 }
 
-TEST(RemoteControl, SpeaksTheLaunchersLanguage) {
+TEST(RemoteControl, UsesTheLaunchersCommands) {
   const Mixture goal = small_mission().goal;
   EXPECT_EQ(command_line_of({.action = ControlAction::kPause}, goal), "pause");
   EXPECT_EQ(command_line_of(
@@ -244,14 +244,14 @@ TEST(Score, KeepsEveryTopicsOrderAndTimes) {
         writer.add_channel("swarm/heartbeat", topics[topic_named("swarm/heartbeat")].schema);
     const auto other = writer.add_channel("other", {.name = "Other", .encoding = "omgidl"});
     const std::vector<unsigned char> data{0, 1, 0, 0};
-    const auto say = [&](std::uint16_t channel, std::int64_t said_s) {
-      writer.write(channel, 20'000'000'000, said_s * 1'000'000'000, data);
+    const auto send_text = [&](std::uint16_t channel, std::int64_t sent_s) {
+      writer.write(channel, 20'000'000'000, sent_s * 1'000'000'000, data);
     };
-    say(plan, 10);
-    say(other, 10);
-    say(beat, 12);
-    say(beat, 11);  // its writer's clock stepped back
-    say(beat, 14);
+    send_text(plan, 10);
+    send_text(other, 10);
+    send_text(beat, 12);
+    send_text(beat, 11);  // its writer's clock stepped back
+    send_text(beat, 14);
   }
 
   const auto all = read_score(file, 0.0, {}).value();

@@ -111,7 +111,7 @@ TEST(MapSvg, IsWellFormedWithEverythingDrawn) {
   EXPECT_EQ(count_of(svg, "&lt;1&gt; &amp; 2"), 1U);
 }
 
-TEST(MapSvg, PutsTheWorldsCornersOnThePictures) {
+TEST(MapSvg, PutsTheWorldsCornersOnTheImages) {
   MapSvg map(make_world({{-5, -5}, {15, 15}}));
   map.add_track(std::vector<Vec2>{{-5, 15}, {15, -5}}, 0, false);
 

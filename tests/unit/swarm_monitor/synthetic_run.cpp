@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include "swarm_core/blackbox/blackbox_file.hpp"
+#include "swarm_core/robot_log/robot_log_file.hpp"
 
 namespace swarm::monitor {
 namespace {
@@ -55,33 +55,33 @@ void SyntheticRun::write_file(const std::string& name, const std::string& conten
   std::ofstream(dir_ / name, std::ios::binary) << content;
 }
 
-void SyntheticRun::write(std::uint32_t robot, const Life& life) const {
-  auto writer = blackbox::Writer::open(blackbox::file_of(dir_, RobotId(robot)));
+void SyntheticRun::write(std::uint32_t robot, const Incarnation& incarnation) const {
+  auto writer = robot_log::Writer::open(robot_log::file_of(dir_, RobotId(robot)));
   ASSERT_TRUE(writer.has_value()) << writer.error().message;
-  writer->append(blackbox::Header{.robot = RobotId(robot),
+  writer->append(robot_log::Header{.robot = RobotId(robot),
                                   .robots = robots_,
-                                  .process_id = life.process_id,
+                                  .process_id = incarnation.process_id,
                                   .radius_m = 0.2,
-                                  .stamp = at_s(life.begin_s)});
-  const std::size_t arrives_at = std::min(life.arrives_at, life.positions_m.size() - 1);
-  double now_s = life.begin_s;
-  for (std::size_t k = 0; k < life.positions_m.size(); ++k) {
-    now_s = life.begin_s + 0.1 * static_cast<double>(k);
+                                  .stamp = at_s(incarnation.begin_s)});
+  const std::size_t arrives_at = std::min(incarnation.arrives_at, incarnation.positions_m.size() - 1);
+  double now_s = incarnation.begin_s;
+  for (std::size_t k = 0; k < incarnation.positions_m.size(); ++k) {
+    now_s = incarnation.begin_s + 0.1 * static_cast<double>(k);
     const RobotMode mode = k >= arrives_at        ? RobotMode::kArrived
-                           : k >= life.moves_from ? RobotMode::kMoving
+                           : k >= incarnation.moves_from ? RobotMode::kMoving
                                                   : RobotMode::kWaiting;
-    writer->append(blackbox::Step{.stamp = at_s(now_s),
-                                  .position_m = life.positions_m[k],
-                                  .lateness_us = life.lateness_us,
+    writer->append(robot_log::Step{.stamp = at_s(now_s),
+                                  .position_m = incarnation.positions_m[k],
+                                  .lateness_us = incarnation.lateness_us,
                                   .mode = static_cast<std::uint8_t>(mode),
-                                  .goal = life.goal});
+                                  .goal = incarnation.goal});
   }
-  blackbox::LinkStats stats{
-      .stamp = at_s(now_s), .states_sent = life.states_sent, .refused = life.refused};
-  for (const std::int64_t age : life.ages_us) stats.state_age.add(age);
+  robot_log::LinkStats stats{
+      .stamp = at_s(now_s), .states_sent = incarnation.states_sent, .refused = incarnation.refused};
+  for (const std::int64_t age : incarnation.ages_us) stats.state_age.add(age);
   writer->append(stats);
-  if (life.graceful) {
-    writer->append(blackbox::Note{.stamp = at_s(now_s), .code = "exit", .text = "graceful end"});
+  if (incarnation.graceful) {
+    writer->append(robot_log::Note{.stamp = at_s(now_s), .code = "exit", .text = "graceful end"});
   }
 }
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "swarm_core/blackbox/record.hpp"
+#include "swarm_core/robot_log/record.hpp"
 #include "swarmflow/mission/phase.hpp"
 
 namespace swarm::monitor {
@@ -24,7 +24,7 @@ class SyntheticRun {
   const std::filesystem::path& dir() const { return dir_; }
 
   /// Where and when robots are, and what they do. Step k is taken at k·0.1 s.
-  struct Life {
+  struct Incarnation {
     std::vector<Vec2> positions_m;
     std::uint8_t goal = 0;
     double begin_s = 0.0;
@@ -38,8 +38,8 @@ class SyntheticRun {
     std::size_t arrives_at = static_cast<std::size_t>(-1);  ///< step; default: the last
   };
 
-  /// Appends a life to a robot's black box.
-  void write(std::uint32_t robot, const Life& life) const;
+  /// Appends a life to a robot's robot log.
+  void write(std::uint32_t robot, const Incarnation& incarnation) const;
 
   /// Writes robots that all drive to their goals without fault: even ids to goal 0, odd to goal 1.
   void write_good_run() const;

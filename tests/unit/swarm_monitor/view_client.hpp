@@ -79,7 +79,7 @@ class ViewClient {
     }
     return bytes;
   }
-  bool say(std::string_view text) { return send(frame(text)); }
+  bool send_text(std::string_view text) { return send(frame(text)); }
 
   /// Takes in what has come.
   void read() {

@@ -122,11 +122,11 @@ TEST_F(ViewServerTest, ShowsThePageWhatItAsksFor) {
   EXPECT_NE(text(client, "events"), "");
   EXPECT_NE(text(client, "series"), "");
   EXPECT_EQ(server_->clients(), 1U);
-  client.say(R"({"op":"frame"})");
+  client.send_text(R"({"op":"frame"})");
   EXPECT_EQ(binary(client, 'S').size(), 24U + 3 * 16 + 24 + 8);
   source_.event_texts.emplace_back(R"({"t":2,"text":"two"})");
   EXPECT_EQ(text(client, "events"), R"({"op":"events","events":[{"t":2,"text":"two"}]})");
-  EXPECT_EQ(server_->counters().pictures_sent, 1U);
+  EXPECT_EQ(server_->counters().view_frames_sent, 1U);
 }
 
 TEST_F(ViewServerTest, TakesAMessageInFragments) {
@@ -163,7 +163,7 @@ TEST_F(ViewServerTest, OpensThePagesSocketToThePageAlone) {
   }
 }
 
-TEST_F(ViewServerTest, SpeaksFoxgloveUnderBothNamesAtAnyPathToAnybody) {
+TEST_F(ViewServerTest, ServesFoxgloveUnderBothNamesAtAnyPathToAnyOrigin) {
   start();
   for (const char* protocol : {"foxglove.sdk.v1", "foxglove.websocket.v1"}) {
     ViewClient client(server_->port());
@@ -173,7 +173,7 @@ TEST_F(ViewServerTest, SpeaksFoxgloveUnderBothNamesAtAnyPathToAnybody) {
     EXPECT_NE(answer.find(protocol), std::string::npos);
     EXPECT_NE(text(client, "serverInfo"), "");
     EXPECT_NE(text(client, "advertise"), "");
-    client.say(
+    client.send_text(
         R"({"op":"subscribe","subscriptions":[{"id":7,"channelId":0},{"id":9,"channelId":3}]})");
     const std::string poses = binary(client, '\1');
     ASSERT_GT(poses.size(), 17U);
@@ -181,7 +181,7 @@ TEST_F(ViewServerTest, SpeaksFoxgloveUnderBothNamesAtAnyPathToAnybody) {
     EXPECT_EQ(poses.substr(13, 4), std::string("\0\1\0\0", 4));
     EXPECT_EQ(binary(client, '\2').size(), 9U);
     // Control is a word of the page's protocol; here it means nothing.
-    client.say(R"({"op":"control","token":"","action":"stop"})");
+    client.send_text(R"({"op":"control","token":"","action":"stop"})");
     EXPECT_NE(text(client, "status"), "");
   }
 }
@@ -192,7 +192,7 @@ TEST_F(ViewServerTest, HandsRawSamplesOnAsTheyAre) {
   client.upgrade("/", "foxglove.sdk.v1");
   ASSERT_TRUE(upgraded(client));
   ASSERT_NE(text(client, "advertise"), "");
-  client.say(R"({"op":"subscribe","subscriptions":[{"id":9,"channelId":3}]})");
+  client.send_text(R"({"op":"subscribe","subscriptions":[{"id":9,"channelId":3}]})");
   source_.publish(0, std::string("\0\1\0\0plan", 8));
   EXPECT_EQ(binary(client, '\1'), std::string("\1\x09\0\0\0\x4D\0\0\0\0\0\0\0\0\1\0\0plan", 21));
 }
@@ -208,12 +208,12 @@ TEST_F(ViewServerTest, DoesWithoutASlowClient) {
   ASSERT_TRUE(upgraded(fast));
   std::size_t got = 0;
   for (int i = 0; i < 30; ++i) {
-    slow.say(R"({"op":"frame"})");  // and never reads
-    fast.say(R"({"op":"frame"})");
+    slow.send_text(R"({"op":"frame"})");  // and never reads
+    fast.send_text(R"({"op":"frame"})");
     if (!binary(fast, 'S').empty()) ++got;
   }
   EXPECT_EQ(got, 30U);
-  EXPECT_LE(server_->counters().pictures_sent, 30U + 4U) << "one is under way, and some fit";
+  EXPECT_LE(server_->counters().view_frames_sent, 30U + 4U) << "one is under way, and some fit";
 }
 
 TEST_F(ViewServerTest, IsControlledWithTheTokenAlone) {
@@ -227,7 +227,7 @@ TEST_F(ViewServerTest, IsControlledWithTheTokenAlone) {
     ViewClient client(server_->port());
     client.upgrade("/ws", "swarmflow.view.v1");
     EXPECT_TRUE(upgraded(client));
-    client.say(R"({"op":"control","action":"pause","token":")" + token + "\"}");
+    client.send_text(R"({"op":"control","action":"pause","token":")" + token + "\"}");
     std::string op;
     while (const auto got = message(client)) {
       op = nlohmann::json::parse(got->payload)["op"];
@@ -252,13 +252,13 @@ TEST_F(ViewServerTest, CountsNonsenseAndHangsUp) {
   ViewClient client(server_->port());
   client.upgrade("/ws", "swarmflow.view.v1");
   ASSERT_TRUE(upgraded(client));
-  client.say(std::string(5000, ' '));
-  client.say(std::string(4001, '['));
+  client.send_text(std::string(5000, ' '));
+  client.send_text(std::string(4001, '['));
   client.send(ViewClient::frame("binary", 2));
-  client.say(R"({"op":"frame"})");
+  client.send_text(R"({"op":"frame"})");
   EXPECT_NE(binary(client, 'S'), "") << "three are forgiven";
   EXPECT_EQ(server_->counters().frames_refused, 3U);
-  for (int i = 0; i < 17; ++i) client.say("nonsense");
+  for (int i = 0; i < 17; ++i) client.send_text("nonsense");
   std::string closed;
   while (const auto got = message(client)) {
     if (got->opcode == 8) closed = got->payload.substr(0, 2);
@@ -288,7 +288,7 @@ TEST_F(ViewServerTest, TakesSixtyFourConnections) {
   EXPECT_TRUE(upgraded(after));
 }
 
-TEST_F(ViewServerTest, SaysWhenItCannotListen) {
+TEST_F(ViewServerTest, ReportsWhenItCannotListen) {
   start();
   const auto second = ViewServer::make({.port = server_->port()}, source_);
   ASSERT_FALSE(second.has_value());

@@ -102,7 +102,7 @@ TEST(CappedFlow, RoutesCarryTheWeightsAndKeepTheCapacities) {
   EXPECT_GT(several, 10);
 }
 
-TEST(CappedFlow, SaysWhichDensityEveryoneNeeds) {
+TEST(CappedFlow, ReportsWhichDensityEveryoneNeeds) {
   int checked = 0;
   for (std::uint64_t seed = 1; seed <= 30; ++seed) {
     FlowScene scene = flow_scene(seed, 25);
@@ -134,7 +134,7 @@ TEST(CappedFlow, NamesTheComponentThatIsTooDenseByItself) {
   EXPECT_NE(refused.error().message.find("goal component 0"), std::string::npos);
 }
 
-TEST(CappedFlow, SaysWhenNoDensityHelps) {
+TEST(CappedFlow, ReportsWhenNoDensityHelps) {
   FlowScene scene = flow_scene(1, 0);
 
   const auto refused = solve(scene, {.max_per_m2 = 1.0, .robots = 100.0});

@@ -56,7 +56,7 @@ TEST(MergeRoutes, SharesTheStretchThatTwoRoutesHaveInCommon) {
   EXPECT_EQ(plan->mixture_at(MissionTime(30)).components().size(), 1U);
 }
 
-TEST(MergeRoutes, DelaysNobodyForCompany) {
+TEST(MergeRoutes, DelaysNoRouteToMerge) {
   // Route 0 passes the crossing early and has a long way behind it, route 1 comes there late.
   const Gaussian crossing = at(10, 0);
   const std::vector<Route> routes{{0, 0, 0.5, {at(0, 0), crossing, at(90, 0)}},

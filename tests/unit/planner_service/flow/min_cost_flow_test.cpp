@@ -28,12 +28,12 @@ Network random_network(Rng& rng) {
   net.balance[kNodes - 1] = -0.3;
   net.balance[kNodes - 2] = -0.2;
   net.balance[kNodes - 3] = -0.5;
-  const double dearest = std::pow(10.0, uniform(rng, -3.0, 4.0));
+  const double largest_cost = std::pow(10.0, uniform(rng, -3.0, 4.0));
   for (int a = 0; a < 45; ++a) {
     const auto from = static_cast<std::uint32_t>(rng() % kNodes);
     const auto to = static_cast<std::uint32_t>(rng() % kNodes);
     if (from == to) continue;
-    net.arcs.push_back({.from = from, .to = to, .cost = uniform(rng, 0.0, dearest)});
+    net.arcs.push_back({.from = from, .to = to, .cost = uniform(rng, 0.0, largest_cost)});
     if (uniform01(rng) < 0.7) net.arcs.back().capacity = uniform(rng, 0.05, 0.8);
   }
   return net;

@@ -15,7 +15,7 @@ std::vector<double> paced(std::size_t nodes, const std::vector<PacedLeg>& legs) 
   return paced_times_s(earliest_times_s(nodes, legs).value(), legs);
 }
 
-TEST(Pace, SpreadsWaitingEvenlyOverTheShorterWay) {
+TEST(Pace, SpreadsWaitingEvenlyOverTheShorterPath) {
   // 0 -> 1 -> 3 takes 10 s, 0 -> 2 -> 3 would take 5.
   const auto times_s = paced(4, {{0, 1, 6}, {1, 3, 4}, {0, 2, 2}, {2, 3, 3}});
 
@@ -24,7 +24,7 @@ TEST(Pace, SpreadsWaitingEvenlyOverTheShorterWay) {
   EXPECT_DOUBLE_EQ(times_s[2], 4.0);
 }
 
-TEST(Pace, PacesTheTightestWayFirst) {
+TEST(Pace, PacesTheTightestPathFirst) {
   // 0 -8- 2 -2- 3 and 1 -2- 2 -6- 4; both goals, 3 and 4, are also reached by slower ways.
   const auto times_s =
       paced(5, {{0, 2, 8}, {2, 3, 2}, {1, 2, 2}, {2, 4, 6}, {0, 3, 20}, {0, 4, 15}});

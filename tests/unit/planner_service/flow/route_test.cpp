@@ -20,7 +20,7 @@ Gaussian round(double x, double y, double sigma_m) {
 }
 
 // The longest way of points that are sampled on the border of the 2σ ellipse and within it.
-double sampled_way_m(const Gaussian& from, const Gaussian& to) {
+double sampled_path_m(const Gaussian& from, const Gaussian& to) {
   const Mat2 map = transport_map(from, to);
   const Mat2 root = cholesky_lower(from.covariance_m2());
   double longest_m = 0.0;
@@ -28,14 +28,14 @@ double sampled_way_m(const Gaussian& from, const Gaussian& to) {
     const double angle = 2.0 * std::numbers::pi * i / 20'000;
     for (const double radius : {2.0, 1.3, 0.0}) {
       const Vec2 y = root * (radius * Vec2(std::cos(angle), std::sin(angle)));
-      const Vec2 way_m = to.mean_m() + map * y - from.mean_m() - y;
-      longest_m = std::max(longest_m, way_m.norm());
+      const Vec2 path_m = to.mean_m() + map * y - from.mean_m() - y;
+      longest_m = std::max(longest_m, path_m.norm());
     }
   }
   return longest_m;
 }
 
-TEST(EndLegs, FindTheLongestWayOfAnEllipse) {
+TEST(EndLegs, FindTheLongestPathOfAnEllipse) {
   Rng rng(1);
   for (int round = 0; round < 200; ++round) {
     const auto gaussian = [&] {
@@ -46,9 +46,9 @@ TEST(EndLegs, FindTheLongestWayOfAnEllipse) {
     };
     const Gaussian from = gaussian();
     const Gaussian to = gaussian();
-    const double sampled_m = sampled_way_m(from, to);
+    const double sampled_m = sampled_path_m(from, to);
 
-    const double longest_m = longest_robot_way_m(from, to);
+    const double longest_m = longest_robot_path_m(from, to);
 
     EXPECT_GE(longest_m, sampled_m - 1e-9);
     // The nearest sample is off by 1/40000 of a turn.
@@ -58,14 +58,14 @@ TEST(EndLegs, FindTheLongestWayOfAnEllipse) {
 
 TEST(EndLegs, HandleWhatHasNoDirection) {
   // The mean stands still: every direction is as long, or one of two is.
-  EXPECT_NEAR(longest_robot_way_m(round(3, 4, 10), round(3, 4, 2)), 16.0, 1e-9);
+  EXPECT_NEAR(longest_robot_path_m(round(3, 4, 10), round(3, 4, 2)), 16.0, 1e-9);
   const Gaussian thin = Gaussian::from_parameters({3, 4}, 10.0, 2.0, 0.0);
-  EXPECT_NEAR(longest_robot_way_m(round(3, 4, 10), thin), 16.0, 1e-9);
+  EXPECT_NEAR(longest_robot_path_m(round(3, 4, 10), thin), 16.0, 1e-9);
   // The mean moves along the axis that keeps its width: √(17² + 16²).
-  EXPECT_NEAR(longest_robot_way_m(round(0, 0, 10), Gaussian::from_parameters({17, 0}, 10, 2, 0)),
+  EXPECT_NEAR(longest_robot_path_m(round(0, 0, 10), Gaussian::from_parameters({17, 0}, 10, 2, 0)),
               std::hypot(17.0, 16.0), 1e-9);
-  EXPECT_NEAR(longest_robot_way_m(round(0, 0, 2), round(5, 0, 2)), 5.0, 1e-12);
-  EXPECT_EQ(longest_robot_way_m(round(1, 1, 2), round(1, 1, 2)), 0.0);
+  EXPECT_NEAR(longest_robot_path_m(round(0, 0, 2), round(5, 0, 2)), 5.0, 1e-12);
+  EXPECT_EQ(longest_robot_path_m(round(1, 1, 2), round(1, 1, 2)), 0.0);
 }
 
 TEST(EndLegs, TakeAsLongAsRobotsOfTheEllipseNeed) {

@@ -90,7 +90,7 @@ TEST(RouteTable, IsTheSameFromWhicheverSideItSearches) {
   }
 }
 
-TEST(ShortestRoutes, StandArcsOfAnyLength) {
+TEST(ShortestRoutes, AcceptArcsOfAnyLength) {
   // A row of nodes a millimetre apart, one a kilometre away, and the same place twice.
   const auto at = [](double x) { return Gaussian::from_parameters({x, 0}, 1, 1, 0); };
   std::vector<Gaussian> nodes;

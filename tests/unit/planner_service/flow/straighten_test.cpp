@@ -161,7 +161,7 @@ TEST_P(StraightenedStandin, IsShorterAndKeepsAllElse) {
     EXPECT_LE((to.gaussian.mean_m() - from.gaussian.mean_m()).norm(),
               options_.speed_mps * duration_s + 1e-6);
     if (!is_end(from.gaussian) && !is_end(to.gaussian)) continue;
-    EXPECT_LE(longest_robot_way_m(from.gaussian, to.gaussian),
+    EXPECT_LE(longest_robot_path_m(from.gaussian, to.gaussian),
               options_.limits.robot_speed_mps * duration_s + 1e-6);
   }
 }

@@ -86,8 +86,8 @@ TEST(TimedFlow, MovesNoFasterThanItMay) {
   for (const PlanLeg& leg : flow->plan.legs()) {
     const PlanNode& from = flow->plan.nodes()[leg.from];
     const PlanNode& to = flow->plan.nodes()[leg.to];
-    const double way_m = (to.gaussian.mean_m() - from.gaussian.mean_m()).norm();
-    EXPECT_LE(way_m, 0.8 * (to.time - from.time).count() + 1e-9);
+    const double path_m = (to.gaussian.mean_m() - from.gaussian.mean_m()).norm();
+    EXPECT_LE(path_m, 0.8 * (to.time - from.time).count() + 1e-9);
   }
 }
 
@@ -158,7 +158,7 @@ TEST(TimedFlow, RefusesNetworksThatTakeMinutes) {
   EXPECT_NE(flow.error().message.find("arcs, more than"), std::string::npos);
 }
 
-TEST(TimedFlow, SaysHowManyFitWhenTimeIsShort) {
+TEST(TimedFlow, ReportsHowManyFitWhenTimeIsShort) {
   const FlowScene scene = flow_scene(1, 30, 16.0, 1.5);
   EdgeChecker checker(scene.world, scene.risk);
 
@@ -171,7 +171,7 @@ TEST(TimedFlow, SaysHowManyFitWhenTimeIsShort) {
       << flow.error().message;
 }
 
-TEST(TimedFlow, SaysWhenNoWayLeads) {
+TEST(TimedFlow, ReportsWhenNoPathLeads) {
   const FlowScene scene = flow_scene(1, 0);
   EdgeChecker checker(scene.world, scene.risk);
 

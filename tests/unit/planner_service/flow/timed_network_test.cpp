@@ -20,7 +20,7 @@ using testing::FlowScene;
 
 constexpr double kSpeed_mps = 2.0;
 constexpr double kStep_s = 3.0;
-constexpr double kPrice_mps = 0.1;
+constexpr double kDelayCost_mps = 0.1;
 constexpr double kEverything = 1e6;
 
 TimedNetwork network_of(const FlowScene& scene) {
@@ -31,7 +31,7 @@ TimedNetwork network_of(const FlowScene& scene) {
           {.speed = {.means_mps = kSpeed_mps},
            .step_s = kStep_s,
            .detour = kEverything,
-           .delay_price_mps = kPrice_mps},
+           .delay_cost_mps = kDelayCost_mps},
           checker};
 }
 
@@ -66,13 +66,13 @@ std::optional<double> optimum(const FlowScene& scene, const std::vector<double>&
   };
   for (std::uint32_t v = 0; v < roadmap.nodes.size(); ++v) {
     for (int t = 0; t < horizon; ++t) {
-      add(v, t, v, t + 1, v >= 2 && v < 4 ? 0.0 : kPrice_mps * kStep_s);
+      add(v, t, v, t + 1, v >= 2 && v < 4 ? 0.0 : kDelayCost_mps * kStep_s);
       for (const Roadmap::Arc& arc : roadmap.arcs_of(v)) {
-        const Vec2 way_m = roadmap.nodes[arc.to].mean_m() - roadmap.nodes[v].mean_m();
-        const double shape_m = std::sqrt(arc.length_m * arc.length_m - way_m.squaredNorm());
-        const double lasts_s = std::max(way_m.norm(), shape_m) / kSpeed_mps;
+        const Vec2 path_m = roadmap.nodes[arc.to].mean_m() - roadmap.nodes[v].mean_m();
+        const double shape_m = std::sqrt(arc.length_m * arc.length_m - path_m.squaredNorm());
+        const double lasts_s = std::max(path_m.norm(), shape_m) / kSpeed_mps;
         const int steps = static_cast<int>(std::ceil(lasts_s / kStep_s));
-        add(v, t, arc.to, t + steps, arc.length_m + kPrice_mps * kStep_s * steps);
+        add(v, t, arc.to, t + steps, arc.length_m + kDelayCost_mps * kStep_s * steps);
       }
     }
   }
@@ -107,7 +107,7 @@ TEST(TimedNetwork, IsAsCheapAsALinearProgramOverAllNodesAndSteps) {
       cost +=
           move.mass * wasserstein2(scene.roadmap.nodes[move.from], scene.roadmap.nodes[move.to]);
       cost +=
-          has_arrived ? 0.0 : move.mass * kPrice_mps * kStep_s * (move.to_step - move.from_step);
+          has_arrived ? 0.0 : move.mass * kDelayCost_mps * kStep_s * (move.to_step - move.from_step);
     }
     EXPECT_NEAR(cost, *best, 1e-9 * *best) << "seed " << seed;
   }
@@ -134,7 +134,7 @@ TEST(TimedNetwork, LetsGroupsPassOneAfterTheOtherThroughABottleneck) {
   EXPECT_TRUE(network.solve(4, {one, one, capacities}).has_value());
 }
 
-TEST(TimedNetwork, HasNoTimeWhereNoWayLeads) {
+TEST(TimedNetwork, HasNoTimeWhereNoPathLeads) {
   const FlowScene scene = flow_scene(1, 0);
 
   EXPECT_FALSE(network_of(scene).free_flow_steps().has_value());

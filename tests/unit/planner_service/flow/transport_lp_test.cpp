@@ -135,11 +135,11 @@ TEST(TransportLp, ClosesTheSumsOfThirds) {
   EXPECT_NEAR(sum, 1.0, 1e-14);  // each weight is rounded to 2⁻⁵⁰ = 9e-16
 }
 
-TEST(TransportLp, AcceptsWaysThatCostNothing) {
+TEST(TransportLp, AcceptsPathsThatCostNothing) {
   const std::vector<double> one{1.0};
-  const std::vector<double> free_way{0.0};
+  const std::vector<double> free_path{0.0};
 
-  const auto shipments = solve_transport(one, one, free_way);
+  const auto shipments = solve_transport(one, one, free_path);
 
   ASSERT_TRUE(shipments.has_value());
   ASSERT_EQ(shipments->size(), 1U);

@@ -70,7 +70,7 @@ TEST(RobotGroups, LetThoseWhoArrivedStay) {
   EXPECT_EQ(wasserstein2(groups->at(0).gaussian, home), 0.0);
 }
 
-TEST(RobotGroups, SayWhereThereIsNoRoom) {
+TEST(RobotGroups, ReportWhereThereIsNoRoom) {
   // A slot of 0.5 m: half of it is less than k σ + 0.2 m for any σ ≥ 0.1 m.
   const World world =
       World::make({{0, 0}, {10, 10}},

@@ -13,7 +13,7 @@ bool mentions(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
-TEST(Endpoints, HaveNothingToSayWhenTheLimitHolds) {
+TEST(Endpoints, HaveNothingToReportWhenTheLimitHolds) {
   const auto scene = testing::standin_scene();
 
   EXPECT_EQ(describe_violations(scene.start, "start", scene.world, {}), "");

@@ -23,7 +23,7 @@ class Counted final : public ControlMethod {
   ~Counted() override { --*alive_; }
   void begin(const Route&, const World&) override {}
   bool has_arrived(const ControlView&) override { return false; }
-  Vec2 wish(const ControlView&, bool, Rng&) override { return {speed_mps_, 0}; }
+  Vec2 desired_velocity(const ControlView&, bool, Rng&) override { return {speed_mps_, 0}; }
   Vec2 hold(const ControlView&) override { return {speed_mps_, 0}; }
   std::uint32_t goal(const Vec2&) const override { return 0; }
   double remaining_m() const override { return speed_mps_; }

@@ -69,7 +69,7 @@ struct Swarm {
     for (std::size_t i = 0; i < agents.size(); ++i) {
       for (std::size_t j = 0; j < agents.size(); ++j) {
         if (i == j) continue;
-        agents[i].hear(
+        agents[i].receive(
             {RobotId(static_cast<std::uint32_t>(j)), sequence, now, positions[j], velocities[j]},
             positions[i]);
       }
@@ -94,7 +94,7 @@ struct Swarm {
   }
 };
 
-TEST(Crops, LetsACrowdThroughADoorIntoAFullGoal) {
+TEST(Crops, MovesADenseGroupThroughADoorIntoAFullGoal) {
   // 20 robots with their margin take 7.4 m² at least, 40 % of the goal's 18.5 m².
   Swarm sut(20);
 
@@ -148,7 +148,7 @@ TEST(Crops, IsAtRestWhereItGoesNowhereWhateverItsNoise) {
 
 TEST(Crops, OnlyKeepsOffWhileItIsHeld) {
   Swarm sut(1);
-  sut.agents[0].hear({RobotId(1), 1, sut.now, sut.positions[0] + Vec2(0.9, 0), {0, 0}},
+  sut.agents[0].receive({RobotId(1), 1, sut.now, sut.positions[0] + Vec2(0.9, 0), {0, 0}},
                      sut.positions[0]);
 
   const AgentOutput out =

@@ -28,7 +28,7 @@ Vec2 random_point(Rng& rng, double half_m) {
   return {half_m * (2 * uniform01(rng) - 1), half_m * (2 * uniform01(rng) - 1)};
 }
 
-std::vector<Neighbour> crowd(Rng& rng, int count, double half_m) {
+std::vector<Neighbour> dense_region(Rng& rng, int count, double half_m) {
   std::vector<Neighbour> all;
   for (int i = 0; i < count; ++i) {
     all.push_back({.robot = RobotId(static_cast<std::uint32_t>(i)),
@@ -77,7 +77,7 @@ TEST(Forces, AttractionLeadsToTheAim) {
 TEST(Forces, NeighbourRepulsionIsTheGradientOfItsPotential) {
   Rng rng(2);
   const NeighbourRepulsionOptions options{.radius_m = 0.2, .gap_m = 1.0, .push_mps = 0.6};
-  const std::vector<Neighbour> neighbours = crowd(rng, 12, 2.0);
+  const std::vector<Neighbour> neighbours = dense_region(rng, 12, 2.0);
   const auto potential = [&](const Vec2& x) {
     double sum = 0.0;
     for (const Neighbour& n : neighbours) {
@@ -149,7 +149,7 @@ TEST(Forces, DensityAttractionIsTheGradientOfItsPotential) {
   const DensityAttractionOptions options{.push_mps = 0.3, .kernel_m = 2.0};
   PlannedDensity planned;
   update(planned, two_legs(), 5.0, 30, options.kernel_sigma_m());
-  const std::vector<Neighbour> neighbours = crowd(rng, 25, 4.0);
+  const std::vector<Neighbour> neighbours = dense_region(rng, 25, 4.0);
   const auto potential = [&](const Vec2& x) {
     return density_potential(x, planned, neighbours, options);
   };
@@ -195,7 +195,7 @@ TEST(Forces, PlannedDensityIsTheWholeMixtureThroughTheKernel) {
   EXPECT_NEAR(sut.at(x).per_m2, expected, 2e-3 * expected);  // parts are cut at 4 σ
 }
 
-TEST(Forces, DensityAttractionLeavesACrowdThatIsDenserThanPlanned) {
+TEST(Forces, DensityAttractionLeadsOutOfRegionsDenserThanPlanned) {
   PlannedDensity planned;
   update(planned, two_legs(), 5.0, 30, 0.7);
   const std::vector<Neighbour> right{

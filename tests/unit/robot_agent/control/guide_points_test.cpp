@@ -19,18 +19,18 @@ World walled() {
       .value();
 }
 
-const Polyline kWay({{2, 5}, {6, 12}, {14, 12}, {18, 5}});
+const Polyline kPath({{2, 5}, {6, 12}, {14, 12}, {18, 5}});
 
 TEST(GuidePoints, GoesForTheFarthestInSight) {
-  GuidePoints sut(kWay, GuidePointsOptions{.sight_m = 30.0});
+  GuidePoints sut(kPath, GuidePointsOptions{.sight_m = 30.0});
 
   EXPECT_EQ(sut.update({2, 5}, walled()), Vec2(6, 12));
   EXPECT_FALSE(sut.is_last());
-  EXPECT_NEAR(sut.remaining_m({2, 5}), kWay.length_m(), 1e-9);
+  EXPECT_NEAR(sut.remaining_m({2, 5}), kPath.length_m(), 1e-9);
 }
 
 TEST(GuidePoints, GoesOnWithinTheGoalRadius) {
-  GuidePoints sut(kWay, GuidePointsOptions{.goal_radius_m = 1.0, .sight_m = 0.0, .look_every = 1});
+  GuidePoints sut(kPath, GuidePointsOptions{.goal_radius_m = 1.0, .sight_m = 0.0, .look_every = 1});
 
   EXPECT_EQ(sut.update({2, 5.5}, walled()), Vec2(6, 12));
   EXPECT_EQ(sut.update({5, 11.5}, walled()), Vec2(6, 12));
@@ -38,7 +38,7 @@ TEST(GuidePoints, GoesOnWithinTheGoalRadius) {
 }
 
 TEST(GuidePoints, FallsBackToTheLastItSees) {
-  GuidePoints sut(kWay, GuidePointsOptions{.sight_m = 30.0, .look_every = 1});
+  GuidePoints sut(kPath, GuidePointsOptions{.sight_m = 30.0, .look_every = 1});
   ASSERT_EQ(sut.update({10, 13}, walled()), Vec2(18, 5));  // over the wall
   ASSERT_TRUE(sut.is_last());
 
@@ -46,7 +46,7 @@ TEST(GuidePoints, FallsBackToTheLastItSees) {
 }
 
 TEST(GuidePoints, DoesNotFallBackFromWithinTheGoal) {
-  GuidePoints sut(kWay, GuidePointsOptions{.sight_m = 30.0, .look_every = 1});
+  GuidePoints sut(kPath, GuidePointsOptions{.sight_m = 30.0, .look_every = 1});
   ASSERT_EQ(sut.update({10, 13}, walled()), Vec2(18, 5));
 
   EXPECT_EQ(sut.update({6, 8}, walled(), true), Vec2(18, 5));
@@ -71,14 +71,14 @@ TEST(GuidePoints, KeepsItsPointWhenItSeesNone) {
                                   Polygon::make({{0.5, 1}, {1, 1}, {1, 3.5}, {0.5, 3.5}}).value(),
                                   Polygon::make({{4, 1}, {4.5, 1}, {4.5, 3.5}, {4, 3.5}}).value()})
                          .value();
-  GuidePoints sut(kWay, GuidePointsOptions{.look_every = 1});
+  GuidePoints sut(kPath, GuidePointsOptions{.look_every = 1});
 
   const Vec2 before = sut.update({6, 12}, cell);
   EXPECT_EQ(sut.update({2.5, 2.25}, cell), before);
 }
 
 TEST(GuidePoints, EndsAtTheEnd) {
-  GuidePoints sut(kWay, GuidePointsOptions{.look_every = 1});
+  GuidePoints sut(kPath, GuidePointsOptions{.look_every = 1});
   for (const Vec2& p : {Vec2(2, 5), Vec2(6, 12), Vec2(14, 12), Vec2(18, 5), Vec2(18, 5)}) {
     sut.update(p, walled());
   }

@@ -24,11 +24,11 @@ double worst_violation(const Vec2& u, const std::vector<HalfPlane>& constraints)
 
 /// Squared distance of the best feasible point, found by trying every candidate an optimum can be:
 /// the wish, its projections on lines and the circle, all intersections.
-double brute_force(const Vec2& wish, const std::vector<HalfPlane>& constraints, double speed_max) {
-  std::vector<Vec2> candidates = {wish};
-  if (wish.norm() > 0) candidates.push_back(wish * (speed_max / wish.norm()));
+double brute_force(const Vec2& desired_velocity, const std::vector<HalfPlane>& constraints, double speed_max) {
+  std::vector<Vec2> candidates = {desired_velocity};
+  if (desired_velocity.norm() > 0) candidates.push_back(desired_velocity * (speed_max / desired_velocity.norm()));
   for (const HalfPlane& a : constraints) {
-    candidates.push_back(wish + (a.bound_mps - a.normal.dot(wish)) * a.normal);
+    candidates.push_back(desired_velocity + (a.bound_mps - a.normal.dot(desired_velocity)) * a.normal);
     const double chord = speed_max * speed_max - a.bound_mps * a.bound_mps;
     if (chord >= 0) {
       const Vec2 along(-a.normal.y(), a.normal.x());
@@ -45,7 +45,7 @@ double brute_force(const Vec2& wish, const std::vector<HalfPlane>& constraints, 
   double best = std::numeric_limits<double>::infinity();
   for (const Vec2& u : candidates) {
     if (u.norm() > speed_max + 1e-9 || worst_violation(u, constraints) > 1e-9) continue;
-    best = std::min(best, (u - wish).squaredNorm());
+    best = std::min(best, (u - desired_velocity).squaredNorm());
   }
   return best;
 }
@@ -58,11 +58,11 @@ TEST(HalfPlaneQp, EqualsTheBestOfAllCandidatePoints) {
     for (HalfPlane& c : constraints) {
       c = {unit(uniform(rng, 0, 2 * std::numbers::pi)), uniform(rng, -0.4, 1.5)};
     }
-    const Vec2 wish(uniform(rng, -2, 2), uniform(rng, -2, 2));
+    const Vec2 desired_velocity(uniform(rng, -2, 2), uniform(rng, -2, 2));
 
-    const auto u = nearest_velocity(wish, constraints, 1.5);
+    const auto u = nearest_velocity(desired_velocity, constraints, 1.5);
 
-    const double best = brute_force(wish, constraints, 1.5);
+    const double best = brute_force(desired_velocity, constraints, 1.5);
     if (!u) {
       // Scenes that only rounding can tell from infeasible ones may go either way.
       EXPECT_TRUE(std::isinf(best) || worst_violation(Vec2::Zero(), constraints) > 0) << round;
@@ -71,13 +71,13 @@ TEST(HalfPlaneQp, EqualsTheBestOfAllCandidatePoints) {
     ++feasible;
     EXPECT_LE(u->norm(), 1.5 + 1e-6);
     EXPECT_LE(worst_violation(*u, constraints), 1e-6);
-    EXPECT_NEAR((*u - wish).squaredNorm(), best, 1e-5)
+    EXPECT_NEAR((*u - desired_velocity).squaredNorm(), best, 1e-5)
         << round;  // 1e-9 slack times the geometry's gain
   }
   EXPECT_GT(feasible, 10'000);
 }
 
-TEST(HalfPlaneQp, SaysWhenNothingIsAllowed) {
+TEST(HalfPlaneQp, ReportsWhenNothingIsAllowed) {
   const std::vector<HalfPlane> constraints = {{{1, 0}, -0.5}, {{-1, 0}, -0.5}};
 
   EXPECT_FALSE(nearest_velocity({0, 0}, constraints, 1.5).has_value());

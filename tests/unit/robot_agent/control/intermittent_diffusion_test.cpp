@@ -46,14 +46,14 @@ class Swarm {
   }
 
   void step() {
-    const auto wished = [&](std::size_t i) {
-      hear(i);
-      const ControlView view{now_, positions_m_[i], heard_, mission_.world};
-      const Vec2 wish_mps = methods_[i].wish(view, false, rngs_[i]);
-      return filtered_ ? filters_[i].filter(positions_m_[i], wish_mps, heard_) : wish_mps;
+    const auto desired = [&](std::size_t i) {
+      receive(i);
+      const ControlView view{now_, positions_m_[i], received_, mission_.world};
+      const Vec2 desired_mps = methods_[i].desired_velocity(view, false, rngs_[i]);
+      return filtered_ ? filters_[i].filter(positions_m_[i], desired_mps, received_) : desired_mps;
     };
     std::vector<Vec2> next_mps;
-    for (std::size_t i = 0; i < methods_.size(); ++i) next_mps.push_back(wished(i));
+    for (std::size_t i = 0; i < methods_.size(); ++i) next_mps.push_back(desired(i));
     const Duration period = from_seconds(1.0 / mission_.control.rate_hz);
     before_m_ = positions_m_;
     for (std::size_t i = 0; i < methods_.size(); ++i) {
@@ -85,9 +85,9 @@ class Swarm {
     const CotangentOptions repulsion{keys_of(mission_).strength_m2, range_m()};
     double sum = 0.0;
     for (std::size_t i = 0; i < positions_m_.size(); ++i) {
-      hear(i);
+      receive(i);
       sum += mission_.goal_shape->at(positions_m_[i]).energy_m2 +
-             0.5 * cotangent_repulsion(positions_m_[i], heard_, repulsion).energy_m2;
+             0.5 * cotangent_repulsion(positions_m_[i], received_, repulsion).energy_m2;
     }
     return sum;
   }
@@ -120,11 +120,11 @@ class Swarm {
  private:
   double range_m() const { return 10.0 * mission_.robots.radius_m; }
 
-  void hear(std::size_t i) {
-    heard_.clear();
+  void receive(std::size_t i) {
+    received_.clear();
     for (std::size_t j = 0; j < positions_m_.size(); ++j) {
       if (j == i || (positions_m_[j] - positions_m_[i]).norm() >= range_m()) continue;
-      heard_.push_back({RobotId(static_cast<std::uint32_t>(j)), positions_m_[j], velocities_mps_[j],
+      received_.push_back({RobotId(static_cast<std::uint32_t>(j)), positions_m_[j], velocities_mps_[j],
                         mission_.robots.radius_m});
     }
   }
@@ -137,7 +137,7 @@ class Swarm {
   std::vector<IntermittentDiffusion> methods_;
   std::vector<SafetyFilter> filters_;
   std::vector<Rng> rngs_;
-  std::vector<Neighbour> heard_;
+  std::vector<Neighbour> received_;
   SteadyTime now_{std::chrono::seconds(1000)};
 };
 
@@ -170,7 +170,7 @@ TEST(IntermittentDiffusion, FormsALetterWhereGradientDescentStalls) {
   EXPECT_EQ(descent.diffusions(), 0U);
 }
 
-TEST(IntermittentDiffusion, AgentsThatHearEachOtherByDeadReckoningComeToRest) {
+TEST(IntermittentDiffusion, AgentsWithDeadReckonedNeighboursComeToRest) {
   const Mission mission = letter_q();
   const auto& goals = mission.goal.components();
   std::vector<PlanNode> nodes{{mission.start.components()[0].gaussian, MissionTime(0), 1.0}};
@@ -191,17 +191,17 @@ TEST(IntermittentDiffusion, AgentsThatHearEachOtherByDeadReckoningComeToRest) {
     agents.back().accept_plan(plan, positions_m[i]);
   }
   std::vector<AgentOutput> outputs(robots);
-  for (AgentOutput& output : outputs) output.say = true;
+  for (AgentOutput& output : outputs) output.send = true;
   SteadyTime now{std::chrono::seconds(1000)};
   const Duration period = from_seconds(1.0 / mission.control.rate_hz);
 
   std::size_t settled = 0;
   for (std::uint32_t step = 1; step < 6000 && settled < robots; ++step, now += period) {
     for (std::uint32_t j = 0; j < robots; ++j) {
-      if (!outputs[j].say) continue;
+      if (!outputs[j].send) continue;
       for (std::uint32_t i = 0; i < robots; ++i) {
         if (i == j) continue;
-        agents[i].hear({RobotId(j), step, now, positions_m[j], outputs[j].velocity_mps},
+        agents[i].receive({RobotId(j), step, now, positions_m[j], outputs[j].velocity_mps},
                        positions_m[i]);
       }
     }
@@ -265,7 +265,7 @@ TEST(IntermittentDiffusion, GoalIsTheComponentOfTheLargestDensity) {
                                         {{0, 1, 0.5}, {0, 2, 0.5}});
   IntermittentDiffusion method(IntermittentDiffusionOptions{});
 
-  method.see_goals(plan);
+  method.set_goals(plan);
   method.begin(Route{}, World{});
 
   EXPECT_EQ(method.goal({10.5, 0}), 0U);

@@ -38,8 +38,8 @@ TEST(Polyline, ASegmentHoldsItsBeginAndNotItsEnd) {
   EXPECT_TRUE(second.holds(14.9));
   EXPECT_FALSE(second.holds(15.0));
   EXPECT_FALSE(second.holds(9.9));
-  EXPECT_EQ(second.place(13.0).point_m, Vec2(10, 3));
-  EXPECT_EQ(second.place(13.0).tangent, Vec2(0, 1));
+  EXPECT_EQ(second.position(13.0).point_m, Vec2(10, 3));
+  EXPECT_EQ(second.position(13.0).tangent, Vec2(0, 1));
 }
 
 TEST(Polyline, OfOnePointIsThere) {
@@ -48,7 +48,7 @@ TEST(Polyline, OfOnePointIsThere) {
   EXPECT_EQ(point.length_m(), 0.0);
   EXPECT_EQ(point.at(0.0), Vec2(3, 4));
   EXPECT_EQ(point.at(7.0), Vec2(3, 4));
-  EXPECT_EQ(point.segment(0.0).place(0.0).tangent, Vec2(0, 0));
+  EXPECT_EQ(point.segment(0.0).position(0.0).tangent, Vec2(0, 0));
 }
 
 }  // namespace

@@ -36,8 +36,8 @@ TEST(Pursuit, ReachesTheEndAroundTheCorner) {
   double walked = 0.0;
   for (int step = 0; step < 400 && (robot - Vec2(20, 20)).norm() > 0.05; ++step) {
     const auto aim = sut.update(robot, world);
-    const Vec2 way = aim.point_m - robot;
-    const Vec2 move = way.norm() < 0.15 ? way : Vec2(0.15 * way.normalized());
+    const Vec2 path = aim.point_m - robot;
+    const Vec2 move = path.norm() < 0.15 ? path : Vec2(0.15 * path.normalized());
     robot += move;
     walked += move.norm();
     ASSERT_GT(world.distance_m(robot), 0.2);
@@ -47,7 +47,7 @@ TEST(Pursuit, ReachesTheEndAroundTheCorner) {
   EXPECT_LT(walked, 40.0);  // it may cut the corner, never walk more than the way
 }
 
-TEST(Pursuit, FallsBackToTheWayWhenPushedAroundACorner) {
+TEST(Pursuit, FallsBackToThePathWhenPushedAroundACorner) {
   const World world = corner_world();
   Pursuit sut(Polyline({{0, 0}, {20, 0}, {20, 20}}), world, options());
   for (double x = 0; x <= 20; x += 0.5) sut.update({x, 0}, world);

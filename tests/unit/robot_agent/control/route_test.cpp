@@ -29,7 +29,7 @@ FlowPlan branching_plan() {
 
 World empty_world() { return *World::make({{-50, -50}, {80, 80}}, {}); }
 
-TEST(Route, CountsOnEveryLegComeOutRightWithoutAWord) {
+TEST(Route, CountsOnEveryLegComeOutRightWithoutCommunication) {
   const FlowPlan plan = branching_plan();
   const World world = empty_world();
   for (const std::uint32_t robots : {4U, 10U, 100U, 500U}) {

@@ -42,16 +42,16 @@ double least_gap(const std::vector<Body>& bodies) {
 
 /// A crowd in lock-step that knows its neighbours as they were `delay` steps ago, extrapolated,
 /// with a share of the messages lost. Returns the least gap ever.
-double fly_crowd(std::vector<Body>& bodies, const World& world, int steps, std::size_t delay,
+double fly_dense_region(std::vector<Body>& bodies, const World& world, int steps, std::size_t delay,
                  double loss, Rng& rng) {
   std::vector<SafetyFilter> filters(bodies.size(), SafetyFilter(world, options()));
-  struct Heard {
+  struct Received {
     std::vector<Vec2> position, velocity;
     std::vector<int> step;
   };
   const std::size_t n = bodies.size();
-  std::vector<Heard> heard(
-      n, Heard{std::vector<Vec2>(n), std::vector<Vec2>(n, Vec2::Zero()), std::vector<int>(n, -1)});
+  std::vector<Received> received(
+      n, Received{std::vector<Vec2>(n), std::vector<Vec2>(n, Vec2::Zero()), std::vector<int>(n, -1)});
   std::deque<std::vector<Body>> past;
   double least = least_gap(bodies);
   for (int step = 0; step < steps; ++step) {
@@ -60,10 +60,10 @@ double fly_crowd(std::vector<Body>& bodies, const World& world, int steps, std::
     const int then = step - static_cast<int>(past.size()) + 1;
     for (std::size_t i = 0; i < n; ++i) {
       for (std::size_t j = 0; j < n; ++j) {
-        if (i == j || (heard[i].step[j] >= 0 && uniform01(rng) < loss)) continue;
-        heard[i].position[j] = past.front()[j].position;
-        heard[i].velocity[j] = past.front()[j].velocity;
-        heard[i].step[j] = then;
+        if (i == j || (received[i].step[j] >= 0 && uniform01(rng) < loss)) continue;
+        received[i].position[j] = past.front()[j].position;
+        received[i].velocity[j] = past.front()[j].velocity;
+        received[i].step[j] = then;
       }
     }
     std::vector<Vec2> commanded(n);
@@ -71,20 +71,20 @@ double fly_crowd(std::vector<Body>& bodies, const World& world, int steps, std::
       std::vector<Neighbour> neighbours;
       for (std::size_t j = 0; j < n; ++j) {
         if (i == j) continue;
-        const double age = kPeriod_s * (step - heard[i].step[j]);
-        const Vec2 at = heard[i].position[j] + age * heard[i].velocity[j];
+        const double age = kPeriod_s * (step - received[i].step[j]);
+        const Vec2 at = received[i].position[j] + age * received[i].velocity[j];
         if ((at - bodies[i].position).norm() > 6.0) continue;
         neighbours.push_back({.robot = RobotId(static_cast<std::uint32_t>(j)),
                               .position_m = at,
-                              .velocity_mps = heard[i].velocity[j],
+                              .velocity_mps = received[i].velocity[j],
                               .radius_m = kRadius_m,
-                              .stale_s = age});
+                              .information_age_s = age});
       }
-      const Vec2 way = bodies[i].goal - bodies[i].position;
-      const Vec2 wish = way.norm() > 1e-9
-                            ? Vec2(way * (std::min(1.45, 0.8 * way.norm()) / way.norm()))
+      const Vec2 path = bodies[i].goal - bodies[i].position;
+      const Vec2 desired_velocity = path.norm() > 1e-9
+                            ? Vec2(path * (std::min(1.45, 0.8 * path.norm()) / path.norm()))
                             : Vec2::Zero();
-      commanded[i] = filters[i].filter(bodies[i].position, wish, neighbours);
+      commanded[i] = filters[i].filter(bodies[i].position, desired_velocity, neighbours);
     }
     for (std::size_t i = 0; i < n; ++i) {
       bodies[i].velocity = commanded[i];
@@ -106,13 +106,13 @@ std::vector<Body> ring(std::size_t n, double radius, Rng& rng) {
   return bodies;
 }
 
-TEST(SafetyFilter, KeepsItsMarginWhenEveryoneIsHeardAtOnce) {
+TEST(SafetyFilter, KeepsItsMarginWhenAllUpdatesArriveAtOnce) {
   const World world = empty_world();
   Rng rng(1);
   for (int round = 0; round < 20; ++round) {
     std::vector<Body> bodies = ring(12, 6.0, rng);
 
-    const double least = fly_crowd(bodies, world, 300, 0, 0.0, rng);
+    const double least = fly_dense_region(bodies, world, 300, 0, 0.0, rng);
 
     // What β gives up in one step when the neighbour it follows stops: β v_max Δt, below the
     // margin.
@@ -120,13 +120,13 @@ TEST(SafetyFilter, KeepsItsMarginWhenEveryoneIsHeardAtOnce) {
   }
 }
 
-TEST(SafetyFilter, TouchesNobodyAt150MillisecondsAnd20PercentLoss) {
+TEST(SafetyFilter, NoContactsAt150MillisecondsAnd20PercentLoss) {
   const World world = empty_world();
   Rng rng(2);
   for (int round = 0; round < 20; ++round) {
     std::vector<Body> bodies = ring(12, 6.0, rng);
 
-    const double least = fly_crowd(bodies, world, 300, 2, 0.2, rng);
+    const double least = fly_dense_region(bodies, world, 300, 2, 0.2, rng);
 
     EXPECT_GT(least, 0.0) << round;
   }
@@ -178,7 +178,7 @@ TEST(SafetyFilter, LeadsOutOfAWallOrAnObstacleAsFastAsItCan) {
   EXPECT_LE(from_wall.norm(), options().speed_max_mps + 1e-9);
 }
 
-TEST(SafetyFilter, StandsStillWhenSqueezedFromBothSides) {
+TEST(SafetyFilter, StopsWhenSqueezedFromBothSides) {
   const World world = empty_world();
   SafetyFilter filter(world, options());
   const std::vector<Neighbour> neighbours = {{RobotId(1), {0.45, 0.0}, Vec2::Zero(), kRadius_m},
@@ -189,7 +189,7 @@ TEST(SafetyFilter, StandsStillWhenSqueezedFromBothSides) {
   EXPECT_NEAR(u.x(), 0.0, 1e-9);
 }
 
-TEST(SafetyFilter, GetsOutOfTheWayOfAnObstacleThatComes) {
+TEST(SafetyFilter, EvadesAnApproachingObstacle) {
   // A circle at 1 m/s towards a robot that wants to stay; it would be hit after 2 s.
   const Vec2 velocity(1.0, 0.0);
   Vec2 position(4.0, 0.3);
@@ -205,32 +205,32 @@ TEST(SafetyFilter, GetsOutOfTheWayOfAnObstacleThatComes) {
   }
 }
 
-TEST(SafetyFilter, DoesNotFollowOntoOneThatMayHaveStalled) {
+TEST(SafetyFilter, DoesNotFollowOntoOneThatMayHaveStopped) {
   const World world = empty_world();
   SafetyFilter sut(world, options());
-  // Ahead, as fast as we are, last heard half a second ago: a command holds for 0.2 s.
+  // Ahead, as fast as we are, last received half a second ago: a command holds for 0.2 s.
   Neighbour ahead{.robot = RobotId(1),
                   .position_m = {1.0, 0.0},
                   .velocity_mps = {1.0, 0.0},
                   .radius_m = kRadius_m,
-                  .stale_s = kPeriod_s,
-                  .stalled_s = 0.0};
-  const Vec2 wish(1.0, 0.0);
+                  .information_age_s = kPeriod_s,
+                  .possible_stop_age_s = 0.0};
+  const Vec2 desired_velocity(1.0, 0.0);
 
-  EXPECT_NEAR(sut.filter(Vec2::Zero(), wish, {&ahead, 1}).x(), 1.0, 1e-9);
+  EXPECT_NEAR(sut.filter(Vec2::Zero(), desired_velocity, {&ahead, 1}).x(), 1.0, 1e-9);
 
-  ahead.stalled_s = 0.4;  // at 0.6, so that the bodies are 0.2 m apart
+  ahead.possible_stop_age_s = 0.4;  // at 0.6, so that the bodies are 0.2 m apart
   const double margin_m = options().neighbour_margin_m / 3.0;
-  EXPECT_NEAR(sut.filter(Vec2::Zero(), wish, {&ahead, 1}).x(),
+  EXPECT_NEAR(sut.filter(Vec2::Zero(), desired_velocity, {&ahead, 1}).x(),
               (0.6 - 2.0 * kRadius_m - margin_m) / (2.0 * kPeriod_s), 1e-9);
-  ahead.stalled_s = 0.8;  // it would be upon us: it is not, but we come no nearer
-  EXPECT_NEAR(sut.filter(Vec2::Zero(), wish, {&ahead, 1}).x(), 0.0, 1e-9);
+  ahead.possible_stop_age_s = 0.8;  // it would be upon us: it is not, but we come no nearer
+  EXPECT_NEAR(sut.filter(Vec2::Zero(), desired_velocity, {&ahead, 1}).x(), 0.0, 1e-9);
   // One that comes nearer is where it is believed, or farther.
   ahead.velocity_mps = {-0.1, 0.0};
-  EXPECT_GT(sut.filter(Vec2::Zero(), wish, {&ahead, 1}).x(), 0.1);
+  EXPECT_GT(sut.filter(Vec2::Zero(), desired_velocity, {&ahead, 1}).x(), 0.1);
 }
 
-TEST(SafetyFilter, KnowsHowLongThoseWhoFollowWaitForAWord) {
+TEST(SafetyFilter, ComputesTheUpdateTimeoutOfFollowers) {
   const World world = empty_world();
   const SafetyFilter sut(world, options());
   Neighbour behind{.robot = RobotId(1),
@@ -242,17 +242,17 @@ TEST(SafetyFilter, KnowsHowLongThoseWhoFollowWaitForAWord) {
   const Listeners met = sut.listeners(Vec2::Zero(), {-1.0, 0.0}, {&behind, 1});
 
   EXPECT_NEAR(followed.nearest_gap_m, 1.0 - 2.0 * kRadius_m, 1e-12);
-  EXPECT_GT(met.patience_s, 1e6);
+  EXPECT_GT(met.timeout_s, 1e6);
   // After exactly that long the follower is as fast as it may be.
   Neighbour ahead{.robot = RobotId(0),
                   .position_m = {1.0, 0.0},
                   .velocity_mps = {1.0, 0.0},
                   .radius_m = kRadius_m,
-                  .stale_s = kPeriod_s,
-                  .stalled_s = followed.patience_s - 2.0 * kPeriod_s};
+                  .information_age_s = kPeriod_s,
+                  .possible_stop_age_s = followed.timeout_s - 2.0 * kPeriod_s};
   SafetyFilter follower(world, options());
   EXPECT_NEAR(follower.filter(Vec2::Zero(), {1.0, 0.0}, {&ahead, 1}).x(), 1.0, 1e-9);
-  ahead.stalled_s += 0.05;
+  ahead.possible_stop_age_s += 0.05;
   EXPECT_LT(follower.filter(Vec2::Zero(), {1.0, 0.0}, {&ahead, 1}).x(), 0.8);
 }
 

@@ -44,13 +44,13 @@ struct Body {
 void step(std::vector<Body>& bodies, std::vector<SafetyFilter>& filters) {
   std::vector<Vec2> commanded(bodies.size(), Vec2::Zero());
   for (std::size_t i = 0; i < bodies.size(); ++i) {
-    const Vec2 way = bodies[i].goal - bodies[i].position;
-    const double far_m = way.norm();
-    const Vec2 wish =
-        far_m > 1e-9 ? Vec2(way * (std::min(kSpeed_mps, 2.0 * far_m) / far_m)) : Vec2::Zero();
+    const Vec2 path = bodies[i].goal - bodies[i].position;
+    const double far_m = path.norm();
+    const Vec2 desired_velocity =
+        far_m > 1e-9 ? Vec2(path * (std::min(kSpeed_mps, 2.0 * far_m) / far_m)) : Vec2::Zero();
     if (bodies[i].kind == Kind::kFrozen) continue;
     if (bodies[i].kind == Kind::kRams) {
-      commanded[i] = wish;
+      commanded[i] = desired_velocity;
       continue;
     }
     std::vector<Neighbour> neighbours;
@@ -60,9 +60,9 @@ void step(std::vector<Body>& bodies, std::vector<SafetyFilter>& filters) {
                             .position_m = bodies[j].position,
                             .velocity_mps = bodies[j].velocity,
                             .radius_m = kRadius_m,
-                            .stale_s = kPeriod_s});
+                            .information_age_s = kPeriod_s});
     }
-    commanded[i] = filters[i].filter(bodies[i].position, wish, neighbours, far_m > 2.0);
+    commanded[i] = filters[i].filter(bodies[i].position, desired_velocity, neighbours, far_m > 2.0);
   }
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     bodies[i].velocity = commanded[i];
@@ -99,7 +99,7 @@ double fly(std::vector<Body> bodies, const World& world) {
   return least_m;
 }
 
-TEST(SafetyScenes, NobodyTouchesAnybodyInCrowdsCornersAndCrossings) {
+TEST(SafetyScenes, NoContactsInDenseGroupsCornersAndCrossings) {
   Rng rng(11);
   for (int scene = 0; scene < scenes(); ++scene) {
     const World world = *World::make(

@@ -17,12 +17,12 @@ namespace {
 constexpr Duration kPeriod = std::chrono::milliseconds(100);
 
 struct MemoryLog final : RobotLog {
-  void append(const blackbox::Step& step) override { steps.push_back(step); }
-  void append(const blackbox::Belief& estimate) override { estimates.push_back(estimate); }
-  void append(blackbox::Note note) override { notes.push_back(std::move(note)); }
-  std::vector<blackbox::Step> steps;
-  std::vector<blackbox::Belief> estimates;
-  std::vector<blackbox::Note> notes;
+  void append(const robot_log::Step& step) override { steps.push_back(step); }
+  void append(const robot_log::Estimate& estimate) override { estimates.push_back(estimate); }
+  void append(robot_log::Note note) override { notes.push_back(std::move(note)); }
+  std::vector<robot_log::Step> steps;
+  std::vector<robot_log::Estimate> estimates;
+  std::vector<robot_log::Note> notes;
 };
 
 /// Delivers what the test puts in, once, and keeps what is published.
@@ -70,10 +70,10 @@ TEST_F(LoneRobot, RecordsEachTickAndItsFirstMode) {
 
   ASSERT_EQ(log_.steps.size(), 2U);
   EXPECT_EQ(log_.steps[1].position_m, Vec2(5, 5));
-  EXPECT_EQ(log_.steps[1].goal, blackbox::Step::kNoGoal);
+  EXPECT_EQ(log_.steps[1].goal, robot_log::Step::kNoGoal);
   ASSERT_EQ(log_.notes.size(), 1U);
   EXPECT_EQ(log_.notes[0].code, "mode");
-  EXPECT_FALSE(loop_.has_news());
+  EXPECT_FALSE(loop_.has_updates());
 }
 
 TEST_F(LoneRobot, PublishesItsStateWithGrowingNumbers) {
@@ -97,7 +97,7 @@ TEST_F(LoneRobot, CountsTheStatesItUsesOnce) {
   EXPECT_EQ(loop_.status().neighbours_heard, 1U);
 }
 
-TEST_F(LoneRobot, RecordsWhereItTakesItsNeighbourToBe) {
+TEST_F(LoneRobot, RecordsItsEstimateOfANeighbour) {
   bus_.arrived = {{.robot = RobotId(1), .sequence = 1, .as_of = now_, .position_m = {6, 5}}};
   for (int k = 0; k < 10; ++k) tick();
 

@@ -15,7 +15,7 @@
 #include <unistd.h>
 
 #include "robot_agent/program/process_loop.hpp"
-#include "swarm_core/blackbox/blackbox_file.hpp"
+#include "swarm_core/robot_log/robot_log_file.hpp"
 #include "swarmflow/mission/mission_file.hpp"
 #include "swarm_launcher/simulation/simulation.hpp"
 #include "swarm_link/inproc/inproc_bus.hpp"
@@ -38,7 +38,7 @@ Mission noisy_mission() {
   mission->robots.count = kRobots;
   mission->robots.motion_noise_m = 0.005;
   mission->robots.position_noise_m = 0.01;
-  mission->link.hear_radius_m = 60.0;
+  mission->link.communication_radius_m = 60.0;
   mission->script = {{.at_s = 9.0, .action = CommandKind::kStop}};
   return *std::move(mission);
 }
@@ -139,12 +139,12 @@ void fly(const Mission& mission, const FlownTwice& flown) {
 }
 
 /// Whether the loop of a robot records this, and not the process or the simulation around it.
-bool is_of_loop(const blackbox::Record& record) {
-  if (const auto* note = std::get_if<blackbox::Note>(&record)) {
+bool is_of_loop(const robot_log::Record& record) {
+  if (const auto* note = std::get_if<robot_log::Note>(&record)) {
     return note->code == "plan" || note->code == "mode";
   }
-  return std::holds_alternative<blackbox::Step>(record) ||
-         std::holds_alternative<blackbox::Belief>(record);
+  return std::holds_alternative<robot_log::Step>(record) ||
+         std::holds_alternative<robot_log::Estimate>(record);
 }
 
 struct LoopLog {
@@ -156,15 +156,15 @@ struct LoopLog {
 /// What the loop recorded, as a file's bytes.
 LoopLog loop_log(const fs::path& run_dir, RobotId robot) {
   LoopLog log;
-  blackbox::Batch batch;
-  batch.append(blackbox::Header{.robot = robot});
-  const auto read = blackbox::read_records(
-      blackbox::file_of(run_dir, robot), [&](const blackbox::Record& record) {
+  robot_log::Batch batch;
+  batch.append(robot_log::Header{.robot = robot});
+  const auto read = robot_log::read_records(
+      robot_log::file_of(run_dir, robot), [&](const robot_log::Record& record) {
         if (!is_of_loop(record)) return;
-        log.steps += std::holds_alternative<blackbox::Step>(record);
-        log.estimates += std::holds_alternative<blackbox::Belief>(record);
-        log.notes += std::holds_alternative<blackbox::Note>(record);
-        if (const auto* step = std::get_if<blackbox::Step>(&record)) {
+        log.steps += std::holds_alternative<robot_log::Step>(record);
+        log.estimates += std::holds_alternative<robot_log::Estimate>(record);
+        log.notes += std::holds_alternative<robot_log::Note>(record);
+        if (const auto* step = std::get_if<robot_log::Step>(&record)) {
           log.last_mode = static_cast<RobotMode>(step->mode);
         }
         batch.append(record);

@@ -37,7 +37,7 @@ TEST(ImageBoxes, TakeBlocksWhereThereWouldBeTooMany) {
   EXPECT_GE(boxes.size(), 100U);
 }
 
-TEST(ImageBoxes, NoneInAPictureWithoutShape) {
+TEST(ImageBoxes, NoneInAImageWithoutShape) {
   EXPECT_TRUE(image_boxes({2, 1, {255, 200}}, {}).empty());
 }
 

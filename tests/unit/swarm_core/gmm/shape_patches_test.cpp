@@ -114,7 +114,7 @@ TEST(ImagePatches, MayBeTheBrightOnes) {
   EXPECT_EQ(patches[0].center_m, Vec2(1.5, 0.5));
 }
 
-TEST(ImagePatches, AreTogetherTheSamePictureInAnyBlocks) {
+TEST(ImagePatches, AreTogetherTheSameImageInAnyBlocks) {
   GreyImage image{50, 31, {}};
   for (std::size_t i = 0; i < image.width * image.height; ++i) {
     image.levels.push_back(static_cast<std::uint8_t>((i * i + 37 * i) % 256));

@@ -93,10 +93,10 @@ TEST(TransportMap, CostsExactlyTheDistance) {
     const Mat2 move = transport_map(a, b) - Mat2::Identity();
 
     // E‖T(x−μ) − (x−μ)‖² = tr((T−I)Σ(T−I)): the mean squared way of the robots.
-    const double mean_squared_way =
+    const double mean_squared_path =
         (b.mean_m() - a.mean_m()).squaredNorm() + (move * a.covariance_m2() * move).trace();
 
-    EXPECT_NEAR(wasserstein2_squared(a, b), mean_squared_way, kTolerance);
+    EXPECT_NEAR(wasserstein2_squared(a, b), mean_squared_path, kTolerance);
   }
 }
 

@@ -18,16 +18,16 @@
 namespace swarm::mcap {
 namespace {
 
-struct Said {
+struct Sent {
   std::string topic, schema, data;
   std::uint32_t sequence;
   std::int64_t log_time_ns;
-  bool operator==(const Said&) const = default;
+  bool operator==(const Sent&) const = default;
 };
 
 struct Content {
   Damage damage;
-  std::vector<Said> messages;
+  std::vector<Sent> messages;
   std::vector<Attachment> attachments;
   std::vector<Metadata> metadata;
 };
@@ -101,7 +101,7 @@ TEST_P(Mcap, ReadsBackWhatWasWritten) {
   EXPECT_TRUE(content.damage.ended);
   EXPECT_EQ(content.damage.damaged, 0U);
   ASSERT_EQ(content.messages.size(), 5U);
-  EXPECT_EQ(content.messages[3], (Said{"b", "B", text(3, 20), 1, 3'000'000}));
+  EXPECT_EQ(content.messages[3], (Sent{"b", "B", text(3, 20), 1, 3'000'000}));
 }
 
 TEST_P(Mcap, KeepsAttachmentsAndMetadata) {

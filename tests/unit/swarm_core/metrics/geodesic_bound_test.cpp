@@ -75,7 +75,7 @@ TEST(GeodesicBound, OfTheStandInMissionIs182Metres) {
 
 TEST(GeodesicBound, OfNoRobotsIsZero) { EXPECT_EQ(geodesic_bound_m(standin(), 0.2, {}, {}), 0.0); }
 
-TEST(GeodesicBound, IsInfiniteWithoutAWay) {
+TEST(GeodesicBound, IsInfiniteWithoutAPath) {
   auto wall = Polygon::make({{4, 0}, {5, 0}, {5, 10}, {4, 10}});
   ASSERT_TRUE(wall.has_value());
   const auto world = World::make({{0, 0}, {10, 10}}, {*wall});

@@ -104,14 +104,14 @@ TEST(ShortestPaths, DoNotLeaveTheWorld) {
               1e-9);
 }
 
-TEST(ShortestPaths, FindNoWayThroughAClosedWall) {
+TEST(ShortestPaths, FindNoPathThroughAClosedWall) {
   const World world =
       make_world({{0, 0}, {10, 10}}, {make_polygon({{4, 0}, {5, 0}, {5, 10}, {4, 10}})});
 
   EXPECT_EQ(distance(ShortestPaths(world, 0.2), {2, 5}, {7, 5}), kInfinity);
 }
 
-TEST(ShortestPaths, FindNoWayThroughAGapNarrowerThanTheRobot) {
+TEST(ShortestPaths, FindNoPathThroughAGapNarrowerThanTheRobot) {
   const World world =
       make_world({{0, 0}, {10, 10}}, {make_polygon({{4, 0}, {5, 0}, {5, 5}, {4, 5}}),
                                       make_polygon({{4, 5.39}, {5, 5.39}, {5, 10}, {4, 10}})});

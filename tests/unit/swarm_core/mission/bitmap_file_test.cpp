@@ -104,7 +104,7 @@ TEST_F(BitmapFile, ReadsPortableBitmaps) {
   }
 }
 
-TEST_F(BitmapFile, RefusesWhatIsNoPicture) {
+TEST_F(BitmapFile, RefusesWhatIsNoImage) {
   expect_refused("", "is no PNG, PBM or PGM");
   expect_refused("GIF89a", "is no PNG, PBM or PGM");
   expect_refused("P5", "header");
@@ -120,7 +120,7 @@ TEST_F(BitmapFile, RefusesWhatIsNoPicture) {
   expect_refused(text_of(kWidePng), "is 5000 x 10 pixels");
 }
 
-TEST_F(BitmapFile, RefusesPicturesCutShortAnywhere) {
+TEST_F(BitmapFile, RefusesImagesCutShortAnywhere) {
   const std::vector<std::string> pictures{text_of(kGreyPng), "P1 3 2 101010",
                                           "P2 3 2 5 0 1 2 3 4 5", "P5 3 2 255 abcdef",
                                           "P4 3 2 \xa0\x40"};

@@ -23,7 +23,7 @@ TEST(ParseLinkFaults, ReadsEveryKey) {
   EXPECT_FALSE(faults->at(milliseconds(60'500)));
 }
 
-TEST(ParseLinkFaults, LeavesOutWhatIsNotSaid) {
+TEST(ParseLinkFaults, LeavesOutWhatIsNotGiven) {
   const auto none = parse_link_faults("");
   ASSERT_TRUE(none);
   EXPECT_FALSE(none->any());
@@ -36,7 +36,7 @@ TEST(ParseLinkFaults, LeavesOutWhatIsNotSaid) {
   EXPECT_TRUE(late->at(seconds(1'000'000)));
 }
 
-TEST(ParseLinkFaults, SaysWhatIsWrong) {
+TEST(ParseLinkFaults, ReportsWhatIsWrong) {
   const std::pair<const char*, const char*> cases[] = {
       {"loss", "'loss' is not KEY=NUMBER"},
       {"loss=", "'loss=' is not KEY=NUMBER"},

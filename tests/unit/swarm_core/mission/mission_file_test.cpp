@@ -43,7 +43,7 @@ robots:
   speed_max_mps: 1
   placement_gap_m: 0.3
   groups:
-    - {count: 2, model: unicycle, turn_rate_max_radps: 2, hear_radius_m: 6}
+    - {count: 2, model: unicycle, turn_rate_max_radps: 2, communication_radius_m: 6}
     - {count: 3, radius_m: 0.15, speed_max_mps: 0.8, position_noise_m: 0.05}
 start:
   - {mean_m: [3, 5], covariance_m2: [[1, 0.1], [0.1, 1.5]], weight: 0.3}
@@ -308,7 +308,7 @@ TEST(MissionFile, KeepsAViolationOnOneLine) {
   EXPECT_EQ(mission.error().message.find_first_of("\n\x1b"), std::string::npos);
 }
 
-TEST(MissionFile, SaysWhichFileCannotBeRead) {
+TEST(MissionFile, ReportsWhichFileCannotBeRead) {
   const auto missing = load_mission("/nowhere/at all.yaml");
   const auto folder = load_mission("/");
 

@@ -13,7 +13,7 @@ TEST(MissionRules, AllowTheDefaults) {
   EXPECT_TRUE(broken.empty()) << broken[0].message;
 }
 
-TEST(MissionRules, TieHearingToTheBrakingDistance) {
+TEST(MissionRules, TieTheCommunicationRadiusToTheBrakingDistance) {
   Mission mission;
   mission.robots.radius_m = 0.2;
   mission.robots.speed_max_mps = 1.5;
@@ -23,7 +23,7 @@ TEST(MissionRules, TieHearingToTheBrakingDistance) {
   mission.link.send_interval_max_s = 0.5;
 
   // By hand: 0.4 + 0.25 + 3.0 · (0.1/0.25 + 0.5).
-  EXPECT_NEAR(least_hear_radius_m(mission), 3.35, 1e-12);
+  EXPECT_NEAR(least_communication_radius_m(mission), 3.35, 1e-12);
 }
 
 TEST(MissionRules, NameTheKeysTheyTie) {

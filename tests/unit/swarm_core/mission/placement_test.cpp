@@ -85,7 +85,7 @@ TEST(Placement, DrawsAgainWhenTheLastRobotsFindNoRoom) {
   }
 }
 
-TEST(Placement, RefusesAComponentThatIsTooCrowded) {
+TEST(Placement, RefusesAComponentThatIsTooDense) {
   Mission mission = shipped("small.yaml");
   mission.robots.count = 2000;
 

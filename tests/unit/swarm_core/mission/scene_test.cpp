@@ -27,7 +27,7 @@ Scene changed(const Scene& scene, const SceneChange& change, double s) {
   return next.value_or(scene);
 }
 
-TEST(Scene, BeginsAsTheMissionFileSays) {
+TEST(Scene, BeginsAsInTheMissionFile) {
   const World world = world_at(mission_world(), first_scene(2), at_s(5));
 
   ASSERT_EQ(world.obstacles().size(), 2U);
@@ -72,7 +72,7 @@ TEST(Scene, BeginsAMoveWhereTheLastOneIs) {
   EXPECT_NEAR(world_at(mission_world(), scene, at_s(30)).distance_m({14, 12}), -1.0, 1e-9);
 }
 
-TEST(Scene, KeepsAMapForAWhileWithAllPlacesOnTheWay) {
+TEST(Scene, KeepsAMapForAWhileWithAllPositionsOfAMove) {
   const Scene scene = changed(first_scene(2), MoveObstacle{0, {4, 0}, 2.0}, 0.0);
 
   const World world = world_during(mission_world(), scene, at_s(0), std::chrono::seconds(2));
@@ -200,7 +200,7 @@ TEST(SceneBodies, AreNoObstaclesOfTheAudit) {
   EXPECT_EQ(lasting_world(mission_world(), scenes).obstacles().size(), 2U);
 }
 
-TEST(SceneBodies, AreToldWithTheirTimes) {
+TEST(SceneBodies, AreReportedWithTheirTimes) {
   std::vector<Scene> scenes = {first_scene(2)};
   const auto add = [&](const SceneChange& change, double s) {
     scenes.push_back(changed(scenes.back(), change, s));
@@ -259,7 +259,7 @@ TEST(SceneChange, IsReadFromACommandLine) {
   }
 }
 
-TEST(SceneChange, SaysWhatIsWrongWithACommandLine) {
+TEST(SceneChange, ReportsWhatIsWrongWithACommandLine) {
   const auto wrong = [](const char* action, const char* keys) {
     const auto change = parse_scene_change(action, keys, mission_world());
     return change ? std::string("nothing") : change.error().message;

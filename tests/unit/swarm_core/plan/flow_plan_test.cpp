@@ -131,7 +131,7 @@ TEST(FlowPlan, MixtureFollowsTheGeodesics) {
   EXPECT_DOUBLE_EQ(after.components()[1].weight, 0.4);
 }
 
-TEST(FlowPlan, DigestTellsEveryNumberApart) {
+TEST(FlowPlan, DigestDependsOnEveryNumber) {
   const auto digest = [](const std::vector<PlanNode>& nodes, const std::vector<PlanLeg>& legs) {
     return FlowPlan::make(nodes, legs).value().digest();
   };

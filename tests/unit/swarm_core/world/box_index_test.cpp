@@ -54,7 +54,7 @@ TEST(BoxIndex, FindsWhatAScanFinds) {
   }
 }
 
-TEST(BoxIndex, StandsEqualBoxes) {
+TEST(BoxIndex, AcceptsEqualBoxes) {
   const BoxIndex index(std::vector<Box>(1000, Box{{1, 1}, {2, 2}}));
   int found = 0;
 
@@ -104,7 +104,7 @@ class Scan {
 
 // Blocks that touch and overlap, on a lattice so that many are at exactly the same distance, and
 // circles and Ls anywhere.
-World crowded_world(Rng& rng, int obstacles) {
+World dense_world(Rng& rng, int obstacles) {
   std::vector<Obstacle> list;
   for (int i = 0; i < obstacles; ++i) {
     if (i % 3 == 0) {
@@ -129,7 +129,7 @@ TEST(World, AnswersBitForBitAsAScanOfAllObstacles) {
   int clear = 0;
   int blocked = 0;
   for (const int obstacles : {6, 12, 120, 600}) {
-    const World original = crowded_world(rng, obstacles);
+    const World original = dense_world(rng, obstacles);
     const World world = original;  // a copy answers by itself
     const Scan scan(world);
     const double k = cvar_coefficient(0.05);

@@ -303,7 +303,7 @@ SceneMessage good_scene() {
   return scene;
 }
 
-TEST(CheckScene, TakesWhatIsGoodAndSaysItAgainUnchanged) {
+TEST(CheckScene, AcceptsValidScenesAndReturnsThemUnchanged) {
   const auto scene = check_scene(good_scene(), limits());
 
   ASSERT_TRUE(scene.has_value());

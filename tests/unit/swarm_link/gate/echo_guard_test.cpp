@@ -13,7 +13,7 @@ RobotStateMessage numbered(std::uint32_t number) {
 
 TEST(EchoGuard, KnowsTheLast64StatesOfARobot) {
   EchoGuard sut;
-  for (std::uint32_t number = 1; number <= 100; ++number) sut.said(numbered(number));
+  for (std::uint32_t number = 1; number <= 100; ++number) sut.record_sent(numbered(number));
 
   EXPECT_TRUE(sut.is_echo(numbered(100)));
   EXPECT_TRUE(sut.is_echo(numbered(37)));
@@ -23,7 +23,7 @@ TEST(EchoGuard, KnowsTheLast64StatesOfARobot) {
 
 TEST(EchoGuard, AsksForNumberAndStamp) {
   EchoGuard sut;
-  sut.said(numbered(5));
+  sut.record_sent(numbered(5));
   RobotStateMessage forged = numbered(5);
   forged.stamp_utc_ns += 1;
   EXPECT_FALSE(sut.is_echo(forged));

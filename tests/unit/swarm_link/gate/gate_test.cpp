@@ -191,7 +191,7 @@ TEST_F(GateTest, RefusesStatusesOfTheFuture) {
 
 TEST_F(GateTest, KnowsTheEchoesOfItsOwnRobots) {
   EchoGuard own;
-  own.said(state(3, kNow));
+  own.record_sent(state(3, kNow));
   EXPECT_TRUE(sut.state(state(3, kNow), kNow, &own));
   EXPECT_FALSE(sut.state(state(3, s_later(1)), kNow, &own));
   EXPECT_TRUE(counted(RefusalReason::kForged));

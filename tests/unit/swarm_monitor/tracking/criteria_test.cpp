@@ -111,7 +111,7 @@ TEST(Criteria, DoNotTakeReferencesThatAreNotThePlans) {
   }
 }
 
-TEST(Criteria, DoNotTakePlacesThatAreNotTheGoals) {
+TEST(Criteria, RejectPositionsThatAreNotTheGoals) {
   Tracking tracking = measured();
   tracking.ending.references_to_goal->w2_m = 6.0;
 

@@ -20,7 +20,7 @@ RecordedRun two_plans() {
   return run;
 }
 
-TEST(PlanTimeline, SaysWhichPlanIsInForceAndItsTime) {
+TEST(PlanTimeline, ReportsWhichPlanIsInForceAndItsTime) {
   const RecordedRun run = two_plans();
   const PlanTimeline timeline(run);
 

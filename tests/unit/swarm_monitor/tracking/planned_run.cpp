@@ -109,7 +109,7 @@ RecordedRun PlannedRun::make() const {
   run.scenes.push_back(first_scene(1));
   for (std::uint32_t i = 0; i < robots; ++i) {
     TrackMaker maker(RobotId(i), run.begin);
-    maker.take(blackbox::Header{
+    maker.take(robot_log::Header{
         .robot = RobotId(i), .robots = robots, .process_id = i + 1, .radius_m = 0.2});
     const bool falls_here = falls == i;
     const auto at = [&](double tau) {
@@ -118,7 +118,7 @@ RecordedRun PlannedRun::make() const {
     const Vec2 last = at(plan_time_s(end_s));
     for (double t = 0.0; t <= (falls_here ? falls_at_s : end_s); t += kStep_s) {
       const double tau = plan_time_s(t);
-      blackbox::Step step{
+      robot_log::Step step{
           .stamp = utc(t), .position_m = at(tau), .goal = static_cast<std::uint8_t>(i % 2)};
       const bool arrived = tau > 1.0 && (step.position_m - last).norm() < 0.3;
       step.mode = static_cast<std::uint8_t>(tau <= 0.0 ? RobotMode::kWaiting
@@ -135,7 +135,7 @@ RecordedRun PlannedRun::make() const {
       }
       maker.take(step);
     }
-    if (!falls_here) maker.take(blackbox::Note{.stamp = utc(end_s), .code = "exit"});
+    if (!falls_here) maker.take(robot_log::Note{.stamp = utc(end_s), .code = "exit"});
     run.tracks.push_back(maker.finish());
   }
   return run;

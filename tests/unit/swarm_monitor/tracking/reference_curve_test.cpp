@@ -33,7 +33,7 @@ TEST(ReferenceCurve, IsStraightBetweenWhatWasLogged) {
   EXPECT_NEAR((curve.at(30.0) - waiting_at(30.0)).norm(), 0.0, 0.0625 + 1e-6);
 }
 
-TEST(ReferenceCurve, SaysHowLateAndHowEarlyARobotIs) {
+TEST(ReferenceCurve, ReportsHowLateAndHowEarlyARobotIs) {
   const ReferenceCurve curve = curve_of(waiting_at, 0.0, 100.0);
 
   EXPECT_NEAR(curve.lag_s(waiting_at(20.0), 20.0), 0.0, 1e-6);

@@ -43,7 +43,7 @@ TEST(ObstacleGrid, RefusesAbsurdCells) {
   EXPECT_FALSE(ObstacleGrid::make(world, 1e-3));
 }
 
-TEST(Adoc, TakesTheStraightWayWhenNothingIsInIt) {
+TEST(Adoc, TakesTheStraightPathWhenNothingIsInIt) {
   const World world = World::make({{0, 0}, {200, 160}}, {}).value();
   const auto at = [](double x, double y) {
     return Mixture::make({{1.0, Gaussian::from_parameters({x, y}, 7.0710678118654755,
@@ -57,7 +57,7 @@ TEST(Adoc, TakesTheStraightWayWhenNothingIsInIt) {
   EXPECT_NEAR(w2_length_m(routes[0].waypoints), 150.0, 1e-9);
 }
 
-TEST(Adoc, APenaltyBuysLessOverlapWithALongerWay) {
+TEST(Adoc, APenaltyBuysLessOverlapWithALongerPath) {
   const Mission mission = testing::rover_scene(2);
   const ObstacleGrid grid = ObstacleGrid::make(mission.world, 1.0).value();
   double last_overlap = 1e9, last_length_m = 0.0;
@@ -93,7 +93,7 @@ TEST(Adoc, ItsRoutesAreAPlan) {
   }
 }
 
-TEST(Adoc, NamesWhatNoWayJoins) {
+TEST(Adoc, NamesWhatNoPathJoins) {
   const World world =
       World::make({{0, 0}, {200, 160}},
                   {Polygon::make({{95, 0}, {105, 0}, {105, 160}, {95, 160}}).value()})

@@ -11,7 +11,7 @@
 namespace swarm::planner {
 namespace {
 
-TEST(CropsGuide, LeavesAWayWhereManyAreStuck) {
+TEST(CropsGuide, LeavesAPathWhereManyAreStuck) {
   // One block in the middle, a way on either side.
   const World world = World::make({{0, 0}, {20, 20}}, {box(8, 6, 12, 14)}).value();
   int changed_sides = 0;
@@ -34,7 +34,7 @@ TEST(CropsGuide, LeavesAWayWhereManyAreStuck) {
   EXPECT_EQ(changed_sides, 10);
 }
 
-TEST(CropsGuide, MakesTheNextEdgesThreeTimesAsDear) {
+TEST(CropsGuide, TriplesTheCostOfTheNextEdges) {
   const World world = gap_or_detour();
   Rng rng(2);
   auto guide = CropsGuide::make(world, single(2, 5, 0.5), single(18, 5, 0.5), {}, {}, rng);
@@ -46,7 +46,7 @@ TEST(CropsGuide, MakesTheNextEdgesThreeTimesAsDear) {
   // Between the second and the third place of the path: its edges 1, 2, 3 and 4.
   guide->reweight(0, 0.5 * (path[1].mean_m() + path[2].mean_m()));
 
-  const auto is_dear = [&](const Vec2& a, const Vec2& b) {
+  const auto is_costly = [&](const Vec2& a, const Vec2& b) {
     for (std::size_t i = 1; i <= 4; ++i) {
       if ((path[i].mean_m() == a && path[i + 1].mean_m() == b) ||
           (path[i].mean_m() == b && path[i + 1].mean_m() == a)) {
@@ -55,20 +55,20 @@ TEST(CropsGuide, MakesTheNextEdgesThreeTimesAsDear) {
     }
     return false;
   };
-  std::size_t dear = 0;
+  std::size_t costly = 0;
   for (std::uint32_t a = 0; a < before.nodes.size(); ++a) {
     for (std::size_t i = 0; i < before.arcs_of(a).size(); ++i) {
       const Roadmap::Arc& arc = before.arcs_of(a)[i];
-      const bool expected = is_dear(before.nodes[a].mean_m(), before.nodes[arc.to].mean_m());
-      dear += expected ? 1U : 0U;
+      const bool expected = is_costly(before.nodes[a].mean_m(), before.nodes[arc.to].mean_m());
+      costly += expected ? 1U : 0U;
       EXPECT_EQ(guide->roadmap().arcs_of(a)[i].length_m,
                 expected ? 3.0 * arc.length_m : arc.length_m);
     }
   }
-  EXPECT_EQ(dear, 8U);
+  EXPECT_EQ(costly, 8U);
 }
 
-TEST(CropsGuide, KeepsTheOnlyWayHoweverStuck) {
+TEST(CropsGuide, KeepsTheOnlyPathHoweverStuck) {
   const Mission mission = crops_scene("spiral");
   auto guide = guide_of(mission, 1);
   ASSERT_TRUE(guide.has_value());

@@ -19,7 +19,7 @@
 namespace swarm::planner {
 namespace {
 
-TEST(CropsGuide, WeighsAPlaceByTheSumOfItsDistances) {
+TEST(CropsGuide, WeighsAPointByTheSumOfItsDistances) {
   const auto letter_l = Polygon::make({{0, 0}, {4, 0}, {4, 1}, {1, 1}, {1, 6}, {0, 6}}).value();
   const World world = World::make({{-10, -10}, {20, 20}}, {letter_l, Circle{{10, 3}, 2}}).value();
 
@@ -128,12 +128,12 @@ TEST(CropsGuide, PrefersClearanceOverLength) {
     const auto open =
         CropsGuide::make(world, single(2, 5, 0.5), single(18, 5, 0.5), {}, options, rng);
     options.clearance_power = 0.0;
-    const auto short_way =
+    const auto short_path =
         CropsGuide::make(world, single(2, 5, 0.5), single(18, 5, 0.5), {}, options, rng);
 
-    ASSERT_TRUE(open.has_value() && short_way.has_value());
+    ASSERT_TRUE(open.has_value() && short_path.has_value());
     EXPECT_GT(mean_y_at(open->routes()[0].waypoints, 10.0), 11.0);
-    EXPECT_LT(mean_y_at(short_way->routes()[0].waypoints, 10.0), 6.0);
+    EXPECT_LT(mean_y_at(short_path->routes()[0].waypoints, 10.0), 6.0);
   }
 }
 
@@ -226,7 +226,7 @@ TEST(CropsGuide, RepeatsItselfForTheSameSeedOnly) {
   EXPECT_NE(digest(7), digest(8));
 }
 
-TEST(CropsGuide, SaysWhyThereIsNoPath) {
+TEST(CropsGuide, ReportsWhyThereIsNoPath) {
   const World walled = World::make({{0, 0}, {20, 20}}, {box(9, -1, 11, 21)}).value();
   const auto both_sides = Mixture::make({{0.5, Gaussian::from_parameters({17, 5}, 0.4, 0.4, 0)},
                                          {0.5, Gaussian::from_parameters({3, 15}, 0.4, 0.4, 0)}});

@@ -174,7 +174,7 @@ std::vector<std::uint32_t> sinks_of(const FlowPlan& plan, const RobotGroup& grou
   for (std::uint32_t rank = 0; rank < group.members.size(); ++rank) {
     const auto size = static_cast<std::uint32_t>(group.members.size());
     const double share = PlanEntry::share_of(stratified_share(rank, size)) / 65536.0;
-    sinks[group.members[rank].value()] = place_in_flow(plan, 0, share, MissionTime(0)).sink;
+    sinks[group.members[rank].value()] = position_in_flow(plan, 0, share, MissionTime(0)).sink;
   }
   return sinks;
 }

@@ -95,7 +95,7 @@ TEST(LinearProgramSolve, StartsFromTheBasisItIsGiven) {
   EXPECT_LT(again.pivots, first.pivots);
 }
 
-TEST(LinearProgramSolve, SaysInfeasible) {
+TEST(LinearProgramSolve, ReportsInfeasible) {
   LinearProgram lp;  // x = −1
   lp.row_index.push_back(0);
   lp.value.push_back(1.0);

@@ -47,31 +47,31 @@ struct Bench {
     keeper->take_scene(first_scene(mission.world.obstacles().size()));
   }
   void report() {
-    for (const ReportedRobot& robot : robots) keeper->hear(robot, !robot.arrived, now);
+    for (const ReportedRobot& robot : robots) keeper->receive(robot, !robot.arrived, now);
   }
   PlanKeeper::Step step_after(milliseconds time) {
     now += time;
     utc += time;
     return keeper->step(now, utc);
   }
-  FlowPlace place_of(const ReportedRobot& robot) const {
+  FlowPosition place_of(const ReportedRobot& robot) const {
     const Replan& newest = keeper->newest();
     const FlowPlan& plan = newest.planned.plan;
     double share = stratified_share(robot.robot.value(), mission.robots.count);
     if (newest.entries.empty()) {
       const std::size_t source = draw_source(plan, share);
-      return place_in_flow(plan, source, share, MissionTime(0));
+      return position_in_flow(plan, source, share, MissionTime(0));
     }
     const PlanEntry& entry = newest.entries[robot.robot.value()];
-    return place_in_flow(plan, entry.source, entry.share / 65536.0, MissionTime(0));
+    return position_in_flow(plan, entry.source, entry.share / 65536.0, MissionTime(0));
   }
   /// Each robot by a second along its first leg.
   void move() {
     const FlowPlan& plan = keeper->newest().planned.plan;
     for (ReportedRobot& robot : robots) {
       robot.plan_version = keeper->version();
-      const FlowPlace place = place_of(robot);
-      if (robot.arrived || place.leg == FlowPlace::kAtSink) continue;
+      const FlowPosition place = place_of(robot);
+      if (robot.arrived || place.leg == FlowPosition::kAtSink) continue;
       const PlanLeg& leg = plan.legs()[place.leg];
       const Gaussian& from = plan.nodes()[leg.from].gaussian;
       const Gaussian& to = plan.nodes()[leg.to].gaussian;
@@ -113,7 +113,7 @@ TEST(RoverSteps, APlanEachSecondFromWhereTheRobotsAre) {
   EXPECT_LT((planned_m - measured_m).norm(), 1e-6);
 }
 
-TEST(RoverSteps, KeepRobotsOnTheirWay) {
+TEST(RoverSteps, KeepRobotsUnderWay) {
   Bench bench;
   bench.step_after(milliseconds(50));
   bench.keeper->set_phase(MissionPhase::kRunning);
@@ -138,13 +138,13 @@ TEST(RoverSteps, KeepRobotsOnTheirWay) {
       goals[i] = goal;
     }
   }
-  double way_m = 0.0;
-  for (std::size_t i = 0; i < 60; ++i) way_m += (bench.robots[i].position_m - begin_m[i]).norm();
+  double distance_m = 0.0;
+  for (std::size_t i = 0; i < 60; ++i) distance_m += (bench.robots[i].position_m - begin_m[i]).norm();
   // Without a memory of goals each robot changes its own about every third plan; with one less than
   // half as often: which goal is nearer is not decided while several are far.
   EXPECT_LE(changes, 60 * 59 / 6);
-  EXPECT_LE(path_m, 1.15 * way_m);
-  EXPECT_GE(way_m, 60.0 * 40.0);
+  EXPECT_LE(path_m, 1.15 * distance_m);
+  EXPECT_GE(distance_m, 60.0 * 40.0);
 }
 
 TEST(RoverSteps, GoOnUntilTheLastRobotHasArrived) {
@@ -154,7 +154,7 @@ TEST(RoverSteps, GoOnUntilTheLastRobotHasArrived) {
   bench.report();
   bench.step_after(milliseconds(50));
   for (ReportedRobot& robot : bench.robots) {
-    const FlowPlace place = bench.place_of(robot);
+    const FlowPosition place = bench.place_of(robot);
     robot.position_m = bench.keeper->newest().planned.plan.nodes()[place.sink].gaussian.mean_m();
     robot.arrived = robot.robot != RobotId(7);
   }
@@ -206,7 +206,7 @@ TEST(RoverSteps, APlannerThatComesBackPlansFromWhereTheRobotsAre) {
   }
 }
 
-TEST(RoverSteps, SayByHowMuchAPlanBreaksTheLimit) {
+TEST(RoverSteps, ReportByHowMuchAPlanBreaksTheLimit) {
   Bench bench;
   bench.step_after(milliseconds(50));
   EXPECT_EQ(bench.keeper->newest().planned.excess.by_m, 0.0);

@@ -115,7 +115,7 @@ TEST(Rover, CostNeverRisesFromStepToStep) {
   }
 }
 
-TEST(Rover, MoreRiskIsAShorterWay) {
+TEST(Rover, MoreRiskIsAShorterPath) {
   const Mission mission = testing::rover_scene(2);
   double last_m = 1e9;
   for (const double alpha : {0.05, 0.15, 0.3}) {
@@ -185,7 +185,7 @@ TEST(Rover, GoesOnFromWhereTheRobotsAre) {
   EXPECT_NEAR(arcs, 1.0, 1e-9);
 }
 
-TEST(Rover, SaysWhatToLoosen) {
+TEST(Rover, ReportsWhatToLoosen) {
   const auto box = [](double y0, double y1) {
     return Obstacle(Polygon::make({{95, y0}, {105, y0}, {105, y1}, {95, y1}}).value());
   };
@@ -213,7 +213,7 @@ TEST(Rover, SaysWhatToLoosen) {
   EXPECT_NE(goal.find("raise epsilon to"), std::string::npos) << goal;
 }
 
-TEST(Rover, AStepThatCannotKeepTheLimitSaysByHowMuch) {
+TEST(Rover, AStepThatCannotKeepTheLimitReportsByHowMuch) {
   // All of the swarm 3 m from a wall: it cannot get away within a step.
   const World world =
       World::make({{0, 0}, {200, 160}},

@@ -31,7 +31,7 @@ double row(const std::vector<LineComponent>& line, double z_m) {
   return sum;
 }
 
-TEST(TailLimit, TellsWhetherTheMixtureKeepsTheLimit) {
+TEST(TailLimit, ReportsWhetherTheMixtureKeepsTheLimit) {
   Rng rng(1);
   int kept = 0;
   for (int i = 0; i < 2000; ++i) {

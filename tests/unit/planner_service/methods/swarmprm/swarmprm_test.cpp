@@ -85,8 +85,8 @@ TEST(Planner, NoMeanIsFasterThanAsked) {
   for (const PlanLeg& leg : planned->plan.legs()) {
     const PlanNode& from = planned->plan.nodes()[leg.from];
     const PlanNode& to = planned->plan.nodes()[leg.to];
-    const double way_m = (to.gaussian.mean_m() - from.gaussian.mean_m()).norm();
-    EXPECT_LE(way_m, 0.8 * (to.time - from.time).count() + 1e-9);
+    const double path_m = (to.gaussian.mean_m() - from.gaussian.mean_m()).norm();
+    EXPECT_LE(path_m, 0.8 * (to.time - from.time).count() + 1e-9);
   }
 }
 
@@ -151,7 +151,7 @@ double mean_path_m(const StandinScene& scene, const SwarmPrmOptions& options) {
   return sum_m / 10.0;
 }
 
-TEST(Planner, TakesShorterWaysTheMoreRiskItMayTake) {
+TEST(Planner, TakesShorterPathsTheMoreRiskItMayTake) {
   const StandinScene scene = standin_scene();
   SwarmPrmOptions options;
   double previous_m = 1e9;
@@ -182,7 +182,7 @@ TEST(Planner, ShowsFewerRobotsInObstaclesTheLessRiskItMayTake) {
   }
 }
 
-TEST(Planner, TakesLongerWaysTheMoreClearanceItMustKeep) {
+TEST(Planner, TakesLongerPathsTheMoreClearanceItMustKeep) {
   const StandinScene scene = standin_scene();
   SwarmPrmOptions options;
   double previous_m = 0.0;
@@ -221,7 +221,7 @@ TEST(Planner, PlansForASwarmThatIsAlreadyThere) {
   EXPECT_EQ(planned->plan.legs().size(), 4U);
 }
 
-TEST(Planner, SaysWhichComponentBreaksTheLimitAndWhere) {
+TEST(Planner, ReportsWhichComponentBreaksTheLimitAndWhere) {
   const StandinScene scene = standin_scene();
   SwarmPrmOptions options;
   options.risk.alpha = 0.01;
@@ -234,7 +234,7 @@ TEST(Planner, SaysWhichComponentBreaksTheLimitAndWhere) {
   EXPECT_TRUE(mentions(planned.error().message, "obstacle 2")) << planned.error().message;
 }
 
-TEST(Planner, SaysWhichComponentsNoRouteJoins) {
+TEST(Planner, ReportsWhichComponentsNoRouteJoins) {
   // A wall right across, with a gap too narrow for any sample.
   const auto wall = [](double y0, double y1) {
     return Polygon::make({{45, y0}, {55, y0}, {55, y1}, {45, y1}}).value();

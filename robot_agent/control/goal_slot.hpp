@@ -1,0 +1,84 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <limits>
+
+#include "swarmflow/robot/control_method.hpp"
+#include "swarm_core/base/shared.hpp"
+#include "swarmflow/core/gaussian.hpp"
+
+namespace swarm::agent {
+
+struct GoalSlotOptions {
+  double radius_m = 0.2;
+  double room_gap_m = 0.4;  ///< a neighbour nearer than this pushes; above the filter's margin
+  double room_gain_hz = 3.0;
+  double inner_share = 0.75;   ///< of the push of a neighbour that is farther in
+  double outside_share = 3.0;  ///< … that is still outside of the goal
+  double approach_gain_hz = 0.8;
+  double approach_max_mps = 0.4;  ///< of a robot that has arrived, to its place
+};
+
+/// A robot's place in the goal, and how a crowd finds room in it.
+///
+/// Every robot has a place of its own, but in a full goal the ways to the inner ones are blocked by
+/// robots that came before. Three rules, from what a robot hears alone, let everybody in:
+///
+///   - one that has come no nearer to its place for 2 s takes the place where it is, if it is in
+///     the goal's 99 % ellipse; otherwise it heads for the goal's mean, or again for its place;
+///   - one that has arrived makes room: it moves away from neighbours nearer than room_gap,
+///
+///       u = k Σ_j w_j (D_j − d_j) (x − x_j)/d_j
+///
+///     with d_j the distance of the centres, D_j = r + r_j + room_gap, and w_j = outside_share for
+///     those outside of the ellipse, 1 for those farther out than itself in Mahalanobis distance,
+///     inner_share for the others, so that pressure from outside is passed on through the crowd to
+///     where there is room;
+///   - and it takes the place where that ends, not beyond the rim of the ellipse: from there on it
+///     comes back inwards, the faster the nearer to the edge.
+///
+/// So a full goal is filled like a vessel, and one with room is left as planned.
+class GoalSlot {
+ public:
+  GoalSlot() = default;
+  GoalSlot(const Gaussian& goal, const Vec2& slot_m, Shared<GoalSlotOptions> options);
+
+  /// Asked once a tick. Arrived: in the ellipse and within 1 m of its place.
+  bool has_arrived(SteadyTime now, const Vec2& position_m);
+
+  bool is_in_goal(const Vec2& position_m) const { return goal_.contains_99(position_m); }
+
+  /// Whether a position is in the goal or at most a third of its size beside it.
+  bool is_beside(const Vec2& position_m) const {
+    constexpr double kBeside = 16.0;  // squared Mahalanobis distance: 4/3 of the 99 % ellipse
+    return goal_.mahalanobis_squared(position_m) < kBeside;
+  }
+
+  /// Whether it has come no nearer, outside of the goal.
+  bool is_blocked() const { return blocked_; }
+
+  double left_m(const Vec2& position_m) const { return (slot_m_ - position_m).norm(); }
+
+  /// Where to head for.
+  const Vec2& aim_m() const { return blocked_ ? goal_.mean_m() : slot_m_; }
+
+  /// The robot is held: no time without progress.
+  void wait(SteadyTime now) { progress_at_ = now; }
+
+  /// Velocity wished by a robot that has arrived [m/s]. O(neighbours).
+  Vec2 keep(const ControlView& view);
+
+ private:
+  Vec2 room(const ControlView& view) const;
+
+  Shared<GoalSlotOptions> options_;
+  Gaussian goal_;
+  Vec2 slot_m_ = Vec2::Zero();
+  double nearest_m_ = std::numeric_limits<double>::infinity();
+  SteadyTime progress_at_;
+  bool arrived_ = false;
+  bool blocked_ = false;
+};
+
+}  // namespace swarm::agent

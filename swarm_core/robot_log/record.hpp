@@ -1,0 +1,71 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "swarmflow/core/ids.hpp"
+#include "swarmflow/core/linalg.hpp"
+#include "swarmflow/core/time.hpp"
+#include "swarm_core/metrics/histogram.hpp"
+
+/// The robot log of one robot: a file of its own that it alone appends to, at control rate. Audits
+/// and reports are computed from these files and nothing else.
+namespace swarm::robot_log {
+
+/// Start of a life of this robot's process (a respawned robot has several in one file).
+struct Header {
+  RobotId robot;
+  std::uint32_t robots = 0;
+  std::uint32_t process_id = 0;
+  double radius_m = 0.0;
+  UtcTime stamp{};
+};
+
+/// One control step: where the robot was at `stamp` and what it commanded from then on.
+struct Step {
+  UtcTime stamp{};
+  Vec2 position_m = Vec2::Zero();
+  Vec2 velocity_mps = Vec2::Zero();  ///< commanded
+  std::int32_t lateness_us = 0;      ///< actual minus scheduled start of the tick
+  std::uint8_t mode = 0;             ///< link::RobotMode
+  std::uint8_t goal = kNoGoal;       ///< sink of the plan this robot goes to
+  std::uint16_t neighbours = 0;      ///< robots it believed near
+  std::uint32_t plan_version = 0;    ///< of the plan followed in time; 0: it follows none in time
+  float plan_time_s = 0.0F;          ///< τ, that plan's clock, as the robot has it
+  float reference_x_m = 0.0F;        ///< x_ref(τ): where the plan has this robot at τ
+  float reference_y_m = 0.0F;
+  static constexpr std::uint8_t kNoGoal = 255;
+};
+
+/// Where it took a neighbour to be at `stamp`: one of those near it, in turn.
+struct Estimate {
+  UtcTime stamp{};
+  RobotId neighbour;
+  Vec2 position_m = Vec2::Zero();
+};
+
+/// Counters since the process started, once a second and at the end.
+struct LinkStats {
+  UtcTime stamp{};
+  std::uint32_t states_sent = 0;
+  std::uint32_t states_received = 0;
+  std::vector<std::uint32_t> refused{};  ///< by link::RefusalReason
+  Histogram state_age{};                 ///< written → used by the controller
+};
+
+/// Something that happened to this robot.
+struct Note {
+  UtcTime stamp{};
+  UtcTime caused{};    ///< stamp of the message that caused it; 0 if none
+  std::string code{};  ///< as link::EventMessage::code
+  std::string text{};
+};
+
+using Record = std::variant<Header, Step, Estimate, LinkStats, Note>;
+
+}  // namespace swarm::robot_log
