@@ -17,3 +17,15 @@ if(SWARM_SANITIZE)
   add_compile_options(-fsanitize=${SWARM_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
   add_link_options(-fsanitize=${SWARM_SANITIZE})
 endif()
+
+# Sources of a library compiled eight at a time: headers are read once for all eight. Of all our libraries, by
+# swarm_unity() below; tests are compiled file by file, so that every header must be complete.
+option(SWARM_UNITY "Compile the libraries eight source files at a time" OFF)
+function(swarm_unity)
+  if(NOT SWARM_UNITY)
+    return()
+  endif()
+  foreach(target IN LISTS ARGN)
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
+  endforeach()
+endfunction()

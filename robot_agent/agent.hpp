@@ -7,10 +7,10 @@
 #include <string>
 
 #include "robot_agent/agent_options.hpp"
-#include "robot_agent/control/guarded_method.hpp"
+#include "robot_agent/safety/guarded_method.hpp"
 #include "swarmflow/robot/route.hpp"
-#include "robot_agent/control/safety_filter.hpp"
-#include "robot_agent/neighbour_table.hpp"
+#include "robot_agent/safety/safety_filter.hpp"
+#include "robot_agent/neighbours/neighbour_table.hpp"
 #include "robot_agent/send_policy.hpp"
 #include "swarmflow/core/random.hpp"
 #include "swarm_core/base/shared.hpp"

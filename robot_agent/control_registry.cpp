@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "robot_agent/control/builtin_methods.hpp"
+#include "robot_agent/methods/builtin_methods.hpp"
 #include "swarm_core/base/assert.hpp"
 
 namespace swarm::agent {

@@ -5,8 +5,8 @@
 #include <optional>
 #include <utility>
 
-#include "robot_agent/control/safety_filter.hpp"
-#include "robot_agent/neighbour_table.hpp"
+#include "robot_agent/safety/safety_filter.hpp"
+#include "robot_agent/neighbours/neighbour_table.hpp"
 #include "swarmflow/core/linalg.hpp"
 #include "swarm_core/base/shared.hpp"
 #include "swarmflow/core/time.hpp"

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-#include "swarm_core/shell/program.hpp"
-#include "swarm_core/shell/stop_signal.hpp"
-#include "swarm_launcher/builtin_catalogue.hpp"
+#include "swarm_core/app/program.hpp"
+#include "swarm_core/app/stop_signal.hpp"
+#include "swarm_launcher/processes/builtin_catalogue.hpp"
 #include "swarm_launcher/cli/commands.hpp"
 
 int main(int argc, char** argv) {
@@ -16,9 +16,21 @@ int main(int argc, char** argv) {
     app.require_subcommand(1);
     shell::add_common_options(app);
     using namespace launcher::cli;
-    const Command commands[] = {add_run(app),   add_gateway(app), add_join(app),
-                                add_soak(app),  add_plan(app),    add_simulate(app),
-                                add_table(app), add_command(app), add_keys(app)};
+    const Command commands[] = {
+        add_run(app),
+        add_gateway(app),
+        add_join(app),
+        add_plan(app),
+        add_keys(app),
+        add_command(app),
+        add_sibling(app, "simulate", "Fly a mission in lock-step, in one process, as fast as it goes",
+                    {"swarm_sim"}),
+        add_sibling(app, "table",
+                    "Simulate a paper's experiment: its table, its peers and ours side by side",
+                    {"swarm_experiments", "table"}),
+        add_sibling(app, "soak",
+                    "Keep a swarm moving, and measure what its link and its processes do",
+                    {"swarm_experiments", "soak"})};
     const auto done = shell::parse(app, argc, argv, builtin_catalogue());
     if (!done) return tl::unexpected(done.error());
     if (*done) return **done;

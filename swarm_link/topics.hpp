@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <string>
 
-#include "swarm_link/cell.hpp"
+#include "swarm_link/channels/cell.hpp"
 #include "swarm_link/messages.hpp"
 
 /// Every topic of the system with its QoS. The vendors translate a Qos in one function each.

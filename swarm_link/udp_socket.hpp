@@ -10,7 +10,7 @@
 
 #include <netinet/in.h>
 
-#include "swarm_link/faulty_path.hpp"
+#include "swarm_link/channels/faulty_path.hpp"
 
 /// UDP on one interface: what the Fast DDS back and the groups share. No vendor's types. Interfaces
 /// are named by their IPv4 address.

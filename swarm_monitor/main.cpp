@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-#include "swarm_core/shell/program.hpp"
-#include "swarm_core/shell/stop_signal.hpp"
+#include "swarm_core/app/program.hpp"
+#include "swarm_core/app/stop_signal.hpp"
 #include "swarm_monitor/cli/commands.hpp"
 
 int main(int argc, char** argv) {

@@ -21,12 +21,12 @@
 namespace swarm::planner {
 namespace {
 
-constexpr std::array kSteps{1.0, 0.5, 0.25};
+constexpr std::array kStraightenSteps{1.0, 0.5, 0.25};
 // Farther from obstacles than the limit asks for: the legs need it where they pass a corner.
 constexpr std::array kExtraRooms_m{0.0, 0.4, 1.0};
 constexpr double kLater_s = 1e-9;    // rounding
 constexpr double kCoarser = 2.0;     // every second time, until the whole is checked
-constexpr double kBelowCap = 0.999;  // so that the check of the whole finds little to undo
+constexpr double kStraightenBelowCap = 0.999;  // so that the check of the whole finds little to undo
 
 // √S = (S + √det I) / √(tr + 2√det), for a positive definite matrix of two rows.
 Mat2 root_of(const Mat2& s) {
@@ -200,7 +200,7 @@ class Straightener {
 
   bool try_place(std::uint32_t i, const Gaussian& g) {
     const Gaussian before = std::exchange(nodes_[i].gaussian, g);
-    if (density_.try_change(nodes_, legs_of_[i], kBelowCap * cap_.max_per_m2)) return true;
+    if (density_.try_change(nodes_, legs_of_[i], kStraightenBelowCap * cap_.max_per_m2)) return true;
     nodes_[i].gaussian = before;
     return false;
   }
@@ -210,7 +210,7 @@ class Straightener {
     const Geodesic path(nodes_[i].gaussian, middle_of(i));
     // A hair more than σ_min needs, so that the squeeze that follows does not end below it.
     const double room_m = k_ * options_.sigma_min_m * (1.0 + 1e-6) - delta_m_;
-    for (const double step : kSteps) {
+    for (const double step : kStraightenSteps) {
       for (const double extra_m : kExtraRooms_m) {
         const std::optional<Gaussian> moved =
             squeeze_into_free(push_out(path.at(step), world_, room_m + extra_m), world_, k_,

@@ -21,7 +21,7 @@ constexpr double kWorthwhile_m = 1e-6;
 // A route longer than this many spacings is looked at more coarsely: time is bounded for any
 // mission.
 constexpr double kMostParts = 2000.0;
-constexpr std::array kSteps{1.0, 0.5};
+constexpr std::array kTightenSteps{1.0, 0.5};
 
 Waypoints resampled(const Waypoints& waypoints, double spacing_m) {
   spacing_m = std::max(spacing_m, w2_length_m(waypoints) / kMostParts);
@@ -57,7 +57,7 @@ void tighten(Waypoints& waypoints, const World& world, const RiskLimit& risk,
         const Geodesic move(fine[i], middle);
         const double now_m = wasserstein2(before, fine[i]) + wasserstein2(fine[i], after);
         // A whole step may cost more shape than it saves way; half of it often does not.
-        for (const double step : kSteps) {
+        for (const double step : kTightenSteps) {
           const std::optional<Gaussian> moved = squeeze_into_free(
               push_out(move.at(step), world, room_m), world, k, risk.delta_m, options.sigma_min_m);
           if (!moved) continue;

@@ -19,7 +19,7 @@ constexpr std::uint32_t kLost = std::numeric_limits<std::uint32_t>::max();
 // the spacing says: random sequential packing of discs covers 0.547 of the plane.
 constexpr double kSpacing = 0.83;
 // Tries for each point that fits: enough to fill nine tenths of the gaps.
-constexpr double kTriesPerSample = 6.0;
+constexpr double kLiveTriesPerSample = 6.0;
 constexpr int kAreaGrid = 32;
 
 Box inflated(const Box& box, double by_m) {
@@ -176,7 +176,7 @@ void LiveRoadmap::draw_samples(std::size_t before, Rng& rng) {
     const Box place = intersection(inflated(box, reach_m), world_->bounds_m());
     const double fit = density_per_m2_ * area_m2(place);
     const auto tries = static_cast<std::size_t>(
-        std::min(kTriesPerSample * fit, 10.0 * static_cast<double>(options_.samples)));
+        std::min(kLiveTriesPerSample * fit, 10.0 * static_cast<double>(options_.samples)));
     draw_in(place, spacing_m, tries, tries, rng);
   }
   std::size_t lost = work_.samples_lost;

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "robot_agent/control/density_attraction.hpp"
+#include "robot_agent/methods/shared/density_attraction.hpp"
 #include "swarmflow/core/flow_plan.hpp"
 #include "swarmflow/mission/mission.hpp"
 #include "swarmflow/robot/planned_density.hpp"

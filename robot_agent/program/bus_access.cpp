@@ -7,8 +7,8 @@
 #include <fmt/format.h>
 
 #include "swarmflow/core/random.hpp"
-#include "swarm_link/groups/group_channel.hpp"
-#include "swarm_link/run_meeting.hpp"
+#include "swarm_link/channels/groups/group_channel.hpp"
+#include "swarm_link/roles/run_meeting.hpp"
 #include "swarm_link/topics.hpp"
 
 namespace swarm::agent {

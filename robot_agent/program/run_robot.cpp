@@ -9,8 +9,8 @@
 #include <CLI/CLI.hpp>
 
 #include "robot_agent/program/agent_process.hpp"
-#include "swarm_core/shell/program.hpp"
-#include "swarm_core/shell/stop_signal.hpp"
+#include "swarm_core/app/program.hpp"
+#include "swarm_core/app/stop_signal.hpp"
 
 namespace swarm::agent {
 namespace {

@@ -16,7 +16,7 @@
 
 #include "swarm_core/base/assert.hpp"
 #include "swarm_core/robot_log/record_codec.hpp"
-#include "swarm_core/mcap/idl_text.hpp"
+#include "swarm_core/robot_log/idl_text.hpp"
 
 namespace swarm::robot_log {
 namespace {

@@ -11,8 +11,8 @@
 #include "swarmflow/core/result.hpp"
 #include "swarm_core/robot_log/record.hpp"
 #include "swarm_core/robot_log/record_codec.hpp"
-#include "swarm_core/mcap/format.hpp"
-#include "swarm_core/mcap/reader.hpp"
+#include "swarm_core/robot_log/format.hpp"
+#include "swarm_core/robot_log/reader.hpp"
 
 namespace swarm::robot_log {
 

@@ -8,6 +8,8 @@
 
 #include "swarmflow/core/polygon.hpp"
 
+#include "swarm_core/world/plane.hpp"
+
 namespace swarm {
 namespace {
 
@@ -15,10 +17,6 @@ using Loop = std::vector<std::uint32_t>;  // vertex indices, counter-clockwise
 
 // Relative to the lengths involved: a turn below this is straight.
 constexpr double kStraight = 1e-12;
-constexpr double kTiny_m = 1e-9;
-
-double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
-
 double turn(const Vec2& a, const Vec2& b, const Vec2& c) { return cross(b - a, c - b); }
 
 double straight_limit(const Vec2& a, const Vec2& b, const Vec2& c) {

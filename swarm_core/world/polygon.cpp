@@ -10,13 +10,10 @@
 
 #include <fmt/format.h>
 
+#include "swarm_core/world/plane.hpp"
+
 namespace swarm {
 namespace {
-
-// Corners nearer to each other, or to the line through their neighbours, than this are no corners.
-constexpr double kTiny_m = 1e-9;
-
-double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
 
 // A corner that remembers which vertex of the caller it was.
 struct Corner {

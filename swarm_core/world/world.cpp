@@ -11,15 +11,10 @@
 #include <fmt/format.h>
 
 #include "swarm_core/base/assert.hpp"
+#include "swarm_core/world/plane.hpp"
 
 namespace swarm {
 namespace {
-
-// Nearer than this a direction taken from two points is rounding noise, and two distances are
-// equal.
-constexpr double kTiny_m = 1e-9;
-
-double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
 
 // The point of segment a + s·ab, s ∈ [0, 1], nearest to p.
 double nearest_parameter(const Vec2& a, const Vec2& ab, const Vec2& p) {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-#include "swarm_launcher/command.hpp"
+#include "swarm_launcher/commands/command.hpp"
 
 #include <memory>
 #include <string>

@@ -3,11 +3,11 @@
 #pragma once
 
 #include <functional>
-#include <optional>
+#include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
-#include "swarm_core/mission/channel.hpp"
 #include "swarmflow/core/result.hpp"
 
 /// The program's subcommands: one file each, or two that belong together.
@@ -23,15 +23,9 @@ Command add_join(CLI::App& program);
 Command add_gateway(CLI::App& program);
 Command add_command(CLI::App& program);
 Command add_plan(CLI::App& program);
-Command add_simulate(CLI::App& program);
-Command add_table(CLI::App& program);
-Command add_soak(CLI::App& program);
+/// `simulate`, `table` or `soak`: passes its arguments on to the program beside this one that has it.
+Command add_sibling(CLI::App& program, const std::string& name, const std::string& description,
+                    const std::vector<std::string>& command_line);
 Command add_keys(CLI::App& program);
-
-/// The options that run and soak share. \pre what they fill outlives the program's options
-void add_channel(CLI::App& command, std::optional<Channel>& channel);
-void add_domain(CLI::App& command, int& domain);
-
-inline constexpr int kMostRobots = 20'000;
 
 }  // namespace swarm::launcher::cli

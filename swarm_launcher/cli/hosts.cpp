@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "swarm_launcher/cli/commands.hpp"
-#include "swarm_launcher/gateway.hpp"
+#include "swarm_launcher/commands/gateway.hpp"
 #include "swarm_launcher/hosts/join_host.hpp"
 
 namespace swarm::launcher::cli {

@@ -4,9 +4,9 @@
 #include <filesystem>
 #include <memory>
 
-#include "swarm_core/mission/mission_keys.hpp"
+#include "swarm_core/mission_file/mission_keys.hpp"
 #include "swarm_launcher/cli/commands.hpp"
-#include "swarm_launcher/described_program.hpp"
+#include "swarm_launcher/processes/described_program.hpp"
 
 namespace swarm::launcher::cli {
 

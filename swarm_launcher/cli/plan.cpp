@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-#include "swarm_launcher/plan.hpp"
+#include "swarm_launcher/commands/plan.hpp"
 
 #include <memory>
 

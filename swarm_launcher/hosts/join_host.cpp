@@ -14,12 +14,12 @@
 
 #include "swarm_core/robot_log/robot_log_file.hpp"
 #include "swarmflow/mission/mission_file.hpp"
-#include "swarm_core/shell/run_dir.hpp"
-#include "swarm_core/shell/stop_signal.hpp"
-#include "swarm_launcher/child_process.hpp"
+#include "swarm_core/app/run_dir.hpp"
+#include "swarm_core/app/stop_signal.hpp"
+#include "swarm_launcher/processes/child_process.hpp"
 #include "swarm_launcher/hosts/line_socket.hpp"
 #include "swarm_launcher/hosts/offer.hpp"
-#include "swarm_launcher/progress.hpp"
+#include "swarm_launcher/supervision/progress.hpp"
 
 namespace swarm::launcher {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "swarmflow/core/result.hpp"
-#include "swarm_core/shell/run_directory.hpp"
+#include "swarm_core/app/run_directory.hpp"
 
 namespace swarm::launcher {
 

@@ -11,7 +11,7 @@
 #include "swarm_launcher/hosts/host_watch.hpp"
 #include "swarm_launcher/hosts/line_socket.hpp"
 #include "swarm_launcher/hosts/offer.hpp"
-#include "swarm_launcher/supervisor.hpp"
+#include "swarm_launcher/supervision/supervisor.hpp"
 
 namespace swarm::launcher {
 

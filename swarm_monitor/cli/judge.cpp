@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "swarm_monitor/cli/commands.hpp"
-#include "swarm_monitor/report.hpp"
+#include "swarm_monitor/report/report.hpp"
 
 namespace swarm::monitor::cli {
 

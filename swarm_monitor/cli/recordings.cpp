@@ -5,7 +5,7 @@
 
 #include <unistd.h>
 
-#include "swarm_core/shell/stop_signal.hpp"
+#include "swarm_core/app/stop_signal.hpp"
 #include "swarm_monitor/cli/commands.hpp"
 #include "swarm_monitor/recording/live_recorder.hpp"
 #include "swarm_monitor/recording/merge.hpp"

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "swarmflow/observe/observer.hpp"
-#include "swarm_monitor/recorded_run.hpp"
+#include "swarm_monitor/audit/recorded_run.hpp"
 
 namespace swarm::monitor {
 namespace {

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "swarmflow/mission/mission_file.hpp"
-#include "swarm_core/shell/run_directory.hpp"
+#include "swarm_core/app/run_directory.hpp"
 #include "swarm_monitor/observe/bus_reader.hpp"
 
 namespace swarm::monitor {

@@ -9,10 +9,10 @@
 
 #include "swarm_core/base/clock.hpp"
 #include "swarm_core/robot_log/record_codec.hpp"
-#include "swarm_core/mcap/idl_text.hpp"
-#include "swarm_link/groups/group_tap.hpp"
+#include "swarm_core/robot_log/idl_text.hpp"
+#include "swarm_link/channels/groups/group_tap.hpp"
 #include "swarm_link/monitor_topics.hpp"
-#include "swarm_link/run_meeting.hpp"
+#include "swarm_link/roles/run_meeting.hpp"
 #include "swarmflow/mission/mission_file.hpp"
 
 namespace swarm::monitor {

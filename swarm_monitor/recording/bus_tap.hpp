@@ -12,7 +12,7 @@
 
 #include "swarmflow/core/result.hpp"
 #include "swarmflow/core/time.hpp"
-#include "swarm_core/mcap/format.hpp"
+#include "swarm_core/robot_log/format.hpp"
 
 namespace swarm::monitor {
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "swarm_core/mcap/reader.hpp"
+#include "swarm_core/robot_log/reader.hpp"
 
 namespace swarm::monitor {
 

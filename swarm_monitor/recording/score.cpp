@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "swarm_core/mcap/reader.hpp"
+#include "swarm_core/robot_log/reader.hpp"
 #include "swarm_monitor/recording/bus_tap.hpp"
 #include "swarm_monitor/recording/replay.hpp"
 

@@ -10,7 +10,7 @@
 
 #include "swarm_core/base/clock.hpp"
 #include "swarmflow/mission/mission_file.hpp"
-#include "swarm_core/shell/run_directory.hpp"
+#include "swarm_core/app/run_directory.hpp"
 #include "swarm_monitor/view/view_frame.hpp"
 #include "swarm_monitor/view/scene_json.hpp"
 

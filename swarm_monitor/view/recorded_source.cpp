@@ -8,8 +8,8 @@
 
 #include <fmt/format.h>
 
-#include "swarm_monitor/clearance.hpp"
-#include "swarm_monitor/tracking/plan_timeline.hpp"
+#include "swarm_monitor/audit/clearance.hpp"
+#include "swarm_monitor/audit/tracking/plan_timeline.hpp"
 #include "swarm_monitor/view/view_frame.hpp"
 #include "swarm_monitor/view/scene_json.hpp"
 

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "swarm_monitor/recorded_run.hpp"
+#include "swarm_monitor/audit/recorded_run.hpp"
 #include "swarm_monitor/view/view_source.hpp"
 
 namespace swarm::monitor {

@@ -11,7 +11,7 @@
 
 #include <fmt/format.h>
 
-#include "swarm_core/shell/control_socket.hpp"
+#include "swarm_core/app/control_socket.hpp"
 
 namespace swarm::monitor {
 

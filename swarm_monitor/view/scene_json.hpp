@@ -9,7 +9,7 @@
 #include "swarmflow/mission/mission.hpp"
 #include "swarmflow/core/flow_plan.hpp"
 #include "swarmflow/core/world.hpp"
-#include "swarm_monitor/recorded_run.hpp"
+#include "swarm_monitor/audit/recorded_run.hpp"
 
 /// Texts of PROTOCOL.md.
 namespace swarm::monitor {

@@ -14,7 +14,7 @@
 #include "swarmflow/core/flow_plan.hpp"
 #include "swarm_link/stream_meter.hpp"
 #include "swarm_monitor/observe/bus_reader.hpp"
-#include "swarm_monitor/recorded_run.hpp"
+#include "swarm_monitor/audit/recorded_run.hpp"
 #include "swarm_monitor/recording/bus_tap.hpp"
 
 namespace swarm::monitor {

@@ -22,8 +22,8 @@
 #include <unistd.h>
 
 #include "swarm_core/base/clock.hpp"
-#include "swarm_link/groups/group_channel.hpp"
-#include "swarm_link/join.hpp"
+#include "swarm_link/channels/groups/group_channel.hpp"
+#include "swarm_link/roles/join.hpp"
 
 namespace {
 

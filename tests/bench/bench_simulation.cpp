@@ -10,8 +10,8 @@
 
 #include <benchmark/benchmark.h>
 
-#include "swarm_launcher/simulation/simulated_network.hpp"
-#include "swarm_launcher/simulation/simulation.hpp"
+#include "swarm_sim/simulated_network.hpp"
+#include "swarm_sim/simulation.hpp"
 #include "swarmflow/mission/mission_file.hpp"
 
 namespace swarm::launcher {

@@ -10,8 +10,8 @@
 #include <unistd.h>
 
 #include "swarm_core/base/assert.hpp"
-#include "swarm_link/cyclone/cyclone_participant.hpp"
-#include "swarm_link/groups/group_channel.hpp"
+#include "swarm_link/adapters/cyclone/cyclone_participant.hpp"
+#include "swarm_link/channels/groups/group_channel.hpp"
 #include "swarm_link/inproc/inproc_bus.hpp"
 
 namespace swarm::link::conformance {

@@ -9,9 +9,9 @@
 
 #include <gtest/gtest.h>
 
-#include "swarm_link/fastdds/fastdds_participant.hpp"
+#include "swarm_link/adapters/fastdds/fastdds_participant.hpp"
 #include "swarm_link/port.hpp"
-#include "swarm_link/state_channel.hpp"
+#include "swarm_link/channels/state_channel.hpp"
 
 /// What the conformance suite runs against: each back behind the same few functions.
 namespace swarm::link::conformance {

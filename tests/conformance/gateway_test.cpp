@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
 // Two worlds, states by groups and states by topics, and what carries between them.
-#include "swarm_link/gateway.hpp"
+#include "swarm_link/gateway/gateway.hpp"
 
 #include <functional>
 #include <thread>
@@ -9,8 +9,8 @@
 #include <gtest/gtest.h>
 
 #include "swarm_core/base/clock.hpp"
-#include "swarm_link/groups/group_channel.hpp"
-#include "swarm_link/join.hpp"
+#include "swarm_link/channels/groups/group_channel.hpp"
+#include "swarm_link/roles/join.hpp"
 #include "tests/conformance/bus.hpp"
 
 namespace swarm::link::conformance {

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
 // What only multicast groups can get wrong: anybody may send anything there.
-#include "swarm_link/groups/group_channel.hpp"
+#include "swarm_link/channels/groups/group_channel.hpp"
 
 #include <set>
 #include <thread>

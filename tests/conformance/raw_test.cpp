@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "swarm_link/cdr/codec.hpp"
-#include "swarm_link/join.hpp"
+#include "swarm_link/roles/join.hpp"
 #include "swarm_link/monitor_topics.hpp"
 #include "tests/conformance/bus.hpp"
 

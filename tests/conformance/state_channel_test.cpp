@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
 // Every channel over every back: joins, leaves, hears.
-#include "swarm_link/state_channel.hpp"
+#include "swarm_link/channels/state_channel.hpp"
 
 #include <set>
 

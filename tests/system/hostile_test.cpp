@@ -13,8 +13,8 @@
 #include <sstream>
 
 #include "flown_run.hpp"
-#include "swarm_core/shell/run_directory.hpp"
-#include "swarm_link/fastdds/fastdds_participant.hpp"
+#include "swarm_core/app/run_directory.hpp"
+#include "swarm_link/adapters/fastdds/fastdds_participant.hpp"
 #include "swarm_link/topics.hpp"
 
 namespace swarm::test {

@@ -7,7 +7,7 @@
 #include <sys/resource.h>
 
 #include "flown_run.hpp"
-#include "swarm_core/mcap/reader.hpp"
+#include "swarm_core/robot_log/reader.hpp"
 
 namespace swarm::test {
 namespace {

@@ -12,10 +12,10 @@
 #include "program.hpp"
 #include "swarm_core/robot_log/robot_log_file.hpp"
 #include "swarm_core/mission/link_faults.hpp"
-#include "swarm_core/mission/scene_log.hpp"
+#include "swarm_core/mission_file/scene_log.hpp"
 #include "swarm_core/plan/plan_json.hpp"
-#include "swarm_launcher/builtin_catalogue.hpp"
-#include "swarm_launcher/simulation/simulation.hpp"
+#include "swarm_launcher/processes/builtin_catalogue.hpp"
+#include "swarm_sim/simulation.hpp"
 #include "swarmflow/core/plan_clock.hpp"
 #include "swarmflow/mission/mission_file.hpp"
 

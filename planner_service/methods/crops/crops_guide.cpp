@@ -19,7 +19,7 @@
 namespace swarm::planner {
 namespace {
 
-constexpr std::size_t kTriesPerSample = 200;
+constexpr std::size_t kGuideTriesPerSample = 200;
 constexpr double kCostliest = 1e6;
 // Leaves an obstacle at exactly its clearance on the right side of rounding.
 constexpr double kJustBelow = 1.0 - 1e-9;
@@ -162,7 +162,7 @@ std::size_t CropsGuide::add_samples(std::size_t count, HaltonMeans& means) {
   const Box& bounds = world_->bounds_m();
   const Box inside{bounds.min_m.array() + clearance_m, bounds.max_m.array() - clearance_m};
   std::size_t added = 0;
-  for (std::size_t tries = kTriesPerSample * count; tries > 0 && added < count; --tries) {
+  for (std::size_t tries = kGuideTriesPerSample * count; tries > 0 && added < count; --tries) {
     const Vec2 point_m = means.next();
     if (!inside.contains(point_m) || !world_->is_clear(point_m, clearance_m)) continue;
     points_m_.push_back(point_m);

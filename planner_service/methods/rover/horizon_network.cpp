@@ -11,7 +11,7 @@
 namespace swarm::planner {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
@@ -59,7 +59,7 @@ HorizonNetwork::HorizonNetwork(const RiskGraph& graph, std::span<const VertexMas
 }
 
 HorizonNetwork::Paths HorizonNetwork::paths_to(std::size_t goal) const {
-  Paths paths{std::vector<double>(goal_row_, kInfinity),
+  Paths paths{std::vector<double>(goal_row_, kUnbounded),
             std::vector<std::size_t>(goal_row_, columns_.size())};
   // Columns are ordered by stage: from the last to the first every layer is ready when it is read.
   for (std::size_t c = columns_.size(); c-- > 0;) {
@@ -91,11 +91,11 @@ std::vector<std::size_t> HorizonNetwork::cheapest_routes() const {
 }
 
 std::vector<double> HorizonNetwork::detours() const {
-  std::vector<double> least(columns_.size(), kInfinity);
+  std::vector<double> least(columns_.size(), kUnbounded);
   for (std::size_t n = 0; n < goals_; ++n) {
     const std::vector<double> to_go = paths_to(n).cost;
     // Least cost from a source, less all that this source's cheapest way costs.
-    std::vector<double> so_far(goal_row_, kInfinity);
+    std::vector<double> so_far(goal_row_, kUnbounded);
     for (std::size_t c = 0; c < columns_.size(); ++c) {
       const Column& column = columns_[c];
       if (column.stage == horizon_ && column.to != n) continue;

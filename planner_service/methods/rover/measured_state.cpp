@@ -12,7 +12,7 @@
 namespace swarm::planner {
 namespace {
 
-constexpr int kMaxRounds = 2000;
+constexpr int kMaxFlowRounds = 2000;
 constexpr double kConverged = 1e-9;
 
 // A robot speaks for this many components: those around it on the grid.
@@ -63,7 +63,7 @@ std::vector<double> estimate_weights(std::span<const Gaussian> components,
   }
   std::vector<double> weights(count, 1.0 / static_cast<double>(count));
   std::vector<double> next(count);
-  for (int round = 0; round < kMaxRounds; ++round) {
+  for (int round = 0; round < kMaxFlowRounds; ++round) {
     std::fill(next.begin(), next.end(), 0.0);
     for (std::size_t i = 0; i < positions_m.size(); ++i) {
       const double* row = &likelihood[i * count];

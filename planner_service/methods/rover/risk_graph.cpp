@@ -17,7 +17,7 @@
 namespace swarm::planner {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kUnreachable = std::numeric_limits<double>::infinity();
 
 // A source that stands nearer to an obstacle than others may leaves with all but this of its
 // clearance.
@@ -76,7 +76,7 @@ Result<RiskGraph> RiskGraph::make(const World& world, const Mixture& goal,
   graph.base_ = static_cast<std::uint32_t>(graph.vertices_.size());
   for (std::uint32_t v = 0; v < graph.base_; ++v) graph.add_arcs(v, graph.base_);
   graph.see_arcs_from(0);
-  graph.to_goal_m_.assign(graph.vertices_.size() * graph.goals_, kInfinity);
+  graph.to_goal_m_.assign(graph.vertices_.size() * graph.goals_, kUnreachable);
   for (std::size_t n = 0; n < graph.goals_; ++n) graph.search(n);
   return graph;
 }
@@ -84,8 +84,8 @@ Result<RiskGraph> RiskGraph::make(const World& world, const Mixture& goal,
 void RiskGraph::add_vertex(const Gaussian& g) {
   const auto index = static_cast<std::uint32_t>(vertices_.size());
   vertices_.push_back(g);
-  double worst_m = -kInfinity;
-  double clearance_m = kInfinity;
+  double worst_m = -kUnreachable;
+  double clearance_m = kUnreachable;
   const double reach_m = kNearSigmas * g.max_sigma_m();
   const std::vector<ConvexObstacle>& obstacles = world_->convex_obstacles();
   for (std::size_t o = 0; o < obstacles.size(); ++o) {
@@ -133,7 +133,7 @@ void RiskGraph::add_arcs(std::uint32_t from, std::uint32_t among) {
   const double clearance_m =
       std::min(options_.mean_clearance_m, std::max(0.0, kOwnClearance * clearance_m_[from]));
   std::vector<std::pair<double, std::uint32_t>> reached;
-  double nearest_m = kInfinity;
+  double nearest_m = kUnreachable;
   for (std::uint32_t to = 0; to < among; ++to) {
     if (to == from) continue;
     // W₂ is at least the distance of the means.
@@ -190,7 +190,7 @@ std::optional<std::uint32_t> RiskGraph::add_source(const Gaussian& g) {
   add_arcs(index, base_);
   see_arcs_from(arc_offset_[index]);
   for (std::size_t n = 0; n < goals_; ++n) {
-    double best_m = kInfinity;
+    double best_m = kUnreachable;
     for (const Arc& arc : arcs_of(index)) {
       if (arc.to != index) best_m = std::min(best_m, arc.length_m + to_goal_m(arc.to, n));
     }

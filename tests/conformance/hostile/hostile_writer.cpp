@@ -14,8 +14,8 @@
 
 #include "hostilePubSubTypes.h"
 #include "swarm_core/base/assert.hpp"
-#include "swarm_link/fastdds/entity_qos.hpp"
-#include "swarm_link/fastdds/participant_qos.hpp"
+#include "swarm_link/adapters/fastdds/entity_qos.hpp"
+#include "swarm_link/adapters/fastdds/participant_qos.hpp"
 #include "swarm_link/topics.hpp"
 
 namespace swarm::link::conformance {

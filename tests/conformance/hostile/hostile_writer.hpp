@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <memory>
 
-#include "swarm_link/fastdds/fastdds_participant.hpp"
+#include "swarm_link/adapters/fastdds/fastdds_participant.hpp"
 
 /// A peer of another make: a plain participant of the vendor's, with types of its own under our
 /// type names. This header is vendor-free.

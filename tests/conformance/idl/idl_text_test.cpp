@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
 // Every list of fields against the text of the IDL: names, types, order and bounds.
-#include "swarm_core/mcap/idl_text.hpp"
+#include "swarm_core/robot_log/idl_text.hpp"
 
 #include <map>
 #include <regex>

@@ -7,11 +7,11 @@
 
 #include <fmt/format.h>
 
-#include "planner_service/planner_inbox.hpp"
+#include "planner_service/program/planner_inbox.hpp"
 #include "robot_agent/inbox.hpp"
-#include "swarm_launcher/health_inbox.hpp"
+#include "swarm_launcher/flight/health_inbox.hpp"
 #include "swarm_link/cdr/codec.hpp"
-#include "swarm_link/gateway_inbox.hpp"
+#include "swarm_link/gateway/gateway_inbox.hpp"
 #include "swarm_link/wire_bounds.hpp"
 #include "swarm_monitor/view/swarm_state.hpp"
 #include "tests/conformance/receivers/receiver.hpp"

@@ -12,7 +12,7 @@
 
 #include <gtest/gtest.h>
 
-#include "planner_service/plan_keeper.hpp"
+#include "planner_service/keeper/plan_keeper.hpp"
 #include "swarmflow/mission/mission_file.hpp"
 #include "swarm_core/mission/placement.hpp"
 #include "tests/unit/planner_service/planners.hpp"

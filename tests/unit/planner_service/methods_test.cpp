@@ -5,7 +5,7 @@
 
 #include "planner_service/flow/plan_density.hpp"
 #include "planner_service/plan_checks.hpp"
-#include "planner_service/replan.hpp"
+#include "planner_service/keeper/replan.hpp"
 #include "swarm_core/risk/mixture_cvar.hpp"
 #include "swarmflow/mission/mission.hpp"
 #include "tests/unit/planner_service/planners.hpp"

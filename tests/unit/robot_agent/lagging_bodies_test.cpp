@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-#include "robot_agent/control/safety_filter.hpp"
+#include "robot_agent/safety/safety_filter.hpp"
 #include "robot_agent/drivers/simulated_robot.hpp"
 #include "swarmflow/mission/body_limits.hpp"
 #include "swarmflow/robot/driver_registry.hpp"

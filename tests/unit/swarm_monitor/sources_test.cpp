@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "swarm_link/cdr/codec.hpp"
-#include "swarm_core/mcap/writer.hpp"
+#include "swarm_core/robot_log/writer.hpp"
 #include "swarm_link/to_message.hpp"
 #include "swarm_monitor/recording/replay.hpp"
 #include "swarm_monitor/view/live_source.hpp"

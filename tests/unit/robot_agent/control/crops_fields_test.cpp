@@ -6,13 +6,13 @@
 
 #include <gtest/gtest.h>
 
-#include "robot_agent/control/crops_fields/escape_walk.hpp"
-#include "robot_agent/control/crops_fields/give_way_field.hpp"
-#include "robot_agent/control/crops_fields/goal_field.hpp"
-#include "robot_agent/control/crops_fields/heading_field.hpp"
-#include "robot_agent/control/crops_fields/obstacle_field.hpp"
-#include "robot_agent/control/crops_fields/separation_field.hpp"
-#include "robot_agent/control/crops_fields/superposition.hpp"
+#include "robot_agent/methods/crops/fields/escape_walk.hpp"
+#include "robot_agent/methods/crops/fields/give_way_field.hpp"
+#include "robot_agent/methods/crops/fields/goal_field.hpp"
+#include "robot_agent/methods/crops/fields/heading_field.hpp"
+#include "robot_agent/methods/crops/fields/obstacle_field.hpp"
+#include "robot_agent/methods/crops/fields/separation_field.hpp"
+#include "robot_agent/methods/crops/fields/superposition.hpp"
 
 namespace swarm::agent {
 namespace {

@@ -11,7 +11,7 @@
 
 #include <gtest/gtest.h>
 
-#include "robot_agent/control/safety_filter.hpp"
+#include "robot_agent/safety/safety_filter.hpp"
 #include "swarmflow/core/random.hpp"
 
 namespace swarm::agent {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-#include "swarm_core/mission/bitmap_file.hpp"
+#include "swarm_core/mission_file/bitmap_file.hpp"
 
 #include <array>
 #include <filesystem>

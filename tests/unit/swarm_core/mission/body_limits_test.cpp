@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "swarm_launcher/builtin_catalogue.hpp"
+#include "swarm_launcher/processes/builtin_catalogue.hpp"
 
 namespace swarm {
 namespace {

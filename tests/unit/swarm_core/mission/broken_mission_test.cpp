@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-#include "swarm_launcher/builtin_catalogue.hpp"
+#include "swarm_launcher/processes/builtin_catalogue.hpp"
 #include "swarmflow/mission/mission_file.hpp"
 
 namespace swarm {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-#include "swarm_core/mission/goal_shape.hpp"
+#include "swarm_core/mission_file/goal_shape.hpp"
 
 #include <filesystem>
 #include <string>

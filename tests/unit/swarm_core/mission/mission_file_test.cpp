@@ -8,10 +8,10 @@
 
 #include <gtest/gtest.h>
 
-#include "swarm_core/mission/mission_fields.hpp"
-#include "swarm_core/mission/scene_change_file.hpp"
+#include "swarm_core/mission_file/mission_fields.hpp"
+#include "swarm_core/mission_file/scene_change_file.hpp"
 #include "swarm_core/risk/mixture_cvar.hpp"
-#include "swarm_launcher/builtin_catalogue.hpp"
+#include "swarm_launcher/processes/builtin_catalogue.hpp"
 #include "swarmflow/core/cvar.hpp"
 
 namespace swarm {

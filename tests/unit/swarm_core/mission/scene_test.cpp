@@ -5,8 +5,8 @@
 #include <gtest/gtest.h>
 
 #include "swarm_core/mission/scene_bodies.hpp"
-#include "swarm_core/mission/scene_change_file.hpp"
-#include "swarm_core/mission/scene_log.hpp"
+#include "swarm_core/mission_file/scene_change_file.hpp"
+#include "swarm_core/mission_file/scene_log.hpp"
 
 namespace swarm {
 namespace {

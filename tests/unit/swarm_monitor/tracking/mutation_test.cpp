@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "planned_run.hpp"
-#include "swarm_monitor/audit.hpp"
+#include "swarm_monitor/audit/audit.hpp"
 
 namespace swarm::monitor {
 namespace {

@@ -5,7 +5,7 @@
 #include <functional>
 #include <vector>
 
-#include "swarm_monitor/recorded_run.hpp"
+#include "swarm_monitor/audit/recorded_run.hpp"
 
 namespace swarm::monitor {
 

@@ -11,7 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "planner_service/groups/robot_groups.hpp"
-#include "planner_service/replan.hpp"
+#include "planner_service/keeper/replan.hpp"
 #include "swarmflow/core/random.hpp"
 #include "swarm_core/gmm/wasserstein.hpp"
 #include "swarm_core/mission/placement.hpp"

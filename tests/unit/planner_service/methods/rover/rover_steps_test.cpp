@@ -9,7 +9,7 @@
 #include "planner_service/groups/robot_groups.hpp"
 #include "planner_service/methods/rover/flow_groups.hpp"
 #include "planner_service/methods/rover/plan_excess.hpp"
-#include "planner_service/plan_keeper.hpp"
+#include "planner_service/keeper/plan_keeper.hpp"
 #include "swarm_core/gmm/wasserstein.hpp"
 #include "swarm_core/mission/placement.hpp"
 #include "swarm_core/plan/flow_draw.hpp"

@@ -1,0 +1,81 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+// `swarm_launcher table` and `swarm_launcher soak` are this program.
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "experiments/papers/table.hpp"
+#include "experiments/soak/soak.hpp"
+#include "swarm_core/app/program.hpp"
+#include "swarm_core/app/stop_signal.hpp"
+#include "swarm_launcher/cli/shared_options.hpp"
+#include "swarm_launcher/processes/builtin_catalogue.hpp"
+
+namespace swarm::launcher {
+namespace {
+
+using Act = std::function<Result<ExitCode>()>;
+
+Act add_table(CLI::App& program) {
+  const auto o = std::make_shared<TableOptions>();
+  CLI::App* const table = program.add_subcommand(
+      "table", "Simulate a paper's experiment: its table, its peers and ours side by side");
+  table->add_option("which", o->which, "The experiment")
+      ->required()
+      ->check(CLI::IsMember(std::vector<std::string>(kTables.begin(), kTables.end())));
+  table->add_flag("--quick", o->quick, "Fewer robots and seeds");
+  table->add_option("--missions", o->missions, "Where the mission files are");
+  table->add_option("--out", o->out, "Directory for Markdown, JSON and pictures");
+  return [o] { return make_table(*o); };
+}
+
+Act add_soak(CLI::App& program) {
+  using namespace cli;
+  const auto o = std::make_shared<SoakOptions>();
+  CLI::App* const soak_app = program.add_subcommand(
+      "soak", "Keep a swarm moving, and measure what its link and its processes do");
+  soak_app->add_option("--processes", o->processes, "Number of agent processes")
+      ->check(CLI::Range(1, kMostRobots));
+  soak_app->add_option("--per-process", o->per_process, "Robots hosted by each")
+      ->check(CLI::Range(1, kMostRobots));
+  soak_app->add_option("--rate-hz", o->rate_hz, "Control rate")->check(CLI::Range(1.0, 100.0));
+  soak_app->add_option("--duration-s", o->duration_s, "How long robots move")
+      ->check(CLI::Range(5.0, 1e6));
+  add_channel(*soak_app, o->channel);
+  soak_app->add_option("--fault", o->fault, "A bad network, as for run")->type_name("FAULT");
+  soak_app->add_option("--max-p99-ms", o->criteria.max_p99_ms,
+                       "Fail if 1 % of states take longer to a listener");
+  soak_app->add_option("--max-loss", o->criteria.max_loss,
+                       "Fail if a larger share of states is lost");
+  soak_app->add_option("--max-rss-growth-pct", o->criteria.max_rss_growth_pct,
+                       "Fail if the agents' memory grows by more");
+  soak_app->add_option("--seed", o->seed, "Seed of placement, plan and robots");
+  soak_app->add_option("--out", o->out, "Run directory (default: runs/soak-<time>)");
+  add_domain(*soak_app, o->domain);
+  soak_app->add_flag("--json", o->json, "Print the result as JSON");
+  return [o] { return soak(*o); };
+}
+
+}  // namespace
+}  // namespace swarm::launcher
+
+int main(int argc, char** argv) {
+  using namespace swarm;
+  return shell::run_main("swarm_experiments", [&]() -> Result<ExitCode> {
+    CLI::App app("The papers' experiments in lock-step, and soaks of a swarm in flight",
+                 "swarm_experiments");
+    app.require_subcommand(1);
+    shell::add_common_options(app);
+    const launcher::Act table = launcher::add_table(app);
+    const launcher::Act soak = launcher::add_soak(app);
+    const auto done = shell::parse(app, argc, argv, launcher::builtin_catalogue());
+    if (!done) return tl::unexpected(done.error());
+    if (*done) return **done;
+    shell::catch_stop_signals();
+    return app.got_subcommand("table") ? table() : soak();
+  });
+}

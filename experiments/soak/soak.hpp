@@ -1,0 +1,33 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "swarmflow/core/result.hpp"
+#include "experiments/soak/soak_result.hpp"
+
+namespace swarm::launcher {
+
+struct SoakOptions {
+  std::uint32_t processes = 100;
+  std::uint32_t per_process = 1;
+  double rate_hz = 10.0;
+  double duration_s = 60.0;
+  std::uint64_t seed = 1;
+  std::optional<Channel> channel{};  ///< empty: choose_channel() decides
+  std::string fault{};               ///< as parse_link_faults() reads it
+  SoakCriteria criteria{};
+  std::filesystem::path out{};  ///< run directory; empty: runs/soak-<time>
+  int domain = -1;
+  bool json = false;
+};
+
+/// `swarm_launcher soak`: a swarm that keeps moving for a given time, and what its link and its
+/// processes did in the meantime. Result on stdout, soak.json and soak.html in the run directory.
+Result<ExitCode> soak(const SoakOptions& options);
+
+}  // namespace swarm::launcher

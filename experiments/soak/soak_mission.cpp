@@ -1,0 +1,51 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "experiments/soak/soak_mission.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <numbers>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "swarm_launcher/processes/builtin_catalogue.hpp"
+#include "swarmflow/mission/mission_file.hpp"
+
+namespace swarm::launcher {
+namespace {
+
+// In the middle of the crowd; the densest of the papers' missions has as much.
+constexpr double kAreaPerRobot_m2 = 8.0;
+
+}  // namespace
+
+Result<Mission> soak_mission(std::uint32_t robots, double rate_hz, double duration_s) {
+  // N robots of one Gaussian are densest in its middle: N / (2π σ²).
+  const double variance_m2 = std::max(4.0, robots * kAreaPerRobot_m2 / (2.0 * std::numbers::pi));
+  const double sigma_m = std::sqrt(variance_m2);
+  const double side_m = 14.0 * sigma_m;
+  const auto dense_region_at = [&](double x_m) {
+    return fmt::format("[{{mean_m: [{}, {}], covariance_m2: [[{}, 0], [0, {}]], weight: 1}}]", x_m,
+                       0.5 * side_m, variance_m2, variance_m2);
+  };
+  const std::string ends[] = {dense_region_at(0.25 * side_m), dense_region_at(0.75 * side_m)};
+  std::string yaml = fmt::format(
+      "version: 1\nname: soak\nworld: {{bounds_m: [0, 0, {0}, {0}]}}\n"
+      "robots: {{count: {1}}}\nstart: {2}\ngoal: {3}\n"
+      "planner: {{samples: 20, connection_radius_m: {0}, sigma_min_m: {4}, sigma_max_m: {4}}}\n"
+      "control: {{rate_hz: {5}}}\nlauncher: {{time_limit_s: {6}}}\nscript:\n",
+      side_m, robots, ends[0], ends[1], sigma_m, rate_hz, duration_s);
+  // The next goal comes before the last is reached, so that nobody rests; one more than there is
+  // time for, so that the time limit is what ends it.
+  const double leg_s = 0.5 * side_m / ControlSpec{}.cruise_mps;
+  std::size_t goal = 0;
+  for (double at_s = leg_s; at_s - leg_s <= duration_s; at_s += leg_s, goal = 1 - goal) {
+    fmt::format_to(std::back_inserter(yaml), "  - {{at_s: {}, action: goto, goal: {}}}\n", at_s,
+                   ends[goal]);
+  }
+  return parse_mission(yaml, "the soak's own mission", {}, builtin_catalogue());
+}
+
+}  // namespace swarm::launcher

@@ -1,0 +1,205 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "experiments/soak/soak_result.hpp"
+
+#include <algorithm>
+#include <array>
+#include <iterator>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "swarm_monitor/report/charts.hpp"
+#include "swarm_monitor/report/report_page.hpp"
+
+namespace swarm::launcher {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+double to_ms(std::int64_t us) { return 1e-3 * static_cast<double>(us); }
+
+double ratio(std::uint64_t part, std::uint64_t whole) {
+  return whole > 0 ? static_cast<double>(part) / static_cast<double>(whole) : 0.0;
+}
+
+double loss_of(const SoakMeasurements& m) {
+  const double at_listener = m.received ? ratio(m.received->lost, m.received->sent()) : 0.0;
+  return std::max(at_listener, ratio(m.receive_drops, m.states_used + m.receive_drops));
+}
+
+Json quantiles(const Histogram& histogram) {
+  if (histogram.count() == 0) return nullptr;
+  return {{"p50", to_ms(histogram.quantile_us(0.5))},
+          {"p90", to_ms(histogram.quantile_us(0.9))},
+          {"p99", to_ms(histogram.quantile_us(0.99))},
+          {"p999", to_ms(histogram.quantile_us(0.999))},
+          {"p9999", to_ms(histogram.quantile_us(0.9999))},
+          {"max", to_ms(histogram.max_us())}};
+}
+
+Json to_json(const Growth& growth) {
+  return {{"start", growth.start}, {"end", growth.end}, {"max", growth.max}};
+}
+
+std::string quantiles_text(const Histogram& h) {
+  if (h.count() == 0) return "not measured";
+  return fmt::format("{:.2f} / {:.2f} / {:.2f} / {:.2f} / {:.2f} / {:.2f} ms",
+                     to_ms(h.quantile_us(0.5)), to_ms(h.quantile_us(0.9)),
+                     to_ms(h.quantile_us(0.99)), to_ms(h.quantile_us(0.999)),
+                     to_ms(h.quantile_us(0.9999)), to_ms(h.max_us()));
+}
+
+/// A chart of one quantity; its samples are a second apart.
+std::string chart_of(const std::vector<SoakSample>& samples, double SoakSample::*what,
+                     const std::string& title, const std::string& caption) {
+  monitor::Curve curve{.name = title, .values = {}};
+  for (const SoakSample& sample : samples) curve.values.push_back(sample.*what);
+  const double top =
+      curve.values.empty() ? 1.0 : *std::max_element(curve.values.begin(), curve.values.end());
+  return fmt::format("<figure><h2>{}</h2>\n{}<figcaption>{}</figcaption></figure>\n", title,
+                     monitor::line_chart(std::array{curve}, 1.0, std::max(1.05 * top, 1e-3), title),
+                     caption);
+}
+
+}  // namespace
+
+Growth growth_of(const std::vector<SoakSample>& samples, double SoakSample::*what) {
+  if (samples.empty()) return {};
+  const std::size_t tenth = std::max<std::size_t>(samples.size() / 10, 1);
+  const std::size_t begin = std::min(tenth, samples.size() - tenth);
+  const auto mean = [&](std::size_t from) {
+    double sum = 0.0;
+    for (std::size_t i = from; i < from + tenth; ++i) sum += samples[i].*what;
+    return sum / static_cast<double>(tenth);
+  };
+  Growth growth{.start = mean(begin), .end = mean(samples.size() - tenth)};
+  for (const SoakSample& sample : samples) growth.max = std::max(growth.max, sample.*what);
+  return growth;
+}
+
+std::vector<std::string> complaints(const SoakResult& result, const SoakCriteria& criteria) {
+  std::vector<std::string> found;
+  const SoakMeasurements& m = result.measured;
+  if (!result.flown) found.emplace_back("the flight was cut short");
+  if (result.collisions > 0) found.push_back(fmt::format("{} contacts", result.collisions));
+  if (criteria.max_p99_ms) {
+    const double p99_ms = to_ms(m.latency.quantile_us(0.99));
+    if (m.latency.count() == 0) {
+      found.emplace_back("the latency written → received is not known");
+    } else if (p99_ms > *criteria.max_p99_ms) {
+      found.push_back(fmt::format("p99 {:.2f} ms > {} ms", p99_ms, *criteria.max_p99_ms));
+    }
+  }
+  if (criteria.max_loss && loss_of(m) > *criteria.max_loss) {
+    found.push_back(fmt::format("loss {:.6f} > {}", loss_of(m), *criteria.max_loss));
+  }
+  const double grown_pct = growth_of(m.samples, &SoakSample::rss_mb).percent();
+  if (criteria.max_rss_growth_pct && grown_pct > *criteria.max_rss_growth_pct) {
+    found.push_back(
+        fmt::format("memory grew by {:.2f} % > {} %", grown_pct, *criteria.max_rss_growth_pct));
+  }
+  return found;
+}
+
+std::string to_json(const SoakResult& result, const std::vector<std::string>& complaints) {
+  const SoakMeasurements& m = result.measured;
+  const Growth rss = growth_of(m.samples, &SoakSample::rss_mb);
+  const auto received = [&](std::uint64_t link::StreamMeter::Counts::*count) {
+    return m.received ? Json((*m.received).*count) : Json();
+  };
+  Json worst = nullptr;
+  if (m.latency.count() > 0) {
+    worst = {{"robot", m.worst.robot.value()}, {"max_ms", to_ms(m.worst.latency_us)}};
+  }
+  const Json json = {{"outcome", complaints.empty() ? "ok" : "criteria_not_met"},
+                     {"reasons", complaints},
+                     {"processes", result.processes},
+                     {"per_process", result.per_process},
+                     {"rate_hz", result.rate_hz},
+                     {"duration_s", result.duration_s},
+                     {"channel", std::string(to_string(result.channel))},
+                     {"discovery_s", result.discovery_s < 0.0 ? Json() : Json(result.discovery_s)},
+                     {"latency_ms", quantiles(m.latency)},
+                     {"use_latency_ms", quantiles(m.use_latency)},
+                     {"worst", worst},
+                     {"sent", m.received ? Json(m.received->sent()) : Json(m.states_sent)},
+                     {"received", received(&link::StreamMeter::Counts::received)},
+                     {"lost", received(&link::StreamMeter::Counts::lost)},
+                     {"gaps", received(&link::StreamMeter::Counts::gaps)},
+                     {"duplicates", received(&link::StreamMeter::Counts::duplicates)},
+                     {"reordered", received(&link::StreamMeter::Counts::reordered)},
+                     {"used", m.states_used},
+                     {"receive_drops", m.receive_drops},
+                     {"loss", loss_of(m)},
+                     {"deadline_miss_ratio", ratio(m.late_ticks, m.ticks)},
+                     {"collisions", result.collisions},
+                     {"cpu_s", result.cpu_s},
+                     {"rss_mb", to_json(rss)},
+                     {"rss_worst_mb", growth_of(m.samples, &SoakSample::rss_max_mb).max},
+                     {"rss_growth_pct", rss.percent()},
+                     {"threads", to_json(growth_of(m.samples, &SoakSample::threads))},
+                     {"open_files", to_json(growth_of(m.samples, &SoakSample::open_files))},
+                     {"context_switches_hz", growth_of(m.samples, &SoakSample::switches_hz).end},
+                     {"p99_ms_over_time", to_json(growth_of(m.samples, &SoakSample::p99_ms))}};
+  return json.dump(2) + "\n";
+}
+
+std::string to_text(const SoakResult& result, const std::vector<std::string>& complaints) {
+  const SoakMeasurements& m = result.measured;
+  const Growth rss = growth_of(m.samples, &SoakSample::rss_mb);
+  const Growth threads = growth_of(m.samples, &SoakSample::threads);
+  const Growth files = growth_of(m.samples, &SoakSample::open_files);
+  std::string text =
+      fmt::format("{}: {} processes of {} robots for {:.0f} s at {:g} Hz by {}\n",
+                  complaints.empty() ? "ok" : "criteria not met", result.processes,
+                  result.per_process, result.duration_s, result.rate_hz, to_string(result.channel));
+  for (const std::string& reason : complaints) text += fmt::format("  - {}\n", reason);
+  text += fmt::format("  discovery        {:.2f} s after the last start\n", result.discovery_s);
+  text += "                   p50 / p90 / p99 / p99.9 / p99.99 / max\n";
+  text += fmt::format("  to a listener    {}\n", quantiles_text(m.latency));
+  text += fmt::format("  to its use       {}\n", quantiles_text(m.use_latency));
+  if (m.received) {
+    text += fmt::format("  states           {} sent, {} lost, {} twice, {} out of order\n",
+                        m.received->sent(), m.received->lost, m.received->duplicates, m.received->reordered);
+  }
+  text += fmt::format("  at the robots    {} used, {} dropped by the kernel\n", m.states_used,
+                      m.receive_drops);
+  text += fmt::format("  late ticks       {:.4f} %\n", 100.0 * ratio(m.late_ticks, m.ticks));
+  text += fmt::format("  contacts         {}\n", result.collisions);
+  text += fmt::format("  memory           {:.1f} MB to {:.1f} MB: {:+.2f} %\n", rss.start, rss.end,
+                      rss.percent());
+  text += fmt::format("  threads, files   {:.0f} to {:.0f}, {:.0f} to {:.0f}\n", threads.start,
+                      threads.end, files.start, files.end);
+  text += fmt::format("  CPU              {:.0f} s\n", result.cpu_s);
+  return text;
+}
+
+std::string to_html(const SoakResult& result, const std::vector<std::string>& complaints) {
+  const SoakMeasurements& m = result.measured;
+  std::string body = fmt::format(
+      "<header><h1>Soak</h1><span class=\"badge {}\">{}</span></header>\n<pre>{}</pre>\n"
+      "<div class=\"charts\">\n",
+      complaints.empty() ? "ok" : "failed",
+      complaints.empty() ? "criteria met" : "criteria not met", to_text(result, complaints));
+  body += chart_of(m.samples, &SoakSample::p99_ms, "Latency, p99",
+                   "Written to received by a waiting listener, ms, in each second.");
+  body += chart_of(m.samples, &SoakSample::cpu_share, "CPU",
+                   "Cores in use by all processes of the run, the launcher's own included.");
+  body += chart_of(m.samples, &SoakSample::rss_mb, "Memory", "Resident, all agents together, MB.");
+  body += chart_of(m.samples, &SoakSample::received_hz, "States", "Per second, at the listener.");
+  body += chart_of(m.samples, &SoakSample::switches_hz, "Context switches",
+                   "Per second, main threads of all agents.");
+  body += chart_of(m.samples, &SoakSample::open_files, "Open files", "All agents together.");
+  for (const auto& [name, histogram] :
+       {std::pair{"Written to received", &m.latency}, {"Written to used", &m.use_latency}}) {
+    body += fmt::format(
+        "<figure><h2>{}</h2>\n{}<figcaption>{} states. The clocks of all processes are this "
+        "machine's.</figcaption></figure>\n",
+        name, monitor::histogram_chart(*histogram), histogram->count());
+  }
+  body += "</div>\n";
+  return monitor::report_page("Soak", body);
+}
+
+}  // namespace swarm::launcher

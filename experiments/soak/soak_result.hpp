@@ -1,0 +1,50 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "swarm_core/mission/channel.hpp"
+#include "experiments/soak/soak_measurements.hpp"
+
+namespace swarm::launcher {
+
+/// What a soak must not exceed; what is empty is not asked for.
+struct SoakCriteria {
+  std::optional<double> max_p99_ms{};          ///< written → received
+  std::optional<double> max_loss{};            ///< share, of the listener and of all receivers
+  std::optional<double> max_rss_growth_pct{};  ///< of all agents together
+};
+
+/// What a soak was and found.
+struct SoakResult {
+  std::uint32_t processes = 0, per_process = 1;
+  double rate_hz = 0.0, duration_s = 0.0;
+  Channel channel = Channel::kGroups;
+  double discovery_s = -1.0;  ///< negative: never
+  double cpu_s = 0.0;
+  std::uint32_t collisions = 0;  ///< between robots, or with the map
+  SoakMeasurements measured{};
+  bool flown = false;  ///< to the end
+};
+
+struct Growth {
+  double start = 0.0, end = 0.0, max = 0.0;
+  double percent() const { return start > 0.0 ? 100.0 * (end - start) / start : 0.0; }
+};
+
+/// From the mean over the second tenth of the samples (the first warms up) to that over the last.
+Growth growth_of(const std::vector<SoakSample>& samples, double SoakSample::*what);
+
+/// Why a soak failed; empty if it did not. Robots that touch, and a flight cut short, fail always.
+std::vector<std::string> complaints(const SoakResult& result, const SoakCriteria& criteria);
+
+std::string to_json(const SoakResult& result, const std::vector<std::string>& complaints);
+std::string to_text(const SoakResult& result, const std::vector<std::string>& complaints);
+/// A page of its own, with the curves over time and the distributions.
+std::string to_html(const SoakResult& result, const std::vector<std::string>& complaints);
+
+}  // namespace swarm::launcher

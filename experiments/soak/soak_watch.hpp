@@ -1,0 +1,63 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "swarm_launcher/flight/flight.hpp"
+#include "experiments/soak/soak_measurements.hpp"
+#include "swarm_link/channels/groups/group_tap.hpp"
+
+namespace swarm::launcher {
+
+/// Looks at a flight once a second and listens to it all the time.
+class SoakWatch final : public FlightObserver {
+ public:
+  explicit SoakWatch(std::uint32_t robots);
+  ~SoakWatch() override;
+  SoakWatch(const SoakWatch&) = delete;
+  SoakWatch& operator=(const SoakWatch&) = delete;
+
+  /// Starts the listener's thread. Without it nothing is known of what is written → received.
+  void listen(std::unique_ptr<link::GroupTap> tap);
+
+  void on_status(const link::StatusMessage& status) override;
+  void on_step(const Flight& flight, SteadyTime now) override;
+  std::string describe() override;
+
+  /// What was found so far.
+  SoakMeasurements measurements() const;
+
+ private:
+  void receive_all();
+  void sample(const Flight& flight, SteadyTime now);
+
+  /// Counters of a robot when the mission began and now.
+  struct Robot {
+    std::uint32_t process_id = 0;
+    link::RobotStatusMessage first{}, last{};
+  };
+  std::vector<Robot> robots_;
+  std::map<std::uint32_t, std::vector<link::HistogramBinMessage>> ages_;  // by process
+  std::vector<SoakSample> samples_;
+  SteadyTime sampled_at_;
+  double cpu_s_ = 0.0;
+  std::uint64_t switches_ = 0, received_ = 0;
+  std::uint64_t drops_before_ = 0, drops_ = 0;
+
+  std::unique_ptr<link::GroupTap> tap_;
+  mutable std::mutex mutex_;
+  link::StreamMeter meter_;  // of the listener
+  std::atomic<bool> running_ = false;
+  std::atomic<bool> ended_ = false;
+  std::thread listener_;
+};
+
+}  // namespace swarm::launcher

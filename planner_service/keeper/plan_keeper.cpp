@@ -1,0 +1,252 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "planner_service/keeper/plan_keeper.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace swarm::planner {
+namespace {
+
+// After a start the launcher's scene is due at once; a bus that does not bring it must not keep a
+// mission from flying.
+constexpr Duration kSceneTimeout = std::chrono::seconds(3);
+// Robots that stand for this long are stuck; escapes of their own have not helped by then.
+constexpr Duration kStuckAfter = std::chrono::seconds(8);
+// … and so many of them are reason to lead the swarm another way.
+constexpr double kStuckShare = 0.1;
+// While obstacles move, and while there is no plan for the scene.
+constexpr Duration kReplanPeriod = std::chrono::seconds(2);
+// The robots' statuses come once a second.
+constexpr Duration kJudgePeriod = std::chrono::seconds(1);
+// A clock that is slow for shorter than this is not worth an event.
+constexpr Duration kSlowFor = std::chrono::seconds(5);
+// Robots that are this far ahead of the clock had it from a planner before this one.
+constexpr double kRobotsAhead_s = 1.0;
+constexpr std::size_t kNamed = 10;  // robots, in an event
+
+/// A notice is one line.
+std::string one_line(std::string text) {
+  for (std::size_t at = 0; (at = text.find('\n', at)) != std::string::npos;) {
+    text.replace(at, 1, "; ");
+  }
+  return text;
+}
+
+}  // namespace
+
+PlanKeeper::PlanKeeper(const Mission& mission, Planner planner, std::uint64_t seed,
+                       StageClock clock)
+    : mission_(mission),
+      seed_(seed),
+      clock_(std::move(clock)),
+      planner_(std::move(planner)),
+      robots_(mission.robots.count, from_seconds(3.0 + 3.0 / mission.link.status_hz)),
+      scene_(first_scene(mission.world.obstacles().size())),
+      governor_(mission.plan_clock) {}
+
+Result<void> PlanKeeper::plan_first() {
+  Rng rng(seed_);
+  auto planned = planner_.plan({mission_.world, mission_.start, mission_.goal}, {rng, clock_});
+  if (!planned) return tl::unexpected(planned.error());
+  newest_ = {*std::move(planned), {}};
+  return {};
+}
+
+bool PlanKeeper::take_scene(Scene scene) {
+  if (scene_received_ && scene.version <= scene_.version) return false;
+  scene_ = std::move(scene);
+  scene_received_ = true;
+  for (const SceneObstacle& o : scene_.obstacles) {
+    if (o.owner) robots_.forget(*o.owner);
+  }
+  return true;
+}
+
+/// From where the robots are, once they have left their start; before, the mission's own mixture is
+/// the truth they were placed by.
+Result<Replan> PlanKeeper::plan_anew(const World& world, std::span<const ReportedRobot> robots) {
+  const Mixture& goal = scene_.goal ? *scene_.goal : mission_.goal;
+  planner_.set_risk({.alpha = scene_.risk_alpha.value_or(mission_.planner.risk_alpha),
+                     .delta_m = mission_.planner.risk_delta_m});
+  Rng rng(mix_seed(seed_, version_));
+  if (!robots.empty()) {
+    return replan(planner_, {world, goal, robots}, mission_.robots.count, {rng, clock_});
+  }
+  auto planned = planner_.plan({world, mission_.start, goal}, {rng, clock_});
+  if (!planned) return tl::unexpected(planned.error());
+  return Replan{*std::move(planned), {}};
+}
+
+/// Around the bodies of fallen robots, if there is a plan that gets around them. A Gaussian is
+/// wider than a body: one under a source, a goal, or in a passage can be more than any plan gets
+/// around, but not more than a robot does.
+Result<Replan> PlanKeeper::plan_around_bodies(UtcTime utc, std::span<const ReportedRobot> robots,
+                                              Step& step) {
+  auto planned = plan_anew(world_during(mission_.world, scene_, utc, kReplanPeriod), robots);
+  const Scene without = without_bodies(scene_);
+  if (planned || without.obstacles.size() == scene_.obstacles.size()) return planned;
+  auto through = plan_anew(world_during(mission_.world, without, utc, kReplanPeriod), robots);
+  if (!through) return planned;
+  if (bodies_left_out_ != scene_.version) {
+    step.notices.push_back({true, "bodies-not-planned",
+                            fmt::format("no plan gets around the bodies of {} robots, each robot "
+                                        "avoids them by itself: {}",
+                                        scene_.obstacles.size() - without.obstacles.size(),
+                                        one_line(planned.error().message))});
+  }
+  bodies_left_out_ = scene_.version;
+  return through;
+}
+
+void PlanKeeper::try_again(SteadyTime now, UtcTime utc, Step& step) {
+  std::vector<ReportedRobot> robots;
+  if (is_in_flight(now)) {
+    robots = placed(robots_.fresh(now));
+    if (robots.empty() || is_waiting_for_robots(now)) return;
+  }
+  tried_at_ = now;
+  auto planned = plan_around_bodies(utc, robots, step);
+  if (!planned) {
+    if (failed_scene_ == scene_.version) return;
+    failed_scene_ = scene_.version;
+    step.notices.push_back(
+        {true, "replan-failed", "the last plan stays: " + one_line(planned.error().message)});
+    return;
+  }
+  failed_scene_.reset();
+  newest_ = *std::move(planned);
+  if (newest_.planned.excess.by_m > 0.0) {
+    step.notices.push_back({true, "plan-excess", describe(newest_.planned.excess)});
+  }
+  publish(now, step);
+}
+
+void PlanKeeper::keep_planned(SteadyTime now, UtcTime utc, Step& step) {
+  if (!scene_received_ && now - begun_at_ < kSceneTimeout) return;
+  const bool published = version_ > 0;
+  if (phase_ != MissionPhase::kReady && !published && is_waiting_for_robots(now)) return;
+  if (scene_.version == 0 && !published && !is_in_flight_elsewhere(now)) {
+    publish(now, step);
+    tried_at_ = now;
+    return;
+  }
+  const bool is_new = !published || scene_.version != planned_scene_;
+  const bool tried = failed_scene_ == scene_.version;
+  const bool due = now - tried_at_ >= kReplanPeriod;
+  if ((is_new && (!tried || due)) || (scene_.moves(utc) && due) || is_step_due(now)) {
+    try_again(now, utc, step);
+  }
+}
+
+/// Where many robots are stuck the method may know another route.
+void PlanKeeper::avoid_jams(SteadyTime now, UtcTime utc, Step& step) {
+  if (phase_ != MissionPhase::kRunning) return;
+  const std::vector<ReportedRobot> stuck = robots_.stuck(now, kStuckAfter);
+  if (stuck.empty() || static_cast<double>(stuck.size()) < kStuckShare * mission_.robots.count) {
+    return;
+  }
+  robots_.reset_stuck_timers(now);
+  const Vec2& at_m = stuck[stuck.size() / 2].position_m;
+  if (!planner_.method().on_congestion(at_m)) return;
+  step.notices.push_back(
+      {false, "jam",
+       fmt::format("{} robots are stuck, about ({:.1f}, {:.1f}) m: the guide leads another way",
+                   stuck.size(), at_m.x(), at_m.y())});
+  try_again(now, utc, step);
+}
+
+void PlanKeeper::publish(SteadyTime now, Step& step) {
+  step.publish = true;
+  ++version_;
+  governor_.issue(version_, now);
+  full_rate_at_ = now;
+  for (const PlanWarning& warning : newest_.planned.warnings) {
+    step.notices.push_back({true, warning.code, warning.text});
+  }
+  planned_scene_ = scene_.version;
+}
+
+PlanKeeper::Step PlanKeeper::step(SteadyTime now, UtcTime utc) {
+  Step step;
+  governor_.advance(now, phase_ == MissionPhase::kRunning);
+  keep_planned(now, utc, step);
+  avoid_jams(now, utc, step);
+  keep_clock(now, utc, step);
+  return step;
+}
+
+/// A planner that was restarted publishes the mission's first plan again, which the robots follow
+/// already: its clock goes on where theirs is. The median, so that no single robot moves it.
+void PlanKeeper::catch_up(SteadyTime now) {
+  if (version_ != 1 || !newest_.entries.empty()) return;
+  std::vector<double> times_s;
+  for (const ReportedRobot& robot : robots_.fresh(now)) {
+    if (robot.plan_version == version_) times_s.push_back(robot.plan_time_s);
+  }
+  if (times_s.empty()) return;
+  const auto middle = times_s.begin() + static_cast<std::ptrdiff_t>(times_s.size() / 2);
+  std::nth_element(times_s.begin(), middle, times_s.end());
+  if (*middle > governor_.plan_time_s() + kRobotsAhead_s) governor_.catch_up(*middle);
+}
+
+void PlanKeeper::report_clock(SteadyTime now, Step& step) {
+  std::vector<RobotId> fresh;  // not reported before, for this plan
+  for (const RobotId robot : governor_.hopeless()) {
+    if (hopeless_reported_.insert(robot).second) fresh.push_back(robot);
+  }
+  if (!fresh.empty()) {
+    std::string names;
+    for (std::size_t i = 0; i < std::min(kNamed, fresh.size()); ++i) {
+      names += fmt::format("{}{}", i == 0 ? "" : ", ", fresh[i].value());
+    }
+    step.notices.push_back(
+        {true, "robots-late",
+         fmt::format("{} more robot(s) are over {} s behind the plan, its clock does not wait for "
+                     "them: robot {}{}",
+                     fresh.size(), mission_.plan_clock.hopeless_lag_s, names,
+                     fresh.size() > kNamed ? " …" : "")});
+  }
+  const bool is_slow = governor_.rate() < 1.0 && phase_ == MissionPhase::kRunning;
+  if (!is_slow) full_rate_at_ = now;
+  const bool is_slow_for_long = is_slow && now - full_rate_at_ >= kSlowFor;
+  if (is_slow_for_long && !slow_reported_) {
+    slow_reported_ = true;
+    step.notices.push_back(
+        {false, "plan-clock-slow",
+         fmt::format("the plan waits for the swarm: rate {:.2f}, a lag of "
+                     "{:.1f} s at quantile {}",
+                     governor_.rate(), governor_.lag_s(), mission_.plan_clock.lag_quantile)});
+  } else if (!is_slow && slow_reported_) {
+    slow_reported_ = false;
+    step.notices.push_back({false, "plan-clock-full", "the plan's clock runs at full rate again"});
+  }
+}
+
+void PlanKeeper::keep_clock(SteadyTime now, UtcTime utc, Step& step) {
+  if (version_ == 0) return;
+  if (now - judged_at_ >= kJudgePeriod && phase_ == MissionPhase::kRunning) {
+    judged_at_ = now;
+    catch_up(now);
+    std::vector<RobotLag> lags;
+    for (const ReportedRobot& robot : robots_.fresh(now)) {
+      if (!reports_lag(robot)) continue;
+      lags.push_back({robot.robot, robot.lag_s, robot.arrived});
+    }
+    governor_.judge(lags);
+    report_clock(now, step);
+  }
+  const PlanClock clock = governor_.reading(utc);
+  // A jump, after a restart, is worth a reading as well.
+  const bool jumped = std::abs(clock_reported_.plan_time_at_s(utc) - clock.plan_time_s) > 0.05;
+  if (clock.plan_version == clock_reported_.plan_version && clock.rate == clock_reported_.rate && !jumped) {
+    return;
+  }
+  clock_reported_ = clock;
+  step.clock = clock;
+}
+
+}  // namespace swarm::planner

@@ -1,0 +1,109 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "planner_service/keeper/clock_governor.hpp"
+#include "planner_service/planner.hpp"
+#include "planner_service/keeper/replan.hpp"
+#include "planner_service/keeper/robot_watch.hpp"
+#include "swarmflow/mission/mission.hpp"
+#include "swarmflow/mission/phase.hpp"
+#include "swarm_core/mission/scene_bodies.hpp"
+
+namespace swarm::planner {
+
+/// Keeps a plan for the scene as it is: the first one, and a new one when the scene changes, while
+/// obstacles move, at the period of the planning method, and where robots are stuck and the method
+/// knows another route. It also owns the plan's clock. Pure: what was received and the time in,
+/// plans and clock readings out; the program around it owns bus and files. One thread.
+class PlanKeeper {
+ public:
+  /// `planner`: for this mission. \pre the mission outlives the keeper
+  PlanKeeper(const Mission& mission, Planner planner, std::uint64_t seed, StageClock clock);
+
+  /// The plan of the mission file. The same mission and seed give the same flow.
+  Result<void> plan_first();
+
+  /// The keeper is on the bus from now on: what it has not received yet may still come.
+  void begin(SteadyTime now) { begun_at_ = now; }
+
+  void set_phase(MissionPhase phase) { phase_ = phase; }
+  /// False if it is not newer than the present one.
+  bool take_scene(Scene scene);
+  /// \pre the id is below the number of robots
+  void receive(const ReportedRobot& robot, bool moving, SteadyTime now) {
+    // What a robot sent before it fell may come after its body became an obstacle.
+    if (!has_body(scene_, robot.robot)) robots_.receive(robot, moving, now);
+  }
+
+  /// What happened, for the event log; the text is one line.
+  struct Notice {
+    bool warning = false;
+    std::string code;
+    std::string text;
+  };
+  struct Step {
+    bool publish = false;  ///< newest() is to go out, as version()
+    /// The clock's version or rate is another one.
+    std::optional<PlanClock> clock{};
+    std::vector<Notice> notices;
+  };
+  /// Call it often. May plan, which takes as long as that takes.
+  Step step(SteadyTime now, UtcTime utc);
+
+  const Replan& newest() const { return newest_; }
+  std::uint32_t version() const { return version_; }
+  /// The plan's clock, as of the last step().
+  PlanClock clock(UtcTime utc) const { return governor_.reading(utc); }
+  const Scene& scene() const { return scene_; }
+  const PlanningMethod& method() const { return planner_.method(); }
+  /// Version of the scene newest() was made for.
+  std::uint64_t planned_scene() const { return planned_scene_; }
+
+ private:
+  void keep_planned(SteadyTime now, UtcTime utc, Step& step);
+  void avoid_jams(SteadyTime now, UtcTime utc, Step& step);
+  void try_again(SteadyTime now, UtcTime utc, Step& step);
+  bool is_step_due(SteadyTime now) const;
+  bool is_in_flight(SteadyTime now) const;
+  bool is_in_flight_elsewhere(SteadyTime now) const;
+  bool is_waiting_for_robots(SteadyTime now) const;
+  std::vector<ReportedRobot> placed(std::vector<ReportedRobot> robots) const;
+  Result<Replan> plan_anew(const World& world, std::span<const ReportedRobot> robots);
+  Result<Replan> plan_around_bodies(UtcTime utc, std::span<const ReportedRobot> robots, Step& step);
+  void publish(SteadyTime now, Step& step);
+  void keep_clock(SteadyTime now, UtcTime utc, Step& step);
+  void catch_up(SteadyTime now);
+  bool reports_lag(const ReportedRobot& robot) const;
+  void report_clock(SteadyTime now, Step& step);
+
+  const Mission& mission_;
+  std::uint64_t seed_;
+  StageClock clock_;
+  Planner planner_;
+  RobotWatch robots_;
+  MissionPhase phase_ = MissionPhase::kReady;
+  Scene scene_;
+  bool scene_received_ = false;
+  Replan newest_;
+  std::uint32_t version_ = 0;  // 0 = nothing published
+  std::uint64_t planned_scene_ = 0;
+  std::optional<std::uint64_t> failed_scene_{};  // that was complained about
+  std::uint64_t bodies_left_out_ = 0;            // scene of which that was reported
+  SteadyTime begun_at_;
+  SteadyTime tried_at_;  // to plan anew
+  ClockGovernor governor_;
+  PlanClock clock_reported_;     // of the last step that had one
+  SteadyTime judged_at_;     // the robots' lags
+  SteadyTime full_rate_at_;  // when the clock last ran at full rate
+  bool slow_reported_ = false;
+  std::set<RobotId> hopeless_reported_;
+};
+
+}  // namespace swarm::planner

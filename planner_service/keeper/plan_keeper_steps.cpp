@@ -1,0 +1,78 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+// Plans from where the robots are: when, and what the keeper knows of the robots then.
+#include <algorithm>
+
+#include "planner_service/groups/robot_groups.hpp"
+#include "planner_service/keeper/plan_keeper.hpp"
+#include "swarm_core/mission/placement.hpp"
+#include "swarm_core/plan/flow_draw.hpp"
+
+namespace swarm::planner {
+namespace {
+
+// A planner that comes back in mid-flight waits this long for robots it does not hear.
+constexpr Duration kReportTimeout = std::chrono::milliseconds(1500);
+// With a plan at each period a status is a plan or two old.
+constexpr std::uint32_t kPlansBack = 3;
+
+}  // namespace
+
+/// A method with a period plans anew from where the robots are, until the last one has arrived.
+bool PlanKeeper::is_step_due(SteadyTime now) const {
+  const std::optional<Duration> period = method().replan_period();
+  if (!period || phase_ != MissionPhase::kRunning || now - tried_at_ < *period) return false;
+  const std::vector<ReportedRobot> robots = robots_.fresh(now);
+  return std::any_of(robots.begin(), robots.end(),
+                     [](const ReportedRobot& r) { return !r.arrived; });
+}
+
+/// The robots have left their start: the mission runs, or did for a planner before this one.
+bool PlanKeeper::is_in_flight(SteadyTime now) const {
+  return phase_ != MissionPhase::kReady || is_in_flight_elsewhere(now);
+}
+
+/// The robots follow a later plan than the first, which a planner before this one made.
+bool PlanKeeper::is_in_flight_elsewhere(SteadyTime now) const {
+  if (version_ > 0) return false;
+  const std::vector<ReportedRobot> received = robots_.fresh(now);
+  return std::any_of(received.begin(), received.end(),
+                     [](const ReportedRobot& r) { return r.plan_version > 1; });
+}
+
+bool PlanKeeper::is_waiting_for_robots(SteadyTime now) const {
+  return !robots_.received_all(now) && now - begun_at_ < kReportTimeout;
+}
+
+/// With their places in the plan in force.
+std::vector<ReportedRobot> PlanKeeper::placed(std::vector<ReportedRobot> robots) const {
+  if (!method().traits().uses_positions || version_ == 0) return robots;
+  const FlowPlan& plan = newest_.planned.plan;
+  const Mixture& goal = scene_.goal ? *scene_.goal : mission_.goal;
+  const MissionTime at(governor_.plan_time_s());
+  for (ReportedRobot& robot : robots) {
+    const std::uint32_t id = robot.robot.value();
+    double share = stratified_share(id, mission_.robots.count);
+    std::size_t source = 0;
+    if (newest_.entries.empty()) {
+      source = draw_source(plan, share);
+    } else {
+      if (newest_.entries[id].source == PlanEntry::kAnywhere) continue;
+      source = newest_.entries[id].source;
+      share = newest_.entries[id].draw_share();
+    }
+    const FlowPosition place = position_in_flow(plan, source, share, at);
+    robot.goal = component_at(goal, plan.nodes()[place.sink].gaussian.mean_m());
+    robot.leg = place.leg;
+  }
+  return robots;
+}
+
+/// A robot that follows an older plan says nothing of this one, unless each goes on from where the
+/// one before has led: then a status may be a few plans old.
+bool PlanKeeper::reports_lag(const ReportedRobot& robot) const {
+  if (robot.plan_version > version_) return false;
+  return version_ - robot.plan_version <= (method().replan_period() ? kPlansBack : 0);
+}
+
+}  // namespace swarm::planner

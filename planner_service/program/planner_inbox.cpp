@@ -1,0 +1,40 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "planner_service/program/planner_inbox.hpp"
+
+#include <utility>
+
+namespace swarm::planner {
+
+PlannerInbox::PlannerInbox(Readers readers, const link::WireLimits& limits)
+    : readers_(std::move(readers)), gate_({.limits = limits}) {}
+
+void PlannerInbox::receive(UtcTime now) {
+  commands_.clear();
+  readers_.command->take(commands_);
+  for (const link::CommandMessage& command : commands_) {
+    if (gate_.command(command, now)) apply(command);
+  }
+  scenes_.clear();
+  new_scenes_.clear();
+  readers_.scene->take(scenes_);
+  for (const link::SceneMessage& message : scenes_) {
+    if (auto scene = gate_.scene(message, now)) new_scenes_.push_back(std::move(*scene));
+  }
+  statuses_.clear();
+  readers_.status->take(statuses_);
+  std::erase_if(statuses_,
+                [&](const link::StatusMessage& status) { return !gate_.status(status, now); });
+  gate_.set_undecodable(readers_.command->undecodable() + readers_.scene->undecodable() +
+                        readers_.status->undecodable());
+}
+
+void PlannerInbox::apply(const link::CommandMessage& command) {
+  const MissionPhase before = phase_;
+  phase_ = phase_after(phase_, command.kind);
+  if (before == MissionPhase::kReady && phase_ == MissionPhase::kRunning) {
+    t0_utc_ns_ = command.stamp_utc_ns;
+  }
+}
+
+}  // namespace swarm::planner

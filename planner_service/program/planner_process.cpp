@@ -1,0 +1,249 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "planner_service/program/planner_process.hpp"
+
+#include <algorithm>
+#include <ctime>
+#include <fstream>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <unistd.h>
+
+#include "planner_service/keeper/plan_keeper.hpp"
+#include "planner_service/program/planner_inbox.hpp"
+#include "swarm_core/base/clock.hpp"
+#include "swarm_core/plan/plan_json.hpp"
+#include "swarm_core/plan/planning_record.hpp"
+#include "swarm_core/app/run_directory.hpp"
+#include "swarm_core/app/stop_signal.hpp"
+#include "swarm_link/roles/run_meeting.hpp"
+#include "swarm_link/to_message.hpp"
+#include "swarm_link/topics.hpp"
+#include "swarmflow/mission/mission_file.hpp"
+
+namespace swarm::planner {
+namespace {
+
+// A change of the scene must be a plan on the bus within 100 ms, most of which is not ours.
+constexpr Duration kStep = std::chrono::milliseconds(5);
+constexpr std::uint64_t kFaultSeed = 0xFA17;  // not the planner's chance
+
+void sleep_for(Duration d) {
+  const timespec t{.tv_sec = 0, .tv_nsec = static_cast<long>(d.count())};
+  ::nanosleep(&t, nullptr);  // a stop signal wakes it
+}
+
+Result<void> write_stats(const std::filesystem::path& run_dir, const PlanStats& stats) {
+  const nlohmann::ordered_json json = {{"nodes", stats.nodes},
+                                       {"edges", stats.edges},
+                                       {"roadmap_ms", stats.roadmap_ms},
+                                       {"search_ms", stats.search_ms},
+                                       {"transport_ms", stats.transport_ms},
+                                       {"smoothing_ms", stats.smoothing_ms},
+                                       {"total_ms", stats.total_ms},
+                                       {"planned_mean_path_m", stats.planned_mean_path_m}};
+  return shell::write_file(run_dir / shell::kPlanStatsFile, json.dump(2) + "\n");
+}
+
+}  // namespace
+
+struct PlannerProcess::Impl {
+  ProcessOptions options;
+  Mission mission;
+  std::optional<PlanKeeper> keeper;
+  PlannerEpoch epoch;
+  std::unique_ptr<link::Participant> participant;
+  link::WriterPtr<link::PlanMessage> plan_writer;
+  link::WriterPtr<link::HeartbeatMessage> heartbeat_writer;
+  link::WriterPtr<link::EventMessage> event_writer;
+  std::optional<PlannerInbox> inbox;
+  std::uint64_t beats = 0;
+  std::ofstream clock_file;
+  link::RefusalCounters reported;  // what was announced as an event already
+
+  Result<void> plan_first();
+  Result<void> join(const shell::RunInfo& run);
+  void receive(SteadyTime now);
+  void keep_planned(SteadyTime now);
+  void publish();
+  void announce(link::Severity severity, const std::string& code, const std::string& text);
+  void beat(UtcTime now);
+};
+
+Result<void> PlannerProcess::Impl::plan_first() {
+  const PlanningRecord promised{mission.planner.method,
+                                keeper->method().traits().density_cap_per_m2};
+  if (auto w = shell::write_file(options.run_dir / shell::kPlanningFile, to_json(promised)); !w) {
+    return w;
+  }
+  if (auto planned = keeper->plan_first(); !planned) return planned;
+  const PlanResult& planned = keeper->newest().planned;
+  if (auto w = shell::write_file(options.run_dir / shell::kPlanFile, to_json(planned.plan)); !w) {
+    return w;
+  }
+  return write_stats(options.run_dir, planned.stats);
+}
+
+Result<void> PlannerProcess::Impl::join(const shell::RunInfo& run) {
+  auto made = link::join_as_planner(link::meeting_of(run, {.faults = options.faults,
+                                                           .seed = mix_seed(run.seed, kFaultSeed),
+                                                           .run_began = run.began}),
+                                    options.ownership_strength);
+  if (!made) return tl::unexpected(made.error());
+  participant = std::move(*made);
+  auto plans = participant->make_writer(link::plan_topic());
+  auto heartbeats = participant->make_writer(link::heartbeat_topic());
+  auto events = participant->make_writer(link::event_topic());
+  auto orders = participant->make_reader(link::command_topic());
+  auto scene_changes = participant->make_reader(link::scene_topic());
+  auto health = participant->make_reader(link::status_topic_unacknowledged());
+  if (!plans) return tl::unexpected(plans.error());
+  if (!heartbeats) return tl::unexpected(heartbeats.error());
+  if (!events) return tl::unexpected(events.error());
+  if (!orders) return tl::unexpected(orders.error());
+  if (!scene_changes) return tl::unexpected(scene_changes.error());
+  if (!health) return tl::unexpected(health.error());
+  plan_writer = std::move(*plans);
+  heartbeat_writer = std::move(*heartbeats);
+  event_writer = std::move(*events);
+  inbox.emplace(Readers{std::move(*orders), std::move(*scene_changes), std::move(*health)},
+                link::wire_limits(mission));
+  clock_file.open(options.run_dir / shell::kPlanClockFile, std::ios::app);
+  keeper->begin(std::chrono::steady_clock::now());
+  return {};
+}
+
+void PlannerProcess::Impl::receive(SteadyTime now) {
+  participant->receive();
+  inbox->receive(utc_now());
+  keeper->set_phase(inbox->phase());
+  for (Scene& scene : inbox->scenes()) keeper->take_scene(std::move(scene));
+  for (const link::StatusMessage& status : inbox->statuses()) {
+    for (const link::RobotStatusMessage& robot : status.robots) {
+      keeper->receive({.robot = RobotId(robot.robot_id),
+                    .position_m = {robot.x_m, robot.y_m},
+                    .arrived = robot.arrived,
+                    .lag_s = robot.lag_s,
+                    .plan_version = status.plan_version,
+                    .plan_time_s = status.plan_time_s},
+                   robot.mode == RobotMode::kMoving, now);
+    }
+  }
+}
+
+void PlannerProcess::Impl::keep_planned(SteadyTime now) {
+  const UtcTime utc = utc_now();
+  const PlanKeeper::Step step = keeper->step(now, utc);
+  for (const PlanKeeper::Notice& notice : step.notices) {
+    announce(notice.warning ? link::Severity::kWarning : link::Severity::kInfo, notice.code,
+             notice.text);
+  }
+  if (step.publish) publish();
+  if (!step.clock) return;
+  clock_file << plan_clock_line(*step.clock) << std::flush;
+  beat(utc);  // robots need not wait for the next one
+}
+
+void PlannerProcess::Impl::publish() {
+  const UtcTime now = utc_now();
+  const Replan& newest = keeper->newest();
+  const std::uint32_t version = keeper->version();
+  const std::uint64_t scene = keeper->scene().version;
+  link::PlanMessage message =
+      link::to_message(newest.planned.plan, epoch, PlanVersion(version), now);
+  message.scene_version = scene;
+  message.excess_m = newest.planned.excess.by_m;
+  for (const PlanEntry& entry : newest.entries) {
+    message.entries.push_back({entry.source, entry.share});
+  }
+  plan_writer->write(message);
+  const PlanStats& stats = newest.planned.stats;
+  const double after_ms =
+      1e-6 * static_cast<double>(now.time_since_epoch().count() - static_cast<std::int64_t>(scene));
+  announce(link::Severity::kInfo, "planned",
+           fmt::format("version {}: {} nodes, {} legs, {:.1f} m mean path, {:.1f} ms{}", version,
+                       newest.planned.plan.nodes().size(), newest.planned.plan.legs().size(),
+                       stats.planned_mean_path_m, stats.total_ms,
+                       scene == 0 ? "" : fmt::format(", {:.1f} ms after the change", after_ms)));
+  if (version == 1 && scene == 0) return;  // kept when it was made
+  const auto kept = shell::write_file(options.run_dir / fmt::format("plan-{:04}.json", version),
+                                      to_json(newest.planned.plan, newest.planned.excess.by_m));
+  if (!kept) announce(link::Severity::kWarning, "plan-file", kept.error().message);
+}
+
+void PlannerProcess::Impl::announce(link::Severity severity, const std::string& code,
+                                    const std::string& text) {
+  event_writer->write({.severity = severity,
+                       .source = link::kPlannerSource,
+                       .stamp_utc_ns = utc_now().time_since_epoch().count(),
+                       .code = code,
+                       .text = text});
+}
+
+void PlannerProcess::Impl::beat(UtcTime now) {
+  link::report_new(inbox->refused(), reported,
+                   [&](link::RefusalReason reason, std::uint32_t times) {
+                     announce(link::Severity::kWarning, "refused",
+                              fmt::format("{} message(s): {}", times, link::to_string(reason)));
+                   });
+  const std::int64_t stamp = now.time_since_epoch().count();
+  const std::int64_t t0 = inbox->t0_utc_ns();
+  const double mission_time_s = t0 == 0 ? 0.0 : 1e-9 * static_cast<double>(stamp - t0);
+  const PlanClock clock = keeper->clock(now);
+  heartbeat_writer->write({.phase = inbox->phase(),
+                           .version = clock.plan_version,
+                           .epoch = epoch.value(),
+                           .sequence_number = ++beats,
+                           .stamp_utc_ns = stamp,
+                           .mission_time_s = mission_time_s,
+                           .plan_time_s = clock.plan_time_s,
+                           .plan_rate = clock.rate});
+}
+
+PlannerProcess::PlannerProcess(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+PlannerProcess::~PlannerProcess() = default;
+
+Result<std::unique_ptr<PlannerProcess>> PlannerProcess::make(const ProcessOptions& options,
+                                                             const PlanningRegistry& registry) {
+  auto impl = std::make_unique<Impl>();
+  impl->options = options;
+  const auto run = shell::read_run_info(options.run_dir);
+  if (!run) return tl::unexpected(run.error());
+  auto mission = load_mission(options.run_dir / shell::kMissionFile, registry.catalogue());
+  if (!mission) return tl::unexpected(mission.error());
+  impl->mission = std::move(*mission);
+  auto planner = Planner::make(registry, impl->mission);
+  if (!planner) return tl::unexpected(planner.error());
+  impl->keeper.emplace(impl->mission, *std::move(planner), run->seed,
+                       &std::chrono::steady_clock::now);
+  impl->epoch = PlannerEpoch(static_cast<std::uint64_t>(utc_now().time_since_epoch().count()));
+  if (auto planned = impl->plan_first(); !planned) return tl::unexpected(planned.error());
+  if (auto joined = impl->join(*run); !joined) return tl::unexpected(joined.error());
+  return std::unique_ptr<PlannerProcess>(new PlannerProcess(std::move(impl)));
+}
+
+Result<void> PlannerProcess::run() {
+  Impl& p = *impl_;
+  const Duration beat_period = from_seconds(1.0 / p.mission.timing.heartbeat_hz);
+  SteadyTime next_beat = std::chrono::steady_clock::now();
+  while (shell::stop_requests() == 0) {
+    const SteadyTime now = std::chrono::steady_clock::now();
+    p.receive(now);
+    p.keep_planned(now);
+    if (now >= next_beat) {
+      p.beat(utc_now());
+      next_beat = std::max(next_beat + beat_period, now);
+    }
+    if (p.options.parent_pid != 0 &&
+        static_cast<std::uint32_t>(::getppid()) != p.options.parent_pid)
+      break;
+    sleep_for(kStep);
+  }
+  return {};
+}
+
+}  // namespace swarm::planner

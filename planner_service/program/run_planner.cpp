@@ -1,0 +1,69 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "swarmflow/planning/run_planner.hpp"
+
+#include <cstdio>
+#include <optional>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include "planner_service/program/planner_process.hpp"
+#include "swarm_core/mission/link_faults.hpp"
+#include "swarm_core/app/program.hpp"
+#include "swarm_core/app/stop_signal.hpp"
+#include "swarmflow/core/result.hpp"
+
+namespace swarm::planner {
+namespace {
+
+/// The options of the command line, or the exit code where the program ends there (--help).
+Result<std::optional<ExitCode>> read_options(int argc, char** argv,
+                                             const PlanningRegistry& registry,
+                                             ProcessOptions& options) {
+  CLI::App app(
+      "Plans how the swarm flows and publishes the plan and the heartbeat of a run.\nThe launcher "
+      "starts it; to start one by hand: planner_service --run RUN_DIR",
+      "planner_service");
+  std::string fault;
+  app.add_option("--run", options.run_dir, "Run directory made by the launcher");
+  app.add_option("--parent", options.parent_pid, "End when this process is no longer our parent");
+  app.add_option("--strength", options.ownership_strength,
+                 "Ownership of the plan topic: agents follow the strongest living planner");
+  app.add_option("--fault", fault, "A bad network for what this process receives");
+  bool describe = false;
+  app.add_flag("--describe", describe,
+               "Print its planning methods with their options as JSON, and exit");
+  shell::add_common_options(app);
+  auto done = shell::parse(app, argc, argv, registry.catalogue());
+  if (!done || *done) return done;
+  if (describe) {
+    std::puts(to_json(registry.catalogue()).c_str());
+    return ExitCode::kOk;
+  }
+  if (options.run_dir.empty()) {
+    return fail(ErrorCode::kBadInput, "--run is required; the launcher gives it");
+  }
+  const auto faults = parse_link_faults(fault);
+  if (!faults) return tl::unexpected(faults.error());
+  options.faults = *faults;
+  return done;
+}
+
+}  // namespace
+
+int run_planner(int argc, char** argv, const PlanningRegistry& registry) {
+  return shell::run_main("planner_service", [&]() -> Result<ExitCode> {
+    ProcessOptions options;
+    const auto done = read_options(argc, argv, registry, options);
+    if (!done) return tl::unexpected(done.error());
+    if (*done) return **done;
+    shell::catch_stop_signals();
+    const auto process = PlannerProcess::make(options, registry);
+    if (!process) return tl::unexpected(process.error());
+    if (const auto ran = (*process)->run(); !ran) return tl::unexpected(ran.error());
+    return ExitCode::kOk;
+  });
+}
+
+}  // namespace swarm::planner

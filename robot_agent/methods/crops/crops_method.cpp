@@ -1,0 +1,64 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+
+#include "robot_agent/methods/builtin_methods.hpp"
+#include "robot_agent/methods/crops/crops.hpp"
+#include "robot_agent/methods/shared/shared_keys.hpp"
+#include "robot_agent/margins.hpp"
+
+namespace swarm::agent {
+namespace {
+
+/// The guide's goals are the planner's, and so is the key of their radius.
+double goal_radius_m(const Mission& mission) {
+  return mission.planner.options.number("crops_goal_radius_m")
+      .value_or(GuidePointsOptions{}.goal_radius_m);
+}
+
+CropsOptions crops_options(const Mission& mission, const BodySpec& body) {
+  const PathKeys c = path_keys().read(mission.control.options);
+  const double cruise_mps = std::min(mission.control.cruise_mps, body.speed_max_mps);
+  const auto ticks = [&](double time_s) {
+    return static_cast<std::size_t>(std::max(1.0, std::round(time_s * mission.control.rate_hz)));
+  };
+  return {
+      .cruise_mps = cruise_mps,
+      .approach_gain_hz = c.approach_gain_hz,
+      .guide = {.radius_m = body.radius_m,
+                .passable_m = obstacle_margin_m(mission, body) + 0.01,
+                .goal_radius_m = goal_radius_m(mission),
+                .sight_m = c.look_ahead_s * cruise_mps},
+      .slot = {.radius_m = body.radius_m,
+                .room_gap_m = room_gap_m(mission),
+                .approach_gain_hz = c.approach_gain_hz},
+      .obstacle = {.radius_m = body.radius_m},
+      .give_way = {.radius_m = body.radius_m, .gap_m = mission.safety.neighbour_margin_m + 0.1},
+      .escape = {.window = ticks(c.stuck_after_s), .step = ticks(c.escape_s)},
+  };
+}
+
+double reach_m() {
+  const HeadingFieldOptions heading;
+  constexpr double kSigmas = 2.5;  // farther headings weigh less than 5 %
+  return std::max(SeparationFieldOptions{}.reach_m, heading.mean_m + kSigmas * heading.sigma_m);
+}
+
+Result<PreparedControl> prepare_crops(const ControlContext& context) {
+  const Shared<CropsOptions> options = crops_options(context.mission, context.body);
+  return PreparedControl{.make = [options] { return ControlSlot::of<Crops>(options); },
+                         .reach_m = reach_m()};
+}
+
+}  // namespace
+
+ControlEntry crops_method() {
+  return {.spec = {.name = "crops",
+                   .doc = "From one intermediate goal of the guide to the next in the direction of "
+                          "superposed fields [CRoPS]",
+                   .options = path_keys().specs()},
+          .prepare = prepare_crops};
+}
+
+}  // namespace swarm::agent

@@ -1,0 +1,301 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "robot_agent/neighbours/neighbour_table.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace swarm::agent {
+namespace {
+
+constexpr std::size_t kFirstSlots = 128;
+constexpr std::size_t kSlotsEach = 4;  // of the index, for every robot known
+constexpr std::size_t kSweepAt = 8;    // so many who are gone are worth a new index
+constexpr double kStopped_mps = 0.01;   // slower is standing: such a robot need not speak
+constexpr double kUpdates = 64.0;        // that what is thought of the link is the mean of
+constexpr double kPoor = 0.02;         // of two words in the last sixty-four, …
+constexpr double kClean = 0.005;       // … until eighty in a row came
+constexpr double kInside = 0.8;        // of the range: who is farther may have been out of it
+constexpr std::int32_t kLongest_us = 1 << 29;  // nothing is remembered for so long
+constexpr Duration kFrameFor = std::chrono::seconds(60);
+constexpr double kFrame_m = 100.0;
+
+std::int32_t to_us(Duration d) {
+  constexpr std::int64_t kMost = kLongest_us;
+  return static_cast<std::int32_t>(
+      std::clamp<std::int64_t>(d / std::chrono::microseconds(1), -kMost, kMost));
+}
+
+constexpr double in_s(std::int64_t us) { return 1e-6 * static_cast<double>(us); }
+
+}  // namespace
+
+/// What at() finds out. Of one call alone, so all robots that a thread ticks in turn share it, and
+/// it stays in the cache.
+struct NeighbourTable::FilterPass {
+  struct LaneBlock {
+    Float4 x_m, y_m;  // dead-reckoned
+    Int4 age_us;
+  };
+  std::vector<LaneBlock> blocks;           // as the table's
+  std::vector<std::uint32_t> close;  // numbers of those who are, the first close_found
+  std::vector<std::uint32_t> far;    // … of the others within reach, the first far_found
+  std::size_t close_found = 0;
+  std::size_t far_found = 0;
+  std::vector<Neighbour> neighbours;
+};
+
+NeighbourTable::NeighbourTable(Shared<NeighbourOptions> options)
+    : options_(std::move(options)),
+      period_s_(to_seconds(options_->period)),
+      silence_s_(to_seconds(options_->expected_silence)),
+      period_us_(to_us(options_->period)),
+      silence_us_(to_us(options_->expected_silence)),
+      forget_after_us_(to_us(options_->forget_after)),
+      index_(kFirstSlots, kFree) {
+  blocks_.reserve(kFirstSlots / kSlotsEach / kLanes);
+}
+
+/// The slot of a robot, or the free one where it belongs.
+NeighbourTable::Slot& NeighbourTable::slot_of(RobotId robot) {
+  const std::size_t mask = index_.size() - 1;
+  std::size_t at = (robot.value() * 0x9E37'79B1U >> 16U) & mask;
+  while (index_[at] != kFree && blocks_[index_[at] / kLanes].robot[index_[at] % kLanes] != robot) {
+    at = (at + 1) & mask;
+  }
+  return index_[at];
+}
+
+void NeighbourTable::rebuild_index() {
+  if (index_.size() < kSlotsEach * count_) index_.resize(2 * index_.size());
+  std::fill(index_.begin(), index_.end(), kFree);
+  for (std::size_t i = 0; i < count_; ++i) {
+    slot_of(blocks_[i / kLanes].robot[i % kLanes]) = static_cast<Slot>(i);
+  }
+}
+
+void NeighbourTable::insert(RobotId robot, Slot& slot) {
+  slot = static_cast<Slot>(count_);
+  if (count_ % kLanes == 0) blocks_.emplace_back().as_of_us = all(kGone);
+  blocks_.back().robot[count_ % kLanes] = robot;
+  ++count_;
+  if (index_.size() < kSlotsEach * count_) rebuild_index();
+}
+
+std::int32_t NeighbourTable::since_then_us(SteadyTime t) const { return to_us(t - then_); }
+
+/// Counts all that is known from another moment and place once the last ones are far off.
+void NeighbourTable::keep_frame(SteadyTime now, const Vec2& own_position_m) {
+  const Vec2 by_m = own_position_m - here_m_;
+  if (now - then_ <= kFrameFor && by_m.squaredNorm() <= kFrame_m * kFrame_m) return;
+  const std::int32_t by_us = to_us(now - then_);
+  for (LaneBlock& block : blocks_) {
+    block.x_m -= static_cast<float>(by_m.x());
+    block.y_m -= static_cast<float>(by_m.y());
+    block.as_of_us = block.as_of_us == all(kGone) ? all(kGone) : block.as_of_us - by_us;
+  }
+  then_ = now;
+  here_m_ = own_position_m;
+}
+
+/// Numbers that were left out are words that were lost, where both ends of the gap were in range.
+void NeighbourTable::count_lost(const LaneBlock& block, std::size_t lane, const NeighbourReport& report,
+                                std::int32_t as_of_us, const Vec2& own_position_m) {
+  const std::uint32_t lost = report.sequence - block.sequence[lane] - 1U;
+  if (lost > 0) {
+    const double inside_m = kInside * options_->communication_radius_m;
+    const Vec2 before_m = here_m_ + Vec2(block.x_m[lane], block.y_m[lane]);
+    if (as_of_us - block.as_of_us[lane] > silence_us_ ||
+        (before_m - own_position_m).squaredNorm() > inside_m * inside_m) {
+      return;
+    }
+  }
+  ++tally_.came;
+  tally_.lost += std::min(lost, 4U);
+}
+
+/// What the words since the last at() tell of the link: each weighs a sixty-fourth.
+void NeighbourTable::update_link_quality() {
+  if (tally_.updates == 0) return;
+  const auto share_of_all = [](std::uint32_t count) { return count / (kUpdates + count); };
+  const double late_s = in_s(tally_.late_us) / tally_.updates;
+  link_.late_s += share_of_all(tally_.updates) * (late_s - link_.late_s);
+  if (const std::uint32_t expected = tally_.came + tally_.lost; expected > 0) {
+    const double lost = static_cast<double>(tally_.lost) / expected;
+    loss_ += share_of_all(expected) * (lost - loss_);
+  }
+  link_.poor = loss_ > (link_.poor ? kClean : kPoor) || link_.late_s > 1.5 * period_s_;
+  tally_ = {};
+}
+
+NeighbourTable::Outcome NeighbourTable::take(const NeighbourReport& report,
+                                             const Vec2& own_position_m, Duration late) {
+  keep_frame(report.as_of, own_position_m);
+  Slot& slot = slot_of(report.robot);
+  const bool is_known = slot != kFree;
+  const std::int32_t as_of_us = since_then_us(report.as_of);
+  if (is_known) {
+    const LaneBlock& block = blocks_[slot / kLanes];
+    const std::size_t lane = slot % kLanes;
+    if (as_of_us - block.as_of_us[lane] < forget_after_us_) {
+      if (report.sequence == block.sequence[lane]) return Outcome::kDuplicate;
+      // Sequence numbers wrap: what lies in the half circle behind is older.
+      if (static_cast<std::int32_t>(report.sequence - block.sequence[lane]) < 0) {
+        return Outcome::kStale;
+      }
+      count_lost(block, lane, report, as_of_us, own_position_m);
+    }
+  }
+  const double keep_squared = options_->communication_radius_m * options_->communication_radius_m;
+  if ((report.position_m - own_position_m).squaredNorm() > keep_squared) {
+    if (is_known) blocks_[slot / kLanes].as_of_us[slot % kLanes] = kGone;
+    return Outcome::kFar;
+  }
+  if (!is_known && count_ >= kFree) return Outcome::kFar;
+  const std::size_t known = is_known ? slot : count_;
+  if (!is_known) insert(report.robot, slot);
+  LaneBlock& block = blocks_[known / kLanes];
+  const std::size_t lane = known % kLanes;
+  block.x_m[lane] = static_cast<float>(report.position_m.x() - here_m_.x());
+  block.y_m[lane] = static_cast<float>(report.position_m.y() - here_m_.y());
+  block.vx_mps[lane] = static_cast<float>(report.velocity_mps.x());
+  block.vy_mps[lane] = static_cast<float>(report.velocity_mps.y());
+  block.as_of_us[lane] = as_of_us;
+  block.late_us[lane] = std::max(to_us(late), 0);
+  tally_.late_us += block.late_us[lane];
+  ++tally_.updates;
+  block.sequence[lane] = report.sequence;
+  return Outcome::kTaken;
+}
+
+/// Who is within reach, into the sieve. Most are not, and which ones is unpredictable: no branches.
+/// Those that are extrapolated out of the communication radius are gone: should they come back they will
+/// be received.
+void NeighbourTable::filter(std::int32_t now_us, const Vec2& own_position_m, FilterPass& pass) {
+  const auto keep_m = static_cast<float>(options_->communication_radius_m);
+  const auto growth_mps = static_cast<float>(options_->reach_growth_mps);
+  const auto period_s = static_cast<float>(period_s_);
+  const float reach_now_m = static_cast<float>(options_->reach_m) - growth_mps * period_s;
+  const auto beyond_close_m = static_cast<float>(options_->reach_m - options_->close_m);
+  const auto own_x_m = static_cast<float>(own_position_m.x() - here_m_.x());
+  const auto own_y_m = static_cast<float>(own_position_m.y() - here_m_.y());
+  // What is too old is as old as it is, anything else at most as late as words are.
+  const Int4 late_us =
+      all(link_.poor ? kLongest_us : static_cast<std::int32_t>(1e6 * link_.late_s));
+  if (pass.blocks.size() < blocks_.size()) {
+    pass.blocks.resize(2 * blocks_.size());
+    pass.close.resize(kLanes * pass.blocks.size());
+    pass.far.resize(kLanes * pass.blocks.size());
+    pass.neighbours.resize(kLanes * pass.blocks.size());
+  }
+  std::uint32_t* next_close = pass.close.data();
+  std::uint32_t* next_far = pass.far.data();
+  Int4 gone = all(0);
+  for (std::uint32_t i = 0; i < blocks_.size(); ++i) {
+    LaneBlock& f = blocks_[i];
+    const Int4 age_us = max(now_us - f.as_of_us, all(0));
+    const Float4 age_s = 1e-6F * to_float(age_us);
+    const Float4 x_m = f.x_m + age_s * f.vx_mps;
+    const Float4 y_m = f.y_m + age_s * f.vy_mps;
+    const Float4 away_x_m = x_m - own_x_m;
+    const Float4 away_y_m = y_m - own_y_m;
+    const Float4 away_squared = away_x_m * away_x_m + away_y_m * away_y_m;
+    const Int4 known_us = min(age_us, max(f.late_us, late_us));
+    const Int4 information_age_us = max(known_us, age_us - (silence_us_ - period_us_));
+    const Float4 information_age_s = max(1e-6F * to_float(information_age_us), all(period_s));
+    const Float4 reach_m = reach_now_m + growth_mps * information_age_s;
+    const Int4 is_gone = (away_squared > keep_m * keep_m) | (age_us > forget_after_us_);
+    const Int4 in_reach = ~is_gone & (away_squared <= reach_m * reach_m);
+    const Float4 close_m = reach_m - beyond_close_m;
+    const Int4 is_close = in_reach & (away_squared <= close_m * close_m);
+    const Int4 is_far = in_reach & ~is_close;
+    gone -= is_gone;
+    const Int4 left = is_gone & (f.as_of_us != all(kGone));
+    if ((left[0] | left[1] | left[2] | left[3]) != 0)
+      f.as_of_us = is_gone ? all(kGone) : f.as_of_us;
+    pass.blocks[i] = {x_m, y_m, age_us};
+#pragma GCC unroll 4
+    for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
+      *next_close = kLanes * i + lane;
+      next_close -= is_close[lane];
+      *next_far = kLanes * i + lane;
+      next_far -= is_far[lane];
+    }
+  }
+  pass.close_found = static_cast<std::size_t>(next_close - pass.close.data());
+  pass.far_found = static_cast<std::size_t>(next_far - pass.far.data());
+  // The lanes behind the last robot are nobody's.
+  gone_ = static_cast<std::size_t>(gone[0] + gone[1] + gone[2] + gone[3]) -
+          (kLanes * blocks_.size() - count_);
+}
+
+/// What is thought of one within reach.
+void NeighbourTable::estimate(std::size_t known, const Vec2& own_position_m, const FilterPass& pass,
+                             Neighbour& n) const {
+  const LaneBlock& block = blocks_[known / kLanes];
+  const FilterPass::LaneBlock& filtered = pass.blocks[known / kLanes];
+  const std::size_t lane = known % kLanes;
+  const double age_s = in_s(filtered.age_us[lane]);
+  const double radius_m = options_->fleet.of(block.robot[lane]).radius_m;
+  n.robot = block.robot[lane];
+  n.position_m = here_m_ + Vec2(filtered.x_m[lane], filtered.y_m[lane]);
+  n.velocity_mps = {block.vx_mps[lane], block.vy_mps[lane]};
+  n.radius_m = radius_m;
+  if (filtered.age_us[lane] > silence_us_) {
+    n.radius_m += options_->fleet.of(n.robot).speed_max_mps * (age_s - silence_s_);
+  }
+  n.information_age_s = std::min(age_s, std::max(in_s(block.late_us[lane]), link_.late_s));
+  if (link_.poor && n.velocity_mps.squaredNorm() > kStopped_mps * kStopped_mps) {
+    const double updates_within_m = options_->near_m + options_->radius_m + radius_m;
+    const Vec2 sent_at_m = here_m_ + Vec2(block.x_m[lane], block.y_m[lane]);
+    if ((sent_at_m - own_position_m).squaredNorm() < updates_within_m * updates_within_m) {
+      n.information_age_s = age_s;
+    }
+  }
+  n.possible_stop_age_s = in_s(std::max(0, filtered.age_us[lane] - 2 * period_us_));
+}
+
+/// Closes the ranks where robots are gone.
+void NeighbourTable::sweep() {
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < count_; ++i) {
+    const LaneBlock& from = blocks_[i / kLanes];
+    const std::size_t f = i % kLanes;
+    if (from.as_of_us[f] == kGone) continue;
+    LaneBlock& to = blocks_[kept / kLanes];
+    const std::size_t t = kept % kLanes;
+    to.x_m[t] = from.x_m[f];
+    to.y_m[t] = from.y_m[f];
+    to.vx_mps[t] = from.vx_mps[f];
+    to.vy_mps[t] = from.vy_mps[f];
+    to.as_of_us[t] = from.as_of_us[f];
+    to.late_us[t] = from.late_us[f];
+    to.robot[t] = from.robot[f];
+    to.sequence[t] = from.sequence[f];
+    ++kept;
+  }
+  for (std::size_t i = kept; i < count_; ++i) blocks_[i / kLanes].as_of_us[i % kLanes] = kGone;
+  count_ = kept;
+  blocks_.resize((count_ + kLanes - 1) / kLanes);
+  gone_ = 0;
+  rebuild_index();
+}
+
+Neighbourhood NeighbourTable::at(SteadyTime now, const Vec2& own_position_m) {
+  update_link_quality();
+  keep_frame(now, own_position_m);
+  static thread_local FilterPass pass;
+  filter(since_then_us(now), own_position_m, pass);
+  Neighbour* next = pass.neighbours.data();
+  for (std::size_t i = 0; i < pass.close_found; ++i) {
+    estimate(pass.close[i], own_position_m, pass, *next++);
+  }
+  for (std::size_t i = 0; i < pass.far_found; ++i) {
+    estimate(pass.far[i], own_position_m, pass, *next++);
+  }
+  if (gone_ >= kSweepAt) sweep();
+  const std::span<const Neighbour> all(pass.neighbours.data(), next);
+  return {.all = all, .close = all.first(pass.close_found)};
+}
+
+}  // namespace swarm::agent

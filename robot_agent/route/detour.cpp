@@ -1,0 +1,185 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "robot_agent/route/detour.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace swarm::agent {
+namespace {
+
+constexpr int kDeep = 6;            // bends of bends
+constexpr double kBetween_m = 0.3;  // a gap between bodies that a robot goes through, beside it
+constexpr double kSkim_m = 0.1;     // what is left of a bend under way to it
+constexpr double kWall_m = 0.05;    // surface distance to obstacles that are no bodies
+constexpr double kLeast_m = 1e-6;
+
+class Detour {
+ public:
+  Detour(const World& world, const DetourOptions& options) : world_(world), options_(options) {
+    for (const Obstacle& body : world.bodies()) {
+      if (const auto* circle = std::get_if<Circle>(&body)) bodies_.push_back(*circle);
+    }
+  }
+
+  void bend(const Vec2& from_m, const Vec2& to_m, double touch_m, int deep,
+            std::vector<Vec2>& points) const {
+    const std::optional<std::size_t> first = first_on(from_m, to_m, touch_m);
+    if (!first || deep == 0) return;
+    for (const bool shorter_side : {true, false}) {
+      const std::vector<Vec2> bent = around(from_m, to_m, *first, shorter_side);
+      if (!is_free(from_m, bent, to_m)) continue;
+      Vec2 at_m = from_m;
+      for (const Vec2& next_m : bent) {
+        bend(at_m, next_m, kSkim_m, deep - 1, points);
+        points.push_back(next_m);
+        at_m = next_m;
+      }
+      bend(at_m, to_m, kSkim_m, deep - 1, points);
+      return;
+    }
+  }
+
+  Vec2 free_position(const Vec2& point_m) const {
+    Vec2 p = point_m;
+    for (int pass = 0; pass < kDeep; ++pass) {
+      for (const Circle& body : bodies_) {
+        const double wanted_m = body.radius_m + options_.radius_m + options_.touch_m;
+        const Vec2 off = p - body.center_m;
+        if (off.norm() >= wanted_m) continue;
+        p = body.center_m + wanted_m * (off.norm() > kLeast_m ? off.normalized() : Vec2::UnitX());
+      }
+    }
+    const bool moved = p != point_m;
+    return moved && inside(p) && world_.is_clear(p, options_.radius_m + kWall_m) ? p : point_m;
+  }
+
+ private:
+  /// The first body that the line comes too near to.
+  std::optional<std::size_t> first_on(const Vec2& from_m, const Vec2& to_m, double touch_m) const {
+    const Vec2 line = to_m - from_m;
+    const double length_m = line.norm();
+    if (length_m < kLeast_m) return std::nullopt;
+    std::optional<std::size_t> first;
+    double first_m = length_m;
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+      const double along_m =
+          std::clamp((bodies_[i].center_m - from_m).dot(line) / length_m, 0.0, length_m);
+      const Vec2 nearest_m = from_m + along_m / length_m * line;
+      const double wanted_m = bodies_[i].radius_m + options_.radius_m + touch_m;
+      // One that an end is at is not on the line: it cannot be bent around.
+      if (along_m <= 0.0 || along_m >= length_m || along_m >= first_m) continue;
+      if ((bodies_[i].center_m - nearest_m).norm() >= wanted_m) continue;
+      first = i;
+      first_m = along_m;
+    }
+    return first;
+  }
+
+  /// Adds a body, and all that a robot does not fit between the members and.
+  void grow(std::vector<std::size_t>& members, std::size_t by) const {
+    std::size_t looked_at = members.size();
+    members.push_back(by);
+    for (; looked_at < members.size(); ++looked_at) {
+      const Circle& a = bodies_[members[looked_at]];
+      for (std::size_t i = 0; i < bodies_.size(); ++i) {
+        const double gap_m =
+            (bodies_[i].center_m - a.center_m).norm() - bodies_[i].radius_m - a.radius_m;
+        if (gap_m < 2.0 * options_.radius_m + kBetween_m && !contains(members, i)) {
+          members.push_back(i);
+        }
+      }
+    }
+  }
+
+  static bool contains(const std::vector<std::size_t>& members, std::size_t i) {
+    return std::find(members.begin(), members.end(), i) != members.end();
+  }
+
+  /// A body that is at one of the points and is no member yet.
+  std::optional<std::size_t> body_at(const std::vector<Vec2>& points,
+                                     const std::vector<std::size_t>& members) const {
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+      const double wanted_m = bodies_[i].radius_m + options_.radius_m + options_.touch_m;
+      const bool is_there = std::any_of(points.begin(), points.end(), [&](const Vec2& p) {
+        return (p - bodies_[i].center_m).norm() < wanted_m;
+      });
+      if (is_there && !contains(members, i)) return i;
+    }
+    return std::nullopt;
+  }
+
+  /// The points beside a body, its cluster, and what else is where the points would be.
+  std::vector<Vec2> around(const Vec2& from_m, const Vec2& to_m, std::size_t first,
+                           bool shorter_side) const {
+    std::vector<std::size_t> members;
+    grow(members, first);
+    for (;;) {
+      std::vector<Vec2> points = beside(from_m, to_m, members, shorter_side);
+      const auto also = body_at(points, members);
+      if (!also) return points;
+      grow(members, *also);
+    }
+  }
+
+  /// One point beside the members, or two beside a long row of them.
+  std::vector<Vec2> beside(const Vec2& from_m, const Vec2& to_m,
+                           const std::vector<std::size_t>& members, bool shorter_side) const {
+    const double length_m = (to_m - from_m).norm();
+    const Vec2 along = (to_m - from_m) / length_m;
+    const Vec2 left(-along.y(), along.x());
+    double begin_m = length_m, end_m = 0.0, left_m = 0.0, right_m = 0.0;
+    for (const std::size_t i : members) {
+      const double wanted_m = bodies_[i].radius_m + options_.radius_m + options_.keep_m;
+      const Vec2 off = bodies_[i].center_m - from_m;
+      begin_m = std::min(begin_m, std::max(0.0, off.dot(along)));
+      end_m = std::max(end_m, std::min(length_m, off.dot(along)));
+      left_m = std::max(left_m, off.dot(left) + wanted_m);
+      right_m = std::min(right_m, off.dot(left) - wanted_m);
+    }
+    const double aside_m = (left_m <= -right_m) == shorter_side ? left_m : right_m;
+    std::vector<Vec2> points = {from_m + begin_m * along + aside_m * left};
+    if (end_m - begin_m > options_.radius_m) {
+      points.push_back(from_m + end_m * along + aside_m * left);
+    }
+    return points;
+  }
+
+  bool is_free(const Vec2& from_m, const std::vector<Vec2>& points, const Vec2& to_m) const {
+    const double clearance_m = options_.radius_m + kWall_m;
+    const World& walls = world_.without_bodies();
+    Vec2 at_m = from_m;
+    for (const Vec2& next_m : points) {
+      if (!inside(next_m) || !walls.segment_is_free(at_m, next_m, clearance_m)) return false;
+      at_m = next_m;
+    }
+    return walls.segment_is_free(at_m, to_m, clearance_m);
+  }
+
+  bool inside(const Vec2& p) const {
+    const Box& bounds = world_.bounds_m();
+    return ((p - bounds.min_m).array() >= options_.radius_m).all() &&
+           ((bounds.max_m - p).array() >= options_.radius_m).all();
+  }
+
+  const World& world_;
+  DetourOptions options_;
+  std::vector<Circle> bodies_;
+};
+
+}  // namespace
+
+std::vector<Vec2> around_bodies(const Vec2& from_m, const Vec2& to_m, const World& world,
+                                const DetourOptions& options) {
+  std::vector<Vec2> points;
+  if (world.bodies().empty()) return points;
+  Detour(world, options).bend(from_m, to_m, options.touch_m, kDeep, points);
+  return points;
+}
+
+Vec2 beside_bodies(const Vec2& point_m, const World& world, const DetourOptions& options) {
+  return world.bodies().empty() ? point_m : Detour(world, options).free_position(point_m);
+}
+
+}  // namespace swarm::agent

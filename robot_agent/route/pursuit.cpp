@@ -1,0 +1,132 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "robot_agent/route/pursuit.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace swarm::agent {
+namespace {
+
+constexpr double kStep_m = 0.25;    // of progress
+constexpr double kReached_m = 0.5;  // an aim this near counts as reached
+constexpr double kBackTrack_m = 30.0;
+constexpr double kSample_m = 0.5;    // of the planned clearance
+constexpr double kLeast_m = 0.05;    // surface clearance of any line of sight
+constexpr double kTouch_m = 1e-3;    // a line of sight begins where the robot is
+constexpr double kKeepAim_m = 1.5;   // an aim this far ahead is kept between two looks,
+constexpr double kAtCarrot_m = 0.1;  // and one this near the carrot
+
+}  // namespace
+
+Pursuit::Pursuit(Polyline path, const World& world, Shared<PursuitOptions> options)
+    : path_(std::move(path)),
+      options_(std::move(options)),
+      segment_(path_.segment(0.0)),
+      here_(segment_.position(0.0)) {
+  const double most_m = options_->radius_m + options_->keep_clearance_m;
+  const auto pieces = static_cast<std::size_t>(path_.length_m() / kSample_m) + 1;
+  clearance_m_.reserve(pieces);
+  std::size_t segment = 0;
+  for (std::size_t i = 0; i < pieces; ++i) {
+    // The distance changes by at most the way: half a piece on both sides of the sample.
+    const double s = (static_cast<double>(i) + 0.5) * kSample_m;
+    const Polyline::Segment on = path_.segment(s, segment);
+    segment = on.index;
+    const double least_m = world.distance_m(on.position(s).point_m) - 0.5 * kSample_m;
+    clearance_m_.push_back(static_cast<float>(std::clamp(least_m, 0.0, most_m)));
+  }
+}
+
+std::size_t Pursuit::piece_of(double s_m) const {
+  return std::min(clearance_m_.size() - 1, static_cast<std::size_t>(s_m / kSample_m));
+}
+
+double Pursuit::planned_clearance_m(double from_s_m, double to_s_m) const {
+  const std::size_t last = piece_of(to_s_m);
+  float least_m = clearance_m_[piece_of(from_s_m)];
+  for (std::size_t i = piece_of(from_s_m) + 1; i <= last; ++i) {
+    least_m = std::min(least_m, clearance_m_[i]);
+  }
+  return static_cast<double>(least_m);
+}
+
+void Pursuit::move_to(double s_m) {
+  s_m_ = s_m;
+  if (!segment_.holds(s_m)) segment_ = path_.segment(s_m, segment_.index);
+  here_ = segment_.position(s_m);
+}
+
+void Pursuit::advance(const Vec2& position_m) {
+  if (aim_s_m_ > s_m_ && (aim_m_ - position_m).norm() < kReached_m) move_to(aim_s_m_);
+  const double length = path_.length_m();
+  while (s_m_ < length) {
+    const Vec2 offset = position_m - here_.point_m;
+    const bool near = offset.norm() < options_->passed_m;
+    // Only beside the way does "ahead of s" mean passed: a way that doubles back has points far off
+    // whose tangents say the same.
+    const bool beside = offset.norm() < options_->look_ahead_m && offset.dot(here_.tangent) > 0.0;
+    if (!near && !beside) break;
+    move_to(std::min(length, s_m_ + kStep_m));
+  }
+}
+
+Pursuit::Aim Pursuit::aim(const Vec2& position_m) const {
+  Aim aim{.point_m = aim_m_,
+          .left_m = (aim_m_ - position_m).norm() + path_.length_m() - aim_s_m_,
+          .rest_m = std::max(0.0, carrot_m_ - aim_s_m_),
+          .visible = true};
+  if (s_m_ >= aim_s_m_ && carrot_m_ < path_.length_m()) {
+    const Vec2 tangent = path_.segment(aim_s_m_, segment_.index).position(aim_s_m_).tangent;
+    aim.past_m = std::max(0.0, (position_m - aim_m_).dot(tangent) - aim.rest_m);
+  }
+  return aim;
+}
+
+Pursuit::Aim Pursuit::update(const Vec2& position_m, const World& world, double carrot_m) {
+  carrot_m_ = std::min(carrot_m, path_.length_m());
+  advance(position_m);
+  // Between two looks the aim is the one that was seen, while it is well ahead.
+  const bool is_kept =
+      aim_s_m_ <= carrot_m_ && (aim_s_m_ - s_m_ > kKeepAim_m || carrot_m_ - aim_s_m_ < kAtCarrot_m);
+  if (looks_in_ > 0 && is_kept) {
+    --looks_in_;
+    return aim(position_m);
+  }
+  looks_in_ = options_->look_every;
+  return look(position_m, world);
+}
+
+Pursuit::Aim Pursuit::look(const Vec2& position_m, const World& world) {
+  const double length = path_.length_m();
+  const double most_m = options_->radius_m + std::max(kLeast_m, options_->keep_clearance_m);
+  const double own_clearance =
+      std::max(0.0, world.distance_up_to_m(position_m, most_m + kTouch_m) - kTouch_m);
+  const auto visible = [&](double s) {
+    const double planned = planned_clearance_m(std::min(s_m_, s), std::max(s_m_, s));
+    const double wanted = std::max(options_->radius_m + kLeast_m, planned);
+    return world.segment_is_free(position_m, path_.at(s, segment_.index),
+                                 std::min(wanted, own_clearance));
+  };
+  const auto aim_at = [&](double s) {
+    aim_s_m_ = s;
+    aim_m_ = path_.at(s, segment_.index);
+    return aim(position_m);
+  };
+  for (double ahead = options_->look_ahead_m; ahead > 0.1; ahead *= 0.5) {
+    const double s = std::min(carrot_m_, s_m_ + ahead);
+    if (visible(s)) return aim_at(s);
+    if (s <= s_m_) break;
+  }
+  for (double back = 0.0; back <= std::min(kBackTrack_m, s_m_); back += 1.0) {
+    if (visible(s_m_ - back)) {
+      move_to(s_m_ - back);
+      return aim_at(s_m_);
+    }
+  }
+  looks_in_ = 0;
+  return {
+      .point_m = here_.point_m, .left_m = length - s_m_, .rest_m = std::max(0.0, carrot_m_ - s_m_)};
+}
+
+}  // namespace swarm::agent

@@ -1,0 +1,177 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "swarmflow/robot/route.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "robot_agent/route/detour.hpp"
+#include "swarm_core/base/assert.hpp"
+#include "swarm_core/gmm/wasserstein.hpp"
+#include "swarm_core/plan/flow_draw.hpp"
+
+namespace swarm::agent {
+namespace {
+
+/// A Gaussian that a robot passes, and its own point in it.
+struct Station {
+  Gaussian gaussian;
+  double time_s = 0.0;
+  Vec2 offset_m = Vec2::Zero();  // from the mean, as transported
+};
+
+Vec2 clamp_offset(const Gaussian& g, const Vec2& offset, double offset_max) {
+  const double d = std::sqrt(g.mahalanobis_squared(g.mean_m() + offset));
+  return d > offset_max ? Vec2(offset * (offset_max / d)) : offset;
+}
+
+/// Follows the flow from a node to a sink, drawing a leg at every split.
+std::uint32_t follow(const FlowPlan& plan, std::uint32_t node, double share,
+                     std::vector<Station>& stations) {
+  for (;;) {
+    if (plan.legs_out(node).empty()) return node;
+    const std::uint32_t next = plan.legs()[draw_leg(plan, node, share)].to;
+    const PlanNode& to = plan.nodes()[next];
+    const Station& last = stations.back();
+    stations.push_back(
+        {to.gaussian, to.time.count(), transport_map(last.gaussian, to.gaussian) * last.offset_m});
+    node = next;
+  }
+}
+
+/// How far each station's offset may stay: 1 as planned, 0 on the mean.
+std::vector<Vec2> free_vertices(const std::vector<Station>& stations, const World& world,
+                                const RouteOptions& options) {
+  const Box inside{world.bounds_m().min_m.array() + options.radius_m,
+                   world.bounds_m().max_m.array() - options.radius_m};
+  const auto vertex = [&](std::size_t i, double scale) -> Vec2 {
+    const Vec2 p = stations[i].gaussian.mean_m() + scale * stations[i].offset_m;
+    return p.cwiseMax(inside.min_m).cwiseMin(inside.max_m);
+  };
+  std::vector<double> scale(stations.size(), 1.0);
+  for (std::size_t i = 0; i < stations.size(); ++i) {
+    const double clearance = options.radius_m + options.vertex_clearance_m;
+    if (world.distance_m(vertex(i, 1.0)) >= clearance) continue;
+    double low = 0.0;
+    double high = 1.0;
+    for (int step = 0; step < 5; ++step) {
+      const double mid = 0.5 * (low + high);
+      (world.distance_m(vertex(i, mid)) >= clearance ? low : high) = mid;
+    }
+    scale[i] = low;
+  }
+  const double clearance = options.radius_m + options.leg_clearance_m;
+  for (int pass = 0; pass < 8; ++pass) {
+    bool all_free = true;
+    for (std::size_t i = 0; i + 1 < stations.size(); ++i) {
+      if (world.segment_is_free(vertex(i, scale[i]), vertex(i + 1, scale[i + 1]), clearance))
+        continue;
+      all_free = false;
+      const double shrink = pass < 6 ? 0.6 : 0.0;
+      scale[i] *= shrink;
+      scale[i + 1] *= shrink;
+    }
+    if (all_free) break;
+  }
+  std::vector<Vec2> vertices;
+  vertices.reserve(stations.size());
+  for (std::size_t i = 0; i < stations.size(); ++i) vertices.push_back(vertex(i, scale[i]));
+  return vertices;
+}
+
+Route finish(const FlowPlan& plan, std::uint32_t node, double share, std::vector<Station> stations,
+             const World& world, const RouteOptions& options,
+             std::optional<Vec2> begin_m = std::nullopt) {
+  const std::uint32_t last = follow(plan, node, share, stations);
+  const auto sink = std::find(plan.sinks().begin(), plan.sinks().end(), last);
+  SWARM_ASSERT(sink != plan.sinks().end());
+  // Fallen robots are small against a plan: their bodies bend a path, they do not narrow the swarm.
+  const std::vector<Vec2> own_m = free_vertices(stations, world.without_bodies(), options);
+  const DetourOptions detour{.radius_m = options.radius_m, .touch_m = options.leg_clearance_m};
+  std::vector<Vec2> vertices;
+  double at_m = 0.0;
+  const auto go_to = [&](const Vec2& next_m) {
+    if (!vertices.empty()) at_m += (next_m - vertices.back()).norm();
+    vertices.push_back(next_m);
+  };
+  if (begin_m) go_to(*begin_m);
+  std::vector<Schedule::Entry> schedule;
+  schedule.reserve(stations.size());
+  for (std::size_t i = 0; i < stations.size(); ++i) {
+    const Vec2 next_m = beside_bodies(own_m[i], world, detour);
+    if (!vertices.empty()) {
+      for (const Vec2& bend_m : around_bodies(vertices.back(), next_m, world, detour))
+        go_to(bend_m);
+    }
+    go_to(next_m);
+    schedule.push_back({stations[i].time_s, at_m});
+  }
+  return {.path = Polyline(std::move(vertices)),
+          .schedule = Schedule(std::move(schedule)),
+          .sink = static_cast<std::uint32_t>(sink - plan.sinks().begin()),
+          .goal = plan.nodes()[last].gaussian};
+}
+
+}  // namespace
+
+Route route_from_start(const FlowPlan& plan, double share, const Vec2& position_m,
+                       const World& world, const RouteOptions& options) {
+  const std::uint32_t node = plan.sources()[draw_source(plan, share)];
+  const PlanNode& from = plan.nodes()[node];
+  const Gaussian& g = from.gaussian;
+  const Vec2 offset = clamp_offset(g, position_m - g.mean_m(), options.offset_max);
+  return finish(plan, node, share, {{g, from.time.count(), offset}}, world, options);
+}
+
+Route route_from_source(const FlowPlan& plan, std::uint32_t source, double share,
+                        const Vec2& position_m, const World& world, const RouteOptions& options) {
+  const std::uint32_t node = plan.sources()[source];
+  const Gaussian& g = plan.nodes()[node].gaussian;
+  const Vec2 offset = clamp_offset(g, position_m - g.mean_m(), options.offset_max);
+  return finish(plan, node, share, {{g, plan.nodes()[node].time.count(), offset}}, world, options,
+                position_m);
+}
+
+Route route_from_here(const FlowPlan& plan, double share, const Vec2& position_m,
+                      const World& world, const RouteOptions& options,
+                      std::optional<double> plan_time_s) {
+  constexpr int kPointsPerLeg = 16;
+  double best = std::numeric_limits<double>::infinity();
+  bool best_visible = false;
+  std::uint32_t best_leg = 0;
+  Station here;
+  for (std::uint32_t l = 0; l < plan.legs().size(); ++l) {
+    const PlanLeg& leg = plan.legs()[l];
+    const PlanNode& from = plan.nodes()[leg.from];
+    const PlanNode& to = plan.nodes()[leg.to];
+    const Geodesic geodesic(from.gaussian, to.gaussian);
+    for (int i = 0; i <= kPointsPerLeg; ++i) {
+      const double along = static_cast<double>(i) / kPointsPerLeg;
+      const Gaussian g = geodesic.at(along);
+      const double time_s = (from.time + along * (to.time - from.time)).count();
+      const double off_s = plan_time_s ? (time_s - *plan_time_s) / kJoin_s : 0.0;
+      const double d = g.mahalanobis_squared(position_m) + off_s * off_s;
+      if (best_visible && d >= best) continue;
+      const bool visible = world.segment_is_free(position_m, g.mean_m(), options.radius_m);
+      if ((visible && !best_visible) || (visible == best_visible && d < best)) {
+        best = d;
+        best_visible = visible;
+        best_leg = l;
+        here = {g, time_s};
+      }
+    }
+  }
+  here.offset_m =
+      clamp_offset(here.gaussian, position_m - here.gaussian.mean_m(), options.offset_max);
+  const std::uint32_t next = plan.legs()[best_leg].to;
+  const PlanNode& to = plan.nodes()[next];
+  const Station after{to.gaussian, to.time.count(),
+                      transport_map(here.gaussian, to.gaussian) * here.offset_m};
+  return finish(plan, next, share, {here, after}, world, options, position_m);
+}
+
+}  // namespace swarm::agent

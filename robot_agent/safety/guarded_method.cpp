@@ -1,0 +1,70 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "robot_agent/safety/guarded_method.hpp"
+
+#include <exception>
+
+namespace swarm::agent {
+
+template <class T, class Call>
+T GuardedMethod::guarded(T otherwise, Call call) const {
+  if (!fault_.empty()) return otherwise;
+  try {
+    return call(*method_);
+  } catch (const std::exception& e) {
+    fault_ = std::string("the control method threw: ") + e.what();
+  } catch (...) {
+    fault_ = "the control method threw what is no std::exception";
+  }
+  return otherwise;
+}
+
+Vec2 GuardedMethod::checked(const Vec2& velocity_mps) {
+  if (velocity_mps.allFinite()) return velocity_mps;
+  fault_ = "the control method returned a velocity that is not finite";
+  return Vec2::Zero();
+}
+
+void GuardedMethod::begin(const FlowPlan& plan, const Route& route, const World& world) {
+  guarded(0, [&](ControlMethod& m) {
+    m.set_goals(plan);
+    m.begin(route, world);
+    return 0;
+  });
+}
+
+bool GuardedMethod::has_arrived(const ControlView& view) {
+  return guarded(false, [&](ControlMethod& m) { return m.has_arrived(view); });
+}
+
+Vec2 GuardedMethod::desired_velocity(const ControlView& view, bool arrived, Rng& rng) {
+  return checked(
+      guarded<Vec2>(Vec2::Zero(), [&](ControlMethod& m) { return m.desired_velocity(view, arrived, rng); }));
+}
+
+Vec2 GuardedMethod::hold(const ControlView& view) {
+  return checked(guarded<Vec2>(Vec2::Zero(), [&](ControlMethod& m) { return m.hold(view); }));
+}
+
+std::uint32_t GuardedMethod::goal(const Vec2& position_m) const {
+  return guarded(0U, [&](const ControlMethod& m) { return m.goal(position_m); });
+}
+
+std::optional<TimeTracking> GuardedMethod::tracking() const {
+  return guarded(std::optional<TimeTracking>{},
+                 [](const ControlMethod& m) { return m.tracking(); });
+}
+
+double GuardedMethod::lag_s() const {
+  return guarded(0.0, [](const ControlMethod& m) { return m.lag_s(); });
+}
+
+double GuardedMethod::remaining_m() const {
+  return guarded(0.0, [](const ControlMethod& m) { return m.remaining_m(); });
+}
+
+std::uint32_t GuardedMethod::escapes() const {
+  return guarded(0U, [](const ControlMethod& m) { return m.escapes(); });
+}
+
+}  // namespace swarm::agent

@@ -1,0 +1,62 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "swarm_core/app/program.hpp"
+
+#include <cstdio>
+#include <exception>
+#include <sstream>
+
+#include <CLI/CLI.hpp>
+
+#include "swarmflow/mission/mission_file.hpp"
+
+namespace swarm::shell {
+
+int run_main(const std::string& name, const std::function<Result<ExitCode>()>& body) {
+  try {
+    const Result<ExitCode> code = body();
+    if (code) return static_cast<int>(*code);
+    std::istringstream lines(code.error().message);
+    for (std::string line; std::getline(lines, line);) {
+      std::fprintf(stderr, "%s: %s\n", name.c_str(), line.c_str());
+    }
+    return static_cast<int>(exit_code(code.error().code));
+  } catch (const std::exception& e) {
+    std::fprintf(stderr, "%s: unexpected: %s\n", name.c_str(), e.what());
+    return static_cast<int>(ExitCode::kEnvironment);
+  }
+}
+
+void add_common_options(CLI::App& app) {
+  app.set_version_flag("--version", app.get_name() + " " + SWARM_VERSION);
+  app.add_option("--check", "Validate a mission file, say all that is wrong with it, and exit")
+      ->type_name("MISSION.yaml");
+}
+
+Result<std::optional<ExitCode>> parse(CLI::App& app, int argc, char** argv,
+                                      const Catalogue& catalogue) {
+  // --check is a task of its own: what the program needs otherwise is not required beside it.
+  for (int i = 1; i < argc; ++i) {
+    const std::string argument = argv[i];
+    const bool inline_value = argument.starts_with("--check=");
+    if (!inline_value && argument != "--check") continue;
+    if (!inline_value && i + 1 == argc) break;
+    const std::string file = inline_value ? argument.substr(8) : argv[i + 1];
+    const auto mission = load_mission(file, catalogue);
+    if (!mission) return tl::unexpected(mission.error());
+    std::printf("%s: ok\n", file.c_str());
+    return ExitCode::kOk;
+  }
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    if (e.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) {
+      app.exit(e);  // prints help or version
+      return ExitCode::kOk;
+    }
+    return fail(ErrorCode::kBadInput, std::string(e.what()) + "; see --help");
+  }
+  return std::nullopt;
+}
+
+}  // namespace swarm::shell

@@ -1,0 +1,95 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "swarm_core/app/run_directory.hpp"
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <system_error>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <unistd.h>
+
+namespace swarm::shell {
+
+Result<void> write_file(const std::filesystem::path& file, std::string_view content) {
+  const std::filesystem::path temporary = file.string() + fmt::format(".tmp{}", ::getpid());
+  {
+    std::ofstream out(temporary, std::ios::binary | std::ios::trunc);
+    out.write(content.data(), static_cast<std::streamsize>(content.size()));
+    out.flush();
+    if (!out) {
+      return fail(ErrorCode::kEnvironment, fmt::format("cannot write {}: {}; is the disk full?",
+                                                       temporary.string(), std::strerror(errno)));
+    }
+  }
+  std::error_code error;
+  std::filesystem::rename(temporary, file, error);
+  if (error) {
+    return fail(ErrorCode::kEnvironment,
+                fmt::format("cannot write {}: {}", file.string(), error.message()));
+  }
+  return {};
+}
+
+Result<std::string> read_file(const std::filesystem::path& file, std::size_t max_bytes) {
+  std::error_code error;
+  const auto size = std::filesystem::file_size(file, error);
+  if (error) {
+    return fail(ErrorCode::kBadInput,
+                fmt::format("cannot read {}: {}", file.string(), error.message()));
+  }
+  if (size > max_bytes) {
+    return fail(ErrorCode::kBadInput,
+                fmt::format("{} is larger than {} bytes", file.string(), max_bytes));
+  }
+  std::ifstream in(file, std::ios::binary);
+  std::string content(size, '\0');
+  in.read(content.data(), static_cast<std::streamsize>(size));
+  if (!in) return fail(ErrorCode::kBadInput, fmt::format("cannot read {}", file.string()));
+  return content;
+}
+
+Result<void> write_run_info(const std::filesystem::path& run_dir, const RunInfo& info) {
+  const nlohmann::json json = {{"domain", info.domain},
+                               {"discovery_host", info.discovery_host},
+                               {"discovery_port", info.discovery_port},
+                               {"agents", info.agents},
+                               {"hubs", info.relays},
+                               {"cyclone_launcher", info.cyclone_launcher},
+                               {"cyclone_planner", info.cyclone_planner},
+                               {"host", info.host},
+                               {"interface", info.interface},
+                               {"channel", to_string(info.channel)},
+                               {"seed", info.seed},
+                               {"began_utc_ns", info.began.time_since_epoch().count()}};
+  return write_file(run_dir / kRunFile, json.dump(2) + "\n");
+}
+
+Result<RunInfo> read_run_info(const std::filesystem::path& run_dir) {
+  const auto text = read_file(run_dir / kRunFile, 1U << 16U);
+  if (!text) return tl::unexpected(text.error());
+  try {
+    const auto json = nlohmann::json::parse(*text);
+    return RunInfo{.domain = json.at("domain").get<std::uint32_t>(),
+                   .discovery_host = json.at("discovery_host").get<std::string>(),
+                   .discovery_port = json.at("discovery_port").get<std::uint16_t>(),
+                   .agents = json.at("agents").get<std::uint32_t>(),
+                   .relays = json.at("hubs").get<std::uint32_t>(),
+                   .cyclone_launcher = json.at("cyclone_launcher").get<bool>(),
+                   .cyclone_planner = json.at("cyclone_planner").get<bool>(),
+                   .host = json.at("host").get<std::string>(),
+                   .interface = json.at("interface").get<std::string>(),
+                   .channel = json.at("channel").get<std::string>() == to_string(Channel::kGroups)
+                                  ? Channel::kGroups
+                                  : Channel::kTopics,
+                   .seed = json.at("seed").get<std::uint64_t>(),
+                   .began = UtcTime(Duration(json.at("began_utc_ns").get<std::int64_t>()))};
+  } catch (const nlohmann::json::exception& e) {
+    return fail(ErrorCode::kBadInput, fmt::format("{}: not a run directory: {}",
+                                                  (run_dir / kRunFile).string(), e.what()));
+  }
+}
+
+}  // namespace swarm::shell

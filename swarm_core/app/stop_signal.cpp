@@ -1,0 +1,29 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "swarm_core/app/stop_signal.hpp"
+
+#include <atomic>
+#include <csignal>
+
+namespace swarm::shell {
+namespace {
+
+std::atomic<int> requests{0};
+static_assert(std::atomic<int>::is_always_lock_free, "used in a signal handler");
+
+void on_signal(int) { requests.fetch_add(1, std::memory_order_relaxed); }
+
+}  // namespace
+
+void catch_stop_signals() {
+  struct sigaction action = {};
+  action.sa_handler = on_signal;  // no SA_RESTART: a sleeping loop wakes up
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+  std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);  // a limit of file sizes is a full disk like any other
+}
+
+int stop_requests() { return requests.load(std::memory_order_relaxed); }
+
+}  // namespace swarm::shell

@@ -1,0 +1,178 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "swarm_core/mission_file/mission_keys.hpp"
+
+#include <array>
+#include <optional>
+#include <string_view>
+#include <type_traits>
+#include <variant>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "swarm_core/mission_file/mission_fields.hpp"
+
+namespace swarm {
+namespace {
+
+struct Row {
+  std::string_view key;
+  std::string_view kind;
+  std::string range;
+  std::string fallback;
+  std::string_view doc;
+};
+
+/// What the values of a key must be, without the verb of the messages.
+std::string range_text(const Range& range) {
+  constexpr std::string_view kVerb = "must be ";
+  return to_string(range).substr(kVerb.size());
+}
+
+/// A bar would end the cell.
+std::string cell(std::string_view text) {
+  std::string escaped;
+  for (const char c : text) escaped += c == '|' ? std::string("\\|") : std::string(1, c);
+  return escaped;
+}
+
+class Page {
+ public:
+  void heading(std::string_view level, std::string_view name, std::string_view doc) {
+    text_ += fmt::format("\n{} {}\n\n{}.\n", level, name, doc);
+    has_table_ = false;
+  }
+
+  void add(std::string_view section, const Row& row) {
+    if (!has_table_) {
+      text_ +=
+          "\n| section | key | kind | range | default | meaning |\n|---|---|---|---|---|---|\n";
+    }
+    has_table_ = true;
+    text_ += fmt::format("| {} | `{}` | {} | {} | {} | {} |\n", section, row.key, row.kind,
+                         cell(row.range), row.fallback, cell(row.doc));
+  }
+
+  template <class Section, std::size_t N>
+  void add(std::string_view name, const std::array<mission_fields::Field<Section>, N>& fields) {
+    const Section defaults{};
+    for (const auto& field : fields) {
+      Row row{field.key, "number", range_text(field.range), {}, field.doc};
+      std::visit(
+          [&](auto member) {
+            using Value = std::remove_cvref_t<decltype(defaults.*member)>;
+            if constexpr (std::is_same_v<Value, std::optional<double>>) {
+              row.fallback = "not judged";  // a number that may be left out has no other default
+            } else {
+              row.fallback = fmt::format("{}", defaults.*member);
+              if constexpr (std::is_integral_v<Value>) row.kind = "count";
+            }
+          },
+          field.member);
+      add(name, row);
+    }
+  }
+
+  void add(std::string_view section, const Components& components) {
+    for (const ComponentSpec& component : components) {
+      heading("###", fmt::format("{}: {}", section, component.name), component.doc);
+      for (const OptionSpec& option : component.options) add(section, row_of(option));
+    }
+  }
+
+  std::string take() { return std::move(text_); }
+
+ private:
+  static Row row_of(const OptionSpec& option) {
+    Row row{option.key, "number", range_text(option.range), option.fallback, option.doc};
+    if (option.kind == OptionSpec::Kind::kCount) row.kind = "count";
+    if (option.kind == OptionSpec::Kind::kChoice) {
+      row.kind = "choice";
+      row.range = fmt::format("{}", fmt::join(option.words, ", "));
+    }
+    if (!option.at_most.empty()) row.range += fmt::format(", <= {}", option.at_most);
+    return row;
+  }
+
+  std::string text_ =
+      "<!-- Made by `swarm_launcher keys`: edit the tables in the code, not this file. "
+      "-->\n# Keys of a mission file\n\nAll keys with one value. A section that is left out has "
+      "its "
+      "defaults; so has a key. The keys of every component may be given, whichever component the "
+      "mission names. `swarm_launcher --check MISSION.yaml` names what is wrong with a file.\n";
+  bool has_table_ = false;
+};
+
+std::string names_of(const Components& components) {
+  std::string names;
+  for (const ComponentSpec& component : components) {
+    names += (names.empty() ? "" : ", ") + component.name;
+  }
+  return names;
+}
+
+Row named(std::string_view key, const Components& components, const std::string& fallback,
+          std::string_view doc) {
+  return {key, "choice", names_of(components), fallback, doc};
+}
+
+Row automatic(std::string_view key, const Range& range, std::string_view doc) {
+  return {key, "number or auto", range_text(range), std::string(mission_fields::kAutomatic), doc};
+}
+
+void add_robots(Page& page, const Components& drivers) {
+  page.heading(
+      "##", "robots",
+      "The robots' bodies; a group in robots.groups may set the keys of the body otherwise");
+  page.add("robots", mission_fields::kRobots);
+  page.add("robots", named("model", drivers, BodySpec{}.model, "the driver of the body"));
+  page.add("robots", mission_fields::kBody);
+  page.add("robots", automatic("lag_s", mission_fields::kLag_s,
+                               "how long the body takes until it moves as commanded; auto: as its "
+                               "driver declares"));
+  page.add("robots", drivers);
+}
+
+void add_planner(Page& page, const Components& methods) {
+  page.heading("##", "planner", "What every planning method reads");
+  page.add("planner", named("method", methods, PlannerSpec{}.method, "the planning method"));
+  page.add("planner", automatic("density_cap_per_m2", mission_fields::kDensityCap_per_m2,
+                                "swarmprm and rover: robots per m2 at most; 0: no cap; auto: "
+                                "swarmprm plans what the bodies can follow, rover without a cap"));
+  page.add("planner", mission_fields::kPlanner);
+  page.add("planner", methods);
+}
+
+void add_control(Page& page, const Components& methods) {
+  page.heading("##", "control", "What every control method reads");
+  page.add("control", named("method", methods, ControlSpec{}.method, "the control method"));
+  page.add("control", mission_fields::kControl);
+  page.add("control", methods);
+}
+
+}  // namespace
+
+std::string mission_keys_markdown(const Catalogue& catalogue) {
+  Page page;
+  add_robots(page, catalogue.drivers);
+  add_planner(page, catalogue.planning_methods);
+  add_control(page, catalogue.control_methods);
+  page.heading("##", "safety", "The filter that no robot's command passes without");
+  page.add("safety", mission_fields::kSafety);
+  page.heading("##", "link", "Which states robots receive and how often they send their own");
+  page.add("link", mission_fields::kLink);
+  page.heading("##", "timing", "Heartbeats, silence and clocks");
+  page.add("timing", mission_fields::kTiming);
+  page.heading("##", "plan_clock", "How far the plan's clock slows down when the swarm lags");
+  page.add("plan_clock", mission_fields::kPlanClock);
+  page.heading("##", "launcher", "Starting, waiting and starting again");
+  page.add("launcher", mission_fields::kLauncher);
+  page.heading("##", "criteria",
+               "What the audit demands of a run beyond arrival and no contact; a key that is left "
+               "out is not judged");
+  page.add("criteria", mission_fields::kCriteria);
+  return page.take();
+}
+
+}  // namespace swarm

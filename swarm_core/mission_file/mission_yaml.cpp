@@ -1,0 +1,172 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include <iterator>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "swarm_core/mission_file/mission_fields.hpp"
+#include "swarm_core/mission_file/scene_change_file.hpp"
+#include "swarmflow/mission/mission_file.hpp"
+#include "swarm_core/mission_file/yaml_point.hpp"
+
+namespace swarm {
+namespace {
+
+using Out = std::back_insert_iterator<std::string>;
+
+// fmt's `{}` writes the shortest decimal that reads back to the same double.
+
+void write_obstacle(Out out, const Obstacle& obstacle) {
+  if (const auto* circle = std::get_if<Circle>(&obstacle)) {
+    fmt::format_to(out, "    - circle_m: {{center: {}, radius: {}}}\n", yaml_point(circle->center_m),
+                   circle->radius_m);
+    return;
+  }
+  fmt::format_to(out, "    - polygon_m:\n");
+  for (const Vec2& vertex : std::get<Polygon>(obstacle).vertices_m()) {
+    fmt::format_to(out, "        - {}\n", yaml_point(vertex));
+  }
+}
+
+void write_world(Out out, const World& world) {
+  const Box& bounds = world.bounds_m();
+  fmt::format_to(out, "world:\n  bounds_m: [{}, {}, {}, {}]\n", bounds.min_m.x(), bounds.min_m.y(),
+                 bounds.max_m.x(), bounds.max_m.y());
+  if (world.obstacles().empty()) return;
+  fmt::format_to(out, "  obstacles:\n");
+  for (const Obstacle& obstacle : world.obstacles()) write_obstacle(out, obstacle);
+}
+
+void write_mixture(Out out, std::string_view key, const Mixture& mixture) {
+  fmt::format_to(out, "{}:\n", key);
+  for (const auto& [weight, gaussian] : mixture.components()) {
+    const Mat2& c = gaussian.covariance_m2();
+    fmt::format_to(out, "  - mean_m: {}\n    covariance_m2: [[{}, {}], [{}, {}]]\n    weight: {}\n",
+                   yaml_point(gaussian.mean_m()), c(0, 0), c(0, 1), c(1, 0), c(1, 1), weight);
+  }
+}
+
+void write_shape(Out out, const ShapeField& shape) {
+  fmt::format_to(out, "goal_shape:\n");
+  if (!shape.polygons().empty()) fmt::format_to(out, "  polygons_m:\n");
+  for (const Polygon& polygon : shape.polygons()) {
+    std::string_view before = "    - [";
+    for (const Vec2& vertex : polygon.vertices_m()) {
+      fmt::format_to(out, "{}{}", std::exchange(before, ", "), yaml_point(vertex));
+    }
+    fmt::format_to(out, "]\n");
+  }
+  if (!shape.boxes_m().empty()) fmt::format_to(out, "  boxes_m:\n");
+  for (const Box& box : shape.boxes_m()) {
+    fmt::format_to(out, "    - [{}, {}, {}, {}]\n", box.min_m.x(), box.min_m.y(), box.max_m.x(),
+                   box.max_m.y());
+  }
+}
+
+template <class Section, std::size_t N>
+void write_fields(Out out, const Section& section,
+                  const std::array<mission_fields::Field<Section>, N>& fields) {
+  for (const auto& field : fields) {
+    const auto write = [&](const auto& value) {
+      fmt::format_to(out, "  {}: {}\n", field.key, value);
+    };
+    std::visit(
+        [&](auto member) {
+          if constexpr (requires { (section.*member).has_value(); }) {
+            if (section.*member) write(*(section.*member));
+          } else {
+            write(section.*member);
+          }
+        },
+        field.member);
+  }
+}
+
+std::string or_automatic(const std::optional<double>& value) {
+  return value ? fmt::format("{}", *value) : std::string(mission_fields::kAutomatic);
+}
+
+/// The values of a component's own options, as checked when they were read.
+void write_options(Out out, const OptionValues& options) {
+  for (const auto& [key, text] : options.all()) fmt::format_to(out, "  {}: {}\n", key, text);
+}
+
+/// A section must not be empty, and none of its keys need be set.
+void write_criteria(Out out, const CriteriaSpec& criteria) {
+  std::string keys;
+  write_fields(Out(keys), criteria, mission_fields::kCriteria);
+  if (!keys.empty()) fmt::format_to(out, "criteria:\n{}", keys);
+}
+
+void write_robots(Out out, const RobotsSpec& robots) {
+  fmt::format_to(out, "robots:\n  model: {}\n  lag_s: {}\n", robots.model,
+                 or_automatic(robots.lag_s));
+  write_fields(out, robots, mission_fields::kRobots);
+  write_fields<BodySpec>(out, robots, mission_fields::kBody);
+  write_options(out, robots.options);
+  if (robots.groups.empty()) return;
+  fmt::format_to(out, "  groups:\n");
+  for (const RobotGroupSpec& group : robots.groups) {
+    fmt::format_to(out, "    - {{count: {}, model: {}, lag_s: {}", group.count, group.model,
+                   or_automatic(group.lag_s));
+    for (const auto& field : mission_fields::kBody) {
+      fmt::format_to(
+          out, ", {}: {}", field.key,
+          static_cast<const BodySpec&>(group).*std::get<double BodySpec::*>(field.member));
+    }
+    for (const auto& [key, text] : group.options.all()) {
+      fmt::format_to(out, ", {}: {}", key, text);
+    }
+    fmt::format_to(out, "}}\n");
+  }
+}
+
+void write_script(Out out, const std::vector<ScriptEvent>& script) {
+  if (script.empty()) return;
+  fmt::format_to(out, "script:\n");
+  for (const ScriptEvent& event : script) {
+    if (const auto* kind = std::get_if<CommandKind>(&event.action)) {
+      fmt::format_to(out, "  - {{at_s: {}, action: {}}}\n", event.at_s, to_string(*kind));
+    } else {
+      const auto& change = std::get<SceneChange>(event.action);
+      fmt::format_to(out, "  - {{at_s: {}, action: {}, {}}}\n", event.at_s, name_of(change),
+                     keys_of(change));
+    }
+  }
+}
+
+}  // namespace
+
+std::string to_yaml(const Mission& mission) {
+  std::string text;
+  const Out out(text);
+  fmt::format_to(out, "version: 1\nname: \"{}\"\n", mission.name);
+  write_world(out, mission.world);
+  write_robots(out, mission.robots);
+  write_mixture(out, "start", mission.start);
+  write_mixture(out, "goal", mission.goal);
+  if (mission.goal_shape) write_shape(out, *mission.goal_shape);
+  fmt::format_to(out, "planner:\n  method: {}\n  density_cap_per_m2: {}\n", mission.planner.method,
+                 or_automatic(mission.planner.density_cap_per_m2));
+  write_fields(out, mission.planner, mission_fields::kPlanner);
+  write_options(out, mission.planner.options);
+  fmt::format_to(out, "control:\n  method: {}\n", mission.control.method);
+  write_fields(out, mission.control, mission_fields::kControl);
+  write_options(out, mission.control.options);
+  fmt::format_to(out, "safety:\n");
+  write_fields(out, mission.safety, mission_fields::kSafety);
+  fmt::format_to(out, "link:\n");
+  write_fields(out, mission.link, mission_fields::kLink);
+  fmt::format_to(out, "timing:\n");
+  write_fields(out, mission.timing, mission_fields::kTiming);
+  fmt::format_to(out, "plan_clock:\n");
+  write_fields(out, mission.plan_clock, mission_fields::kPlanClock);
+  fmt::format_to(out, "launcher:\n");
+  write_fields(out, mission.launcher, mission_fields::kLauncher);
+  write_criteria(out, mission.criteria);
+  write_script(out, mission.script);
+  return text;
+}
+
+}  // namespace swarm

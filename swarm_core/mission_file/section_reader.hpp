@@ -1,0 +1,111 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <variant>
+
+#include "swarm_core/mission_file/mission_fields.hpp"
+#include "swarm_core/mission/mission_rules.hpp"
+#include "swarm_core/mission_file/yaml_reader.hpp"
+#include "swarmflow/mission/catalogue.hpp"
+
+namespace swarm {
+
+/// Reads the sections of a mission file that are scalar keys: those of the mission's own tables
+/// (mission_fields.hpp), and the names and keys of components, which the catalogue has. It keeps
+/// where each key stands, for rules between keys.
+class SectionReader {
+ public:
+  /// Both outlive it.
+  SectionReader(const Catalogue& catalogue, yaml::Violations& violations)
+      : catalogue_(catalogue), violations_(violations) {}
+
+  /// A section without components. A null node is a section that the file leaves out.
+  template <class Section, std::size_t N>
+  void read(const yaml::Node* node, const std::string& name, Section& section,
+            const std::array<mission_fields::Field<Section>, N>& fields) {
+    if (node == nullptr) return;
+    yaml::MapReader keys(*node, name, violations_);
+    read_fields(keys, section, fields);
+    keys.finish();
+  }
+
+  // The sections of components; where the file leaves a key out, its default is set.
+  void read_planner(const yaml::Node* node, PlannerSpec& planner);
+  void read_control(const yaml::Node* node, ControlSpec& control);
+  void read_robots(const yaml::Node* node, RobotsSpec& robots);
+
+  /// Adds the rules that the mission breaks to the violations. A rule is shown where one of its
+  /// keys is given; a rule whose key is broken by itself waits.
+  void check_rules(const Mission& mission);
+
+ private:
+  /// The components that a section of the file may name.
+  struct ComponentSection {
+    const Components& components;
+    bool is_open = false;
+  };
+  ComponentSection planning() const {
+    return {catalogue_.planning_methods, catalogue_.planning_is_open};
+  }
+  ComponentSection control() const {
+    return {catalogue_.control_methods, catalogue_.robots_are_open};
+  }
+  ComponentSection drivers() const { return {catalogue_.drivers, catalogue_.robots_are_open}; }
+
+  template <class Section, std::size_t N>
+  void read_fields(yaml::MapReader& keys, Section& section,
+                   const std::array<mission_fields::Field<Section>, N>& fields) {
+    for (const auto& field : fields) {
+      if (const yaml::Node* value = keys.take(field.key)) read_field(*value, keys, field, section);
+    }
+  }
+
+  template <class Section>
+  void read_field(const yaml::Node& value, const yaml::MapReader& keys,
+                  const mission_fields::Field<Section>& field, Section& section) {
+    const std::string path = keys.path_of(field.key);
+    const bool good = std::visit(
+        [&](auto member) {
+          using T = std::remove_reference_t<decltype(section.*member)>;
+          if constexpr (std::is_same_v<T, std::uint32_t>) {
+            const auto read = yaml::read_count(value, path, field.range, violations_);
+            if (read) section.*member = *read;
+            return read.has_value();
+          } else {
+            const auto read = yaml::read_number(value, path, field.range, violations_);
+            if (read) section.*member = *read;
+            return read.has_value();
+          }
+        },
+        field.member);
+    keep_slot(path, value, good);
+  }
+
+  void keep_slot(const std::string& path, const yaml::Node& value, bool good);
+  void read_body(yaml::MapReader& keys, BodySpec& body);
+  void read_groups(const yaml::Node& node, RobotsSpec& robots);
+  void set_lag(BodySpec& body) const;
+  void read_automatic(yaml::MapReader& keys, std::string_view key, const Range& range,
+                      std::optional<double>& value);
+  void read_name(yaml::MapReader& keys, std::string_view key, const ComponentSection& section,
+                 std::string& name);
+  void read_options(yaml::MapReader& keys, const ComponentSection& section, OptionValues& values);
+  void read_option(const yaml::Node& node, const yaml::MapReader& keys, const OptionSpec& option,
+                   OptionValues& values);
+  void add(const std::vector<BrokenRule>& rules);
+
+  const Catalogue& catalogue_;
+  yaml::Violations& violations_;
+  std::map<std::string, yaml::Position> places_;  // of scalar keys, by path
+  std::set<std::string> bad_;                     // paths of scalar keys with a violation
+};
+
+}  // namespace swarm

@@ -1,0 +1,298 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "swarm_core/robot_log/reader.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <limits>
+#include <optional>
+#include <unordered_map>
+
+#include <fmt/format.h>
+#include <zstd.h>
+
+#include "swarm_core/robot_log/mapped_file.hpp"
+
+namespace swarm::mcap {
+namespace {
+
+constexpr std::size_t kRecordHead = 9;
+/// Beyond this a chunk is not unpacked: a few damaged bytes must not exhaust memory.
+constexpr std::uint64_t kMaxChunkBytes = 1ULL << 30U;
+
+using View = std::span<const unsigned char>;
+
+/// Reads what Put wrote. Beyond the end everything is 0 and good() is false.
+class Get {
+ public:
+  explicit Get(View in) : in_(in) {}
+  template <class T>
+  T number() {
+    const View bytes = take(sizeof(T));
+    std::uint64_t value = 0;
+    for (std::size_t i = 0; i < bytes.size(); ++i) {
+      value |= static_cast<std::uint64_t>(bytes[i]) << (8 * i);
+    }
+    return static_cast<T>(value);
+  }
+  std::string text() {
+    const View bytes = take(number<std::uint32_t>());
+    return {bytes.begin(), bytes.end()};
+  }
+  View long_bytes() { return take(number<std::uint64_t>()); }
+  std::map<std::string, std::string> map() {
+    std::map<std::string, std::string> result;
+    Get entries(take(number<std::uint32_t>()));
+    while (entries.good_ && !entries.in_.empty()) {
+      std::string key = entries.text();
+      result[std::move(key)] = entries.text();
+    }
+    good_ = good_ && entries.good_;
+    return result;
+  }
+  View rest() const { return in_; }
+  bool good() const { return good_; }
+
+ private:
+  View take(std::uint64_t n) {
+    good_ = good_ && n <= in_.size();
+    if (!good_) return {};
+    const View bytes = in_.first(n);
+    in_ = in_.subspan(n);
+    return bytes;
+  }
+  View in_;
+  bool good_ = true;
+};
+
+struct Record {
+  Op op = Op::kHeader;
+  View content{};
+  std::size_t size = 0;  // with its head
+};
+
+/// What could be the record at the front, whole or cut.
+struct Front {
+  std::optional<Record> record{};
+  bool cut = false;  // plausible, but its end is not there
+};
+
+Front front_of(View bytes) {
+  if (bytes.size() < kRecordHead) return {.cut = true};
+  Get get(bytes);
+  const auto op = get.number<std::uint8_t>();
+  const auto length = get.number<std::uint64_t>();
+  if (op == 0) return {};
+  if (length > bytes.size() - kRecordHead) return {.cut = op <= 0x0F && length < kMaxChunkBytes};
+  return {.record = Record{.op = static_cast<Op>(op),
+                           .content = bytes.subspan(kRecordHead, length),
+                           .size = kRecordHead + length}};
+}
+
+class FileReader {
+ public:
+  explicit FileReader(const Handlers& handlers) : handlers_(handlers) {}
+
+  Damage read(View bytes) {
+    View rest = bytes.subspan(kMagic.size());
+    bool in_damage = false;
+    while (!rest.empty()) {
+      if (damage_.ended) break;
+      const Front front = front_of(rest);
+      // After damage only a chunk, which has a checksum, tells where records begin again.
+      const bool trusted = front.record && (!in_damage || front.record->op == Op::kChunk);
+      if (trusted && take(*front.record)) {
+        rest = rest.subspan(front.record->size);
+        in_damage = false;
+        continue;
+      }
+      if (!in_damage) {
+        damage_.truncated = front.cut;
+        ++damage_.damaged;
+        in_damage = true;
+      }
+      // The length of a damaged record is not to be believed: look for a whole one byte by byte.
+      const auto* next = static_cast<const unsigned char*>(
+          std::memchr(rest.data() + 1, static_cast<int>(Op::kChunk), rest.size() - 1));
+      rest = next == nullptr ? View() : rest.subspan(static_cast<std::size_t>(next - rest.data()));
+    }
+    if (damage_.truncated && in_damage) --damage_.damaged;
+    if (!in_damage) damage_.truncated = false;
+    return damage_;
+  }
+
+ private:
+  /// False if it is not what its opcode says.
+  bool take(const Record& record) {
+    switch (record.op) {
+      case Op::kSchema:
+        return take_schema(record.content);
+      case Op::kChannel:
+        return take_channel(record.content);
+      case Op::kMessage:
+        return take_message(record.content);
+      case Op::kChunk:
+        return take_chunk(record.content);
+      case Op::kAttachment:
+        return take_attachment(record.content);
+      case Op::kMetadata:
+        return take_metadata(record.content);
+      case Op::kDataEnd:
+        damage_.ended = true;  // what follows repeats what was published
+        return true;
+      case Op::kHeader:
+        return true;
+      case Op::kMessageIndex: {
+        Get get(record.content);
+        get.number<std::uint16_t>();
+        return get.number<std::uint32_t>() == get.rest().size() && get.good();
+      }
+      default:
+        // Others' own records begin at 0x80; or it was a chunk once. The rest follows the end.
+        if (static_cast<std::uint8_t>(record.op) < 0x80) return false;
+        ++damage_.damaged;
+        return true;
+    }
+  }
+
+  bool take_schema(View content) {
+    Get get(content);
+    Schema schema;
+    schema.id = get.number<std::uint16_t>();
+    schema.name = get.text();
+    schema.encoding = get.text();
+    schema.data = get.text();
+    if (get.good()) schemas_[schema.id] = std::move(schema);
+    return get.good();
+  }
+
+  bool take_channel(View content) {
+    Get get(content);
+    Channel channel;
+    channel.id = get.number<std::uint16_t>();
+    channel.schema = get.number<std::uint16_t>();
+    channel.topic = get.text();
+    channel.encoding = get.text();
+    channel.metadata = get.map();
+    if (get.good()) channels_[channel.id] = std::move(channel);
+    return get.good();
+  }
+
+  bool take_message(View content) {
+    Get get(content);
+    Message message;
+    message.channel = get.number<std::uint16_t>();
+    message.sequence = get.number<std::uint32_t>();
+    message.log_time_ns = get.number<std::int64_t>();
+    message.publish_time_ns = get.number<std::int64_t>();
+    message.data = get.rest();
+    const auto channel = channels_.find(message.channel);
+    if (!get.good() || channel == channels_.end()) return false;
+    if (handlers_.message && message.log_time_ns >= handlers_.from_ns) {
+      handlers_.message(message, channel->second, schemas_[channel->second.schema]);
+    }
+    return true;
+  }
+
+  bool take_chunk(View content) {
+    Get get(content);
+    const auto begin_ns = get.number<std::int64_t>();
+    const auto end_ns = get.number<std::int64_t>();
+    const auto size = get.number<std::uint64_t>();
+    const auto crc = get.number<std::uint32_t>();
+    const std::string compression = get.text();
+    View records = get.long_bytes();
+    if (!get.good() || !get.rest().empty() || size > kMaxChunkBytes) return false;
+    // Until channels are known, chunks may be where they are told.
+    if (end_ns < handlers_.from_ns && !channels_.empty()) return true;
+    if (compression == "zstd") {
+      unpacked_.resize(size);
+      if (::ZSTD_decompress(unpacked_.data(), size, records.data(), records.size()) != size) {
+        return false;
+      }
+      records = unpacked_;
+    } else if (!compression.empty()) {
+      return false;
+    }
+    if (records.size() != size || (crc != 0 && crc_of(records) != crc)) return false;
+    if (!times_are(records, begin_ns, end_ns)) return false;
+    while (!records.empty()) {
+      const Front front = front_of(records);
+      const Op op = front.record->op;
+      if ((op == Op::kSchema || op == Op::kChannel || op == Op::kMessage) && !take(*front.record)) {
+        ++damage_.damaged;
+      }
+      records = records.subspan(front.record->size);
+    }
+    return true;
+  }
+
+  /// Whether it is made of whole records, and what it says of their times, which the checksum
+  /// leaves out, is true.
+  static bool times_are(View records, std::int64_t begin_ns, std::int64_t end_ns) {
+    std::int64_t first = std::numeric_limits<std::int64_t>::max();
+    std::int64_t last = std::numeric_limits<std::int64_t>::min();
+    while (!records.empty()) {
+      const Front front = front_of(records);
+      if (!front.record) return false;
+      if (front.record->op == Op::kMessage) {
+        Get get(front.record->content);
+        get.number<std::uint16_t>();
+        get.number<std::uint32_t>();
+        const auto log_time_ns = get.number<std::int64_t>();
+        first = std::min(first, log_time_ns);
+        last = std::max(last, log_time_ns);
+      }
+      records = records.subspan(front.record->size);
+    }
+    return first > last || (first == begin_ns && last == end_ns);
+  }
+
+  bool take_attachment(View content) {
+    Get get(content);
+    Attachment attachment;
+    attachment.log_time_ns = get.number<std::int64_t>();
+    get.number<std::int64_t>();
+    attachment.name = get.text();
+    attachment.media_type = get.text();
+    const View data = get.long_bytes();
+    const View signed_part = content.first(content.size() - get.rest().size());
+    const auto crc = get.number<std::uint32_t>();
+    if (!get.good() || (crc != 0 && crc_of(signed_part) != crc)) return false;
+    attachment.data.assign(data.begin(), data.end());
+    if (handlers_.attachment) handlers_.attachment(attachment);
+    return true;
+  }
+
+  bool take_metadata(View content) {
+    Get get(content);
+    Metadata metadata;
+    metadata.name = get.text();
+    metadata.values = get.map();
+    if (get.good() && handlers_.metadata) handlers_.metadata(metadata);
+    return get.good();
+  }
+
+  const Handlers& handlers_;
+  Damage damage_;
+  std::unordered_map<std::uint16_t, Schema> schemas_;
+  std::unordered_map<std::uint16_t, Channel> channels_;
+  Bytes unpacked_;
+};
+
+}  // namespace
+
+Result<Damage> read(const std::filesystem::path& file, const Handlers& handlers) {
+  const auto mapped = MappedFile::open(file);
+  if (!mapped) return tl::unexpected(mapped.error());
+  const View bytes = mapped->bytes();
+  if (bytes.empty()) return Damage{.truncated = true};
+  if (bytes.size() < kMagic.size() ||
+      std::memcmp(bytes.data(), kMagic.data(), kMagic.size()) != 0) {
+    return fail(ErrorCode::kBadInput,
+                fmt::format("{}: no recording: it does not begin as MCAP files do", file.string()));
+  }
+  return FileReader(handlers).read(bytes);
+}
+
+}  // namespace swarm::mcap

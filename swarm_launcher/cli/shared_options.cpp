@@ -1,0 +1,25 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "swarm_launcher/cli/shared_options.hpp"
+
+#include <map>
+#include <string>
+
+namespace swarm::launcher::cli {
+
+void add_channel(CLI::App& command, std::optional<Channel>& channel) {
+  static const std::map<std::string, std::optional<Channel>> kChannels = {
+      {"auto", std::nullopt}, {"topics", Channel::kTopics}, {"groups", Channel::kGroups}};
+  command
+      .add_option_function<std::string>(
+          "--channel", [&channel](const std::string& name) { channel = kChannels.at(name); },
+          "What carries robot states: DDS topics, multicast groups, or auto")
+      ->check(CLI::IsMember(kChannels));
+}
+
+void add_domain(CLI::App& command, int& domain) {
+  command.add_option("--domain", domain, "DDS domain (default: a free one)")
+      ->check(CLI::Range(0, 229));
+}
+
+}  // namespace swarm::launcher::cli

@@ -1,0 +1,22 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include <CLI/CLI.hpp>
+
+#include "swarm_core/mission/channel.hpp"
+
+/// Command line options of every program that flies a swarm: run and soak.
+namespace swarm::launcher::cli {
+
+/// Adds `--channel`. \pre `channel` outlives the program's options
+void add_channel(CLI::App& command, std::optional<Channel>& channel);
+/// Adds `--domain`. \pre `domain` outlives the program's options
+void add_domain(CLI::App& command, int& domain);
+
+/// Most robots of a run.
+inline constexpr int kMostRobots = 20'000;
+
+}  // namespace swarm::launcher::cli

@@ -1,0 +1,78 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "swarm_launcher/commands/gateway.hpp"
+
+#include <csignal>
+#include <cstdio>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "swarm_core/base/clock.hpp"
+#include "swarmflow/mission/mission_file.hpp"
+#include "swarm_core/app/run_directory.hpp"
+#include "swarm_core/app/stop_signal.hpp"
+#include "swarm_launcher/processes/child_process.hpp"
+#include "swarm_link/gateway/gateway.hpp"
+#include "swarm_link/roles/run_meeting.hpp"
+
+namespace swarm::launcher {
+namespace {
+
+constexpr Duration kTimeout = std::chrono::milliseconds(5);
+constexpr int kMostRestarts = 10;
+
+}  // namespace
+
+Result<ExitCode> run_gateway(const GatewayCommandOptions& options) {
+  const auto mission = load_mission(options.run_dir / shell::kMissionFile, open_catalogue());
+  if (!mission) return tl::unexpected(mission.error());
+  const auto run = shell::read_run_info(options.run_dir);
+  if (!run) return tl::unexpected(run.error());
+  if (run->channel != Channel::kGroups) {
+    return fail(ErrorCode::kBadInput, "this run's states go by topics: no gateway is needed");
+  }
+  const auto participant = link::join_as_gateway(link::meeting_of(*run));
+  if (!participant) return tl::unexpected(participant.error());
+  const auto gateway =
+      link::make_gateway(**participant, {.domain = run->domain,
+                                         .topic_cell_size_m = mission->link.cell_size_m,
+                                         .group_cell_size_m = mission->link.group_cell_size_m,
+                                         .interface = run->interface,
+                                         .limits = link::wire_limits(*mission)});
+  if (!gateway) return tl::unexpected(gateway.error());
+  while (
+      shell::stop_requests() == 0 &&
+      (options.parent_pid == 0 || static_cast<std::uint32_t>(::getppid()) == options.parent_pid)) {
+    (*gateway)->relay(kTimeout, utc_now());
+  }
+  using link::RefusalReason;
+  const link::RefusalCounters& refused = (*gateway)->refused();
+  const std::uint64_t echoes = refused[RefusalReason::kDuplicate] + refused[RefusalReason::kStale];
+  fmt::print(stderr, "{} states to topics, {} to groups, {} refused, {} echoes\n",
+             (*gateway)->to_topics(), (*gateway)->to_groups(), refused.total() - echoes, echoes);
+  return ExitCode::kOk;
+}
+
+GatewayKeeper::~GatewayKeeper() {
+  if (pid_ > 0) ::kill(pid_, SIGTERM);
+}
+
+Result<void> GatewayKeeper::start() {
+  const auto pid = start_process({sibling_program("swarm_launcher"), "gateway", run_dir_.string(),
+                                  "--parent", fmt::format("{}", ::getpid())},
+                                 run_dir_ / shell::kLogsFolder / "gateway.log");
+  if (!pid) return tl::unexpected(pid.error());
+  pid_ = *pid;
+  return {};
+}
+
+std::optional<std::string> GatewayKeeper::on_exit(pid_t pid) {
+  if (pid != pid_) return std::nullopt;
+  pid_ = 0;
+  if (restarts_++ == kMostRestarts) return "the gateway ended too often: see logs/gateway.log";
+  const auto started = start();
+  return "the gateway ended" + (started ? "; started again" : ": " + started.error().message);
+}
+
+}  // namespace swarm::launcher

@@ -1,0 +1,58 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+// What a flight says and hears.
+#include "swarm_core/base/clock.hpp"
+#include "swarm_launcher/flight/flight.hpp"
+
+namespace swarm::launcher {
+
+void Flight::send(CommandKind kind) {
+  const std::int64_t stamp = utc_now().time_since_epoch().count();
+  command_writer_->write(
+      {.kind = kind, .command_id = static_cast<std::uint64_t>(stamp), .stamp_utc_ns = stamp});
+}
+
+void Flight::note(link::Severity severity, const std::string& code, const std::string& text) {
+  const UtcTime now = utc_now();
+  events_.write(now, "launcher", severity, code, text);
+  event_relay_->write({.severity = severity,
+                       .source = link::kLauncherSource,
+                       .stamp_utc_ns = now.time_since_epoch().count(),
+                       .code = code,
+                       .text = text});
+}
+
+void Flight::log(const LogEvent& event) {
+  note(event.warning ? link::Severity::kWarning : link::Severity::kInfo, event.code, event.text);
+  if (event.warning) progress_.print(event.text);
+}
+
+void Flight::read_bus(SteadyTime now) {
+  participant_->receive();
+  inbox_->receive(utc_now());
+  for (const link::StatusMessage& status : inbox_->statuses()) {
+    if (observer_ != nullptr) observer_->on_status(status);
+    status_relay_->write(status);
+    const UtcTime stamp(Duration(status.stamp_utc_ns));
+    const SteadyTime sent_at = now - (utc_now() - stamp);
+    for (const link::RobotStatusMessage& robot : status.robots) {
+      view_.take(robot);
+      reported_[robot.robot_id] = {
+          .at = stamp, .position_m = {robot.x_m, robot.y_m}, .at_rest = robot.settled};
+      if (hosts_) hosts_->on_status(RobotId(robot.robot_id), now);
+      supervisor_->on_status(RobotId(robot.robot_id),
+                             {.has_plan = status.plan_version > 0,
+                              .receives_neighbours = view_.receives_neighbours(robot.robot_id),
+                              .mode = robot.mode,
+                              .settled = robot.settled,
+                              .scene_version = status.plan_scene_version,
+                              .sent_at = sent_at});
+    }
+  }
+  for (const link::EventMessage& event : inbox_->events()) {
+    events_.write(event);
+    event_relay_->write(event);
+  }
+}
+
+}  // namespace swarm::launcher

@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "swarm_launcher/flight/scene_keeper.hpp"
+
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "swarm_core/mission_file/scene_log.hpp"
+#include "swarm_core/app/run_directory.hpp"
+#include "swarm_link/to_message.hpp"
+
+namespace swarm::launcher {
+
+SceneKeeper::SceneKeeper(const World& mission_world, const std::filesystem::path& run_dir,
+                         link::WriterPtr<link::SceneMessage> writer)
+    : mission_world_(mission_world),
+      scene_(first_scene(mission_world.obstacles().size())),
+      log_(run_dir / shell::kSceneFile, std::ios::app),
+      writer_(std::move(writer)) {
+  writer_->write(link::to_message(scene_));
+}
+
+Result<void> SceneKeeper::make(const SceneChange& change, UtcTime now) {
+  auto next = after(scene_, change, mission_world_, now);
+  if (!next) return tl::unexpected(next.error());
+  scene_ = std::move(*next);
+  log_ << scene_log_line(scene_.version, change) << std::flush;
+  return {};
+}
+
+Result<std::string> SceneKeeper::change(const SceneChange& change, UtcTime now) {
+  const std::uint32_t next_id = scene_.next_id;
+  if (auto made = make(change, now); !made) return tl::unexpected(made.error());
+  writer_->write(link::to_message(scene_));
+  return scene_.next_id > next_id ? fmt::format("obstacle {} added", next_id)
+                                  : std::string(name_of(change));
+}
+
+std::vector<Error> SceneKeeper::change_all(std::span<const SceneChange> changes, UtcTime now) {
+  std::vector<Error> refused;
+  for (const SceneChange& change : changes) {
+    if (auto made = make(change, now); !made) refused.push_back(made.error());
+  }
+  if (refused.size() < changes.size()) writer_->write(link::to_message(scene_));
+  return refused;
+}
+
+}  // namespace swarm::launcher

@@ -1,0 +1,24 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "swarm_launcher/processes/builtin_catalogue.hpp"
+
+#include "swarmflow/planning/run_planner.hpp"
+#include "swarmflow/robot/control_registry.hpp"
+#include "swarmflow/robot/driver_registry.hpp"
+
+namespace swarm {
+
+const Catalogue& builtin_catalogue() {
+  static const Catalogue catalogue = [] {
+    agent::DriverRegistry drivers;
+    agent::register_builtin_drivers(drivers);
+    Catalogue made;
+    made.planning_methods = planner::builtin_planning().specs();
+    made.control_methods = agent::builtin_control().specs();
+    made.drivers = drivers.specs();
+    return made;
+  }();
+  return catalogue;
+}
+
+}  // namespace swarm

@@ -1,0 +1,104 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "swarm_launcher/processes/child_process.hpp"
+
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace swarm::launcher {
+namespace {
+
+constexpr int kUrgentNice = -10;
+constexpr int kChildNice = 5;
+constexpr int kExecFailed = 127;
+
+double seconds(const timeval& t) {
+  return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+}
+
+}  // namespace
+
+void become_urgent() { ::setpriority(PRIO_PROCESS, 0, kUrgentNice); }
+
+Result<pid_t> start_process(const std::vector<std::string>& command_line,
+                            const std::filesystem::path& log) {
+  const int log_fd = ::open(log.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
+  if (log_fd < 0) {
+    return fail(ErrorCode::kEnvironment,
+                fmt::format("cannot open {}: {}", log.string(), std::strerror(errno)));
+  }
+  std::vector<char*> argv;
+  for (const std::string& word : command_line) argv.push_back(const_cast<char*>(word.c_str()));
+  argv.push_back(nullptr);
+
+  const pid_t parent = ::getpid();
+  // A stop signal that reached the child before its exec would end in our handler and be lost with
+  // it: it waits until the child has the default one.
+  sigset_t stops;
+  sigset_t before;
+  sigemptyset(&stops);
+  sigaddset(&stops, SIGINT);
+  sigaddset(&stops, SIGTERM);
+  ::pthread_sigmask(SIG_BLOCK, &stops, &before);
+  const pid_t pid = ::fork();
+  if (pid == 0) {  // only async-signal-safe calls from here on: the launcher has threads
+    ::signal(SIGINT, SIG_DFL);
+    ::signal(SIGTERM, SIG_DFL);
+    ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
+    ::setpgid(0, 0);
+    ::prctl(PR_SET_PDEATHSIG, SIGTERM);
+    if (::getppid() != parent) ::_exit(kExecFailed);
+    ::setpriority(PRIO_PROCESS, 0, kChildNice);
+    ::dup2(log_fd, STDOUT_FILENO);
+    ::dup2(log_fd, STDERR_FILENO);
+    const int null_fd = ::open("/dev/null", O_RDONLY);
+    if (null_fd >= 0) ::dup2(null_fd, STDIN_FILENO);
+    ::execv(argv[0], argv.data());
+    ::_exit(kExecFailed);
+  }
+  ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
+  ::close(log_fd);
+  if (pid < 0) {
+    return fail(ErrorCode::kEnvironment, fmt::format("cannot start {}: {}; see ulimit -u",
+                                                     command_line.front(), std::strerror(errno)));
+  }
+  return pid;
+}
+
+int number_of(EndSignal signal) {
+  switch (signal) {
+    case EndSignal::kInterrupt:
+      return SIGINT;
+    case EndSignal::kTerminate:
+      return SIGTERM;
+    case EndSignal::kKill:
+      return SIGKILL;
+  }
+  return SIGKILL;
+}
+
+std::optional<ExitedChild> reap_child() {
+  int status = 0;
+  rusage usage = {};
+  const pid_t pid = ::wait4(-1, &status, WNOHANG, &usage);
+  if (pid <= 0) return std::nullopt;
+  return ExitedChild{.pid = pid,
+                     .exit = {.code = WIFEXITED(status) ? WEXITSTATUS(status) : 0,
+                              .signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0},
+                     .cpu_s = seconds(usage.ru_utime) + seconds(usage.ru_stime),
+                     .max_rss_mb = static_cast<double>(usage.ru_maxrss) / 1024.0};
+}
+
+std::filesystem::path sibling_program(const std::string& name) {
+  return std::filesystem::read_symlink("/proc/self/exe").parent_path() / name;
+}
+
+}  // namespace swarm::launcher

@@ -1,0 +1,68 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "swarm_launcher/supervision/fallen_body.hpp"
+
+#include <algorithm>
+
+namespace swarm::launcher {
+namespace {
+
+constexpr double kPeriodsOfACommand = 2.0;
+/// A tick this much later than its period still counts as the last one of a robot.
+constexpr double kPeriodsOfATick = 3.0;
+
+/// How far a robot gets from a speed of now on, under a command and then without one.
+double travel_m(const BodySpec& body, double speed_mps, double command_mps, double command_s) {
+  const double commanded_m = command_mps * command_s;
+  if (body.model == "single_integrator") return commanded_m;
+  // It brakes at once, or keeps at most the speed it is commanded to for a while and brakes then.
+  const double fastest_mps = std::max(speed_mps, command_mps);
+  return commanded_m + fastest_mps * fastest_mps / (2.0 * body.acceleration_max_mps2);
+}
+
+}  // namespace
+
+std::optional<LastKnown> last_known(std::span<const robot_log::Step> steps, const Mission& mission) {
+  if (steps.empty()) return std::nullopt;
+  const robot_log::Step& last = steps.back();
+  LastKnown known{
+      .at = last.stamp, .position_m = last.position_m, .command_mps = last.velocity_mps};
+  if (steps.size() < 2) return known;
+  const robot_log::Step& before = steps[steps.size() - 2];
+  const double between_s = to_seconds(last.stamp - before.stamp);
+  if (between_s > 0.0 && between_s <= kPeriodsOfATick / mission.control.rate_hz) {
+    known.speed_mps = (last.position_m - before.position_m).norm() / between_s;
+  }
+  return known;
+}
+
+Circle circle_of_fallen(const LastKnown& known, UtcTime silent_since, const Mission& mission,
+                        RobotId robot) {
+  const BodySpec& body = body_of(mission.robots, robot);
+  const double period_s = 1.0 / mission.control.rate_hz;
+  const double command_s = kPeriodsOfACommand * period_s;
+  const double age_s = std::max(0.0, to_seconds(silent_since - known.at));
+  Circle circle{.center_m = known.position_m, .radius_m = body.radius_m};
+  if (known.at_rest) return circle;
+  if (!known.command_mps || age_s > kPeriodsOfATick * period_s) {
+    const double moving_s = std::min(age_s, 1.0 / mission.link.status_hz);
+    const double fastest_mps = body.speed_max_mps;
+    circle.radius_m += fastest_mps * moving_s + travel_m(body, fastest_mps, fastest_mps, command_s);
+  } else if (body.model == "single_integrator") {
+    circle.center_m += 0.5 * command_s * *known.command_mps;
+    circle.radius_m += 0.5 * command_s * known.command_mps->norm();
+  } else {  // one with inertia need not move where it is commanded to
+    // It may have become faster by the end of the period that the speed is the mean of.
+    const double gained_mps = period_s * body.acceleration_max_mps2;
+    const double command_mps = known.command_mps->norm();
+    const double speed_mps = known.speed_mps ? *known.speed_mps + gained_mps : body.speed_max_mps;
+    const bool is_stopped = known.speed_mps && *known.speed_mps == 0.0 && command_mps == 0.0;
+    if (!is_stopped) {
+      circle.radius_m +=
+          travel_m(body, std::min(speed_mps, body.speed_max_mps), command_mps, command_s);
+    }
+  }
+  return circle;
+}
+
+}  // namespace swarm::launcher

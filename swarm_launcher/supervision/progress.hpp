@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "swarm_launcher/supervision/supervisor.hpp"
+
+namespace swarm::launcher {
+
+/// One live line on a terminal, rewritten in place; without a terminal (or with NO_COLOR set) each
+/// change of `headline` is a line of its own and the details are left out. Writes to stderr.
+class Progress {
+ public:
+  Progress();
+  ~Progress();
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+
+  void show(const std::string& headline, const std::string& details);
+  /// A message of its own, above the live line.
+  void print(const std::string& line);
+
+ private:
+  void clear();
+  bool live_;
+  bool shown_ = false;
+  std::string headline_;
+};
+
+/// What a run is doing, for the first line.
+std::string headline_of(const Supervisor& supervisor);
+
+}  // namespace swarm::launcher

@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+
+#include "swarmflow/core/result.hpp"
+#include "swarm_core/mission/channel.hpp"
+#include "swarm_launcher/supervision/supervisor.hpp"
+
+namespace swarm::launcher {
+
+/// What only the launcher can measure.
+struct Measurements {
+  Outcome outcome = Outcome::kNone;
+  std::optional<Channel> channel;  ///< empty: in lock-step
+  double discovery_s = -1.0;       ///< negative: never complete
+  double neighbour_discovery_s = -1.0;  ///< from then to everyone hearing its neighbours; negative: never
+  double cpu_s = 0.0;       ///< of all processes of the run
+  double max_rss_mb = 0.0;  ///< of the largest child
+  std::uint64_t refused_by_launcher = 0;
+  /// Of a simulation: of all its plans, of planning and flying together, and the median over
+  /// control periods.
+  std::optional<double> plan_ms, wall_s, ns_per_agent_step;
+};
+
+/// Audits the run from its robot logs, adds the launcher's measurements, writes summary.json and
+/// the report, prints the result (JSON or for people) to stdout and decides the exit code.
+Result<ExitCode> summarise(const std::filesystem::path& run_dir, const Measurements& measured,
+                           bool json);
+
+}  // namespace swarm::launcher

@@ -1,0 +1,393 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "swarm_launcher/supervision/supervisor.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace swarm::launcher {
+namespace {
+
+constexpr Duration kStartTimeout = std::chrono::seconds(5);
+constexpr Duration kRespawnDelay = std::chrono::milliseconds(300);
+constexpr Duration kStopRepeat = std::chrono::milliseconds(100);
+constexpr std::uint32_t kStopRepeats = 15;
+constexpr Duration kStopTimeout = std::chrono::seconds(5);
+/// At the rim of a crowded goal a robot may be pushed out again: everyone stays for as long as
+/// this.
+constexpr Duration kStay = std::chrono::seconds(2);
+/// Arrived robots may never come to rest in a dense crowd; then this long is enough.
+constexpr Duration kConvergeTimeout = std::chrono::seconds(10);
+
+std::uint32_t process_count(const SupervisorOptions& options) {
+  return 1 + (options.robots + options.per_process - 1) / options.per_process;
+}
+
+std::string describe(const ProcessExit& exit) {
+  return exit.signal != 0 ? fmt::format("killed by signal {}", exit.signal)
+                          : fmt::format("ended with code {}", exit.code);
+}
+
+}  // namespace
+
+std::string_view to_string(Outcome outcome) {
+  switch (outcome) {
+    case Outcome::kNone:
+      return "running";
+    case Outcome::kCompleted:
+      return "completed";
+    case Outcome::kTimeLimit:
+      return "time_limit";
+    case Outcome::kQuorumTimeout:
+      return "quorum_timeout";
+    case Outcome::kPlannerFailed:
+      return "planner_failed";
+    case Outcome::kStopped:
+      return "stopped";
+    case Outcome::kInterrupted:
+      return "interrupted";
+    case Outcome::kAllLost:
+      return "all_lost";
+  }
+  return "unknown";
+}
+
+std::string describe(const std::vector<RobotId>& robots) {
+  constexpr std::size_t kRanges = 20;  // a line that can be read, and fits into an event
+  std::string text;
+  std::size_t ranges = 0;
+  for (std::size_t i = 0; i < robots.size(); ++ranges) {
+    if (ranges == kRanges) return text + fmt::format(" and {} more", robots.size() - i);
+    std::size_t j = i;
+    while (j + 1 < robots.size() && robots[j + 1].value() == robots[j].value() + 1) ++j;
+    text += text.empty() ? "" : ", ";
+    text += j == i ? fmt::format("{}", robots[i].value())
+                   : fmt::format("{}-{}", robots[i].value(), robots[j].value());
+    i = j + 1;
+  }
+  return text;
+}
+
+Supervisor::Supervisor(const SupervisorOptions& options, SteadyTime now)
+    : options_(options),
+      processes_(process_count(options)),
+      robots_(options.robots),
+      begun_(now),
+      last_start_(now) {}
+
+std::pair<RobotId, std::uint32_t> Supervisor::robots_of(ProcessIndex process) const {
+  if (process == kPlanner) return {RobotId(0), 0};
+  const std::uint32_t first = (process.value() - 1) * options_.per_process;
+  return {RobotId(first), std::min(options_.per_process, options_.robots - first)};
+}
+
+void Supervisor::on_status(RobotId robot, const RobotReport& report) {
+  Robot& r = robots_.at(robot.value());
+  r.report = report;
+  r.received = true;
+  // What a process sent before it died may come after we know that it died.
+  if (!r.silent_since || report.sent_at <= *r.silent_since) return;
+  r.silent_since.reset();
+  std::erase(fallen_, robot);
+  risen_.push_back(robot);
+}
+
+void Supervisor::on_silent(RobotId robot, SteadyTime now) {
+  Robot& r = robots_.at(robot.value());
+  r.silent_since = now;
+  std::erase(risen_, robot);
+  if (std::find(fallen_.begin(), fallen_.end(), robot) == fallen_.end()) fallen_.push_back(robot);
+}
+
+void Supervisor::on_joined(ProcessIndex first, std::uint32_t count, SteadyTime now) {
+  for (std::uint32_t i = first.value(); i < first.value() + count; ++i) {
+    Process& p = processes_.at(i);
+    p.alive = p.started = true;
+    p.started_at = last_start_ = now;
+    const auto [robot, robots] = robots_of(ProcessIndex(i));
+    for (std::uint32_t r = robot.value(); r < robot.value() + robots; ++r) robots_[r].lost = false;
+  }
+}
+
+void Supervisor::on_exit(ProcessIndex process, const ProcessExit& exit, SteadyTime now) {
+  Process& p = processes_.at(process.value());
+  p.alive = false;
+  if (stage_ == Stage::kEnding || stage_ == Stage::kDone) return;
+  const auto [first, count] = robots_of(process);
+  if (is_remote(process) && stage_ != Stage::kRunning) {  // another host may still come
+    p.started = false;
+    for (std::uint32_t r = first.value(); r < first.value() + count; ++r) robots_[r].received = false;
+    return;
+  }
+
+  for (std::uint32_t i = 0; i < count; ++i) on_silent(RobotId(first.value() + i), now);
+  const bool is_planner = process == kPlanner;
+  const std::string who = is_planner ? "planner" : fmt::format("agent process {}", process.value());
+  pending_log_.push_back({.warning = true,
+                          .code = is_planner ? "planner-exit" : "agent-exit",
+                          .text = fmt::format("{} {}", who, describe(exit))});
+  const bool hopeless = is_planner && exit.signal == 0 &&
+                        (exit.code == static_cast<int>(ExitCode::kCriteriaNotMet) ||
+                         exit.code == static_cast<int>(ExitCode::kUsage));
+  const std::uint32_t allowed =
+      is_planner ? options_.launcher.respawn_planner_max : options_.launcher.respawn_agent_max;
+  if (!hopeless && !is_remote(process) && p.respawns < allowed) {
+    p.respawn_due = true;
+    p.respawn_at = now + kRespawnDelay;
+    return;
+  }
+  if (is_planner) {
+    begin_ending(Outcome::kPlannerFailed, now);
+    return;
+  }
+  for (std::uint32_t i = 0; i < count; ++i) robots_[first.value() + i].lost = true;
+}
+
+void Supervisor::on_command(CommandKind kind, SteadyTime now) {
+  if (kind == CommandKind::kStop && phase_ != MissionPhase::kStopped)
+    stop_ends_ = now + kStopTimeout;
+  pending_commands_.push_back(kind);
+}
+
+void Supervisor::on_interrupt() { ++interrupts_; }
+
+void Supervisor::command(CommandKind kind, SteadyTime now, std::vector<Action>& actions) {
+  const MissionPhase before = phase_;
+  phase_ = phase_after(phase_, kind);
+  if (before == MissionPhase::kReady && phase_ == MissionPhase::kRunning) started_at_ = now;
+  if (phase_ == MissionPhase::kStopped && before != MissionPhase::kStopped) {
+    stops_to_send_ = kStopRepeats;
+    next_stop_ = now;
+    stop_ends_ = now + kStopTimeout;
+  } else {
+    actions.emplace_back(SendCommand{kind});
+  }
+  actions.emplace_back(LogEvent{.code = "command", .text = std::string(swarm::to_string(kind))});
+}
+
+/// One change of the scene a step, however many robots fall at once: each is a new plan.
+void Supervisor::keep_bodies(std::vector<Action>& actions) {
+  if (!fallen_.empty()) actions.emplace_back(AddBodies{std::exchange(fallen_, {})});
+  if (!risen_.empty()) actions.emplace_back(ClearBodies{std::exchange(risen_, {})});
+}
+
+/// An agent that joins the bus. Dozens at once only take the CPU from each other and from those
+/// that answer them; one that hangs must not keep the others waiting.
+bool Supervisor::is_starting(std::uint32_t process, SteadyTime now) const {
+  const Process& p = processes_[process];
+  return process != kPlanner.value() && p.alive && now - p.started_at < kStartTimeout &&
+         !robots_[robots_of(ProcessIndex(process)).first.value()].received;
+}
+
+void Supervisor::start_due(SteadyTime now, std::vector<Action>& actions) {
+  for (std::uint32_t i = 0; i < processes(); ++i) {
+    Process& p = processes_[i];
+    if (!p.respawn_due || now < p.respawn_at) continue;
+    p.respawn_due = false;
+    p.alive = true;
+    ++p.respawns;
+    actions.emplace_back(StartProcess{ProcessIndex(i)});
+    actions.emplace_back(LogEvent{
+        .code = "respawn",
+        .text = i == 0 ? "planner restarted" : fmt::format("agent process {} restarted", i)});
+  }
+  const double due = 1.0 + to_seconds(now - begun_) * options_.launcher.starts_per_s;
+  if (next_start_ == local_processes()) return;
+  std::uint32_t starting = 0;
+  for (std::uint32_t i = 0; i < next_start_; ++i) starting += is_starting(i, now) ? 1 : 0;
+  while (next_start_ < local_processes() && static_cast<double>(next_start_) < due &&
+         starting++ < options_.launcher.starting_max) {
+    processes_[next_start_].alive = processes_[next_start_].started = true;
+    processes_[next_start_].started_at = now;
+    actions.emplace_back(StartProcess{ProcessIndex(next_start_++)});
+    last_start_ = now;
+  }
+}
+
+void Supervisor::gather(SteadyTime now, std::vector<Action>& actions) {
+  std::vector<RobotId> missing;
+  bool discovered = true;
+  for (std::uint32_t i = 0; i < robots_.size(); ++i) {
+    const bool known = robots_[i].received && robots_[i].report.has_plan;
+    discovered = discovered && known;
+    if (!known || !robots_[i].report.receives_neighbours) missing.emplace_back(i);
+  }
+  const double waited_s = to_seconds(now - last_start_);
+  if (discovered && discovery_s_ < 0.0) discovery_s_ = waited_s;
+  if (missing.empty()) {
+    neighbour_discovery_s_ = waited_s - discovery_s_;
+  } else {
+    if (waited_s < options_.launcher.quorum_timeout_s) return;
+    const double ready = static_cast<double>(robots_.size() - missing.size());
+    const bool enough =
+        ready >= options_.launcher.quorum_share * static_cast<double>(robots_.size());
+    actions.emplace_back(LogEvent{
+        .warning = true,
+        .code = "quorum",
+        .text =
+            fmt::format("{} of {} robots are not ready after {} s: {}", missing.size(),
+                        robots_.size(), options_.launcher.quorum_timeout_s, describe(missing))});
+    if (!enough) {
+      begin_ending(Outcome::kQuorumTimeout, now);
+      return;
+    }
+  }
+  for (std::uint32_t i = 0; i < robots_.size(); ++i) {
+    robots_[i].lost = robots_[i].lost || !processes_[1 + i / options_.per_process].started;
+  }
+  stage_ = Stage::kRunning;
+  command(CommandKind::kStart, now, actions);
+}
+
+void Supervisor::repeat_stop(SteadyTime now, std::vector<Action>& actions) {
+  while (stops_to_send_ > 0 && now >= next_stop_) {
+    actions.emplace_back(SendCommand{CommandKind::kStop});
+    --stops_to_send_;
+    next_stop_ = std::max(next_stop_ + kStopRepeat, now);
+  }
+}
+
+void Supervisor::play_script(SteadyTime now, std::vector<Action>& actions) {
+  const double t = mission_time(now).count();
+  while (next_script_ < options_.script.size() && options_.script[next_script_].at_s <= t) {
+    const MissionAction& action = options_.script[next_script_++].action;
+    if (const auto* kind = std::get_if<CommandKind>(&action)) {
+      command(*kind, now, actions);
+    } else {
+      actions.emplace_back(ChangeScene{std::get<SceneChange>(action)});
+    }
+  }
+}
+
+/// Whether the script will still send the swarm somewhere else: then arriving is not the end.
+bool Supervisor::script_moves_on() const {
+  return std::any_of(options_.script.begin() + static_cast<std::ptrdiff_t>(next_script_),
+                     options_.script.end(), [](const ScriptEvent& event) {
+                       const auto* change = std::get_if<SceneChange>(&event.action);
+                       return change != nullptr && std::holds_alternative<GoTo>(*change);
+                     });
+}
+
+void Supervisor::run(SteadyTime now, std::vector<Action>& actions) {
+  if (phase_ == MissionPhase::kStopped) {
+    const bool confirmed = stops_to_send_ == 0 && unstopped().empty();
+    if (!confirmed && now < stop_ends_) return;
+    if (!confirmed) {
+      actions.emplace_back(LogEvent{.warning = true,
+                                    .code = "stop-unconfirmed",
+                                    .text = "not confirmed by " + describe(unstopped())});
+    }
+    begin_ending(Outcome::kStopped, now);
+    return;
+  }
+  // Who arrives after a new goal is not known before that goal is out.
+  const bool had_goals_left = script_moves_on();
+  play_script(now, actions);
+  const Counts c = counts();
+  const std::uint32_t living = options_.robots - c.lost;
+  if (living == 0) {
+    begin_ending(Outcome::kAllLost, now);
+    return;
+  }
+  const bool arrived = c.arrived == living && !had_goals_left;
+  if (arrived && !all_arrived_) all_arrived_at_ = now;
+  all_arrived_ = arrived;
+  const Duration stayed = arrived ? now - all_arrived_at_ : Duration::zero();
+  if ((c.settled == living && stayed >= kStay) || stayed > kConvergeTimeout) {
+    begin_ending(Outcome::kCompleted, now);
+  } else if (mission_time(now).count() > options_.launcher.time_limit_s) {
+    begin_ending(Outcome::kTimeLimit, now);
+  }
+}
+
+void Supervisor::begin_ending(Outcome outcome, SteadyTime now) {
+  if (stage_ == Stage::kEnding || stage_ == Stage::kDone) return;
+  stage_ = Stage::kEnding;
+  outcome_ = outcome;
+  ending_since_ = now;
+  for (Process& p : processes_) p.respawn_due = false;
+}
+
+void Supervisor::end(SteadyTime now, std::vector<Action>& actions) {
+  const bool all_gone =
+      std::none_of(processes_.begin(), processes_.end(), [](const Process& p) { return p.alive; });
+  if (all_gone) {
+    stage_ = Stage::kDone;
+    return;
+  }
+  const auto timeout = now - ending_since_;
+  std::uint32_t due = 1 + static_cast<std::uint32_t>(timeout / options_.signal_grace);
+  if (interrupts_ > 1) due = 3;
+  due = std::min(due, 3U);
+  if (signals_sent_ >= due) return;
+  signals_sent_ = due;
+  constexpr EndSignal kLadder[] = {EndSignal::kInterrupt, EndSignal::kTerminate, EndSignal::kKill};
+  for (std::uint32_t i = 0; i < processes(); ++i) {
+    if (processes_[i].alive) actions.emplace_back(SignalProcess{ProcessIndex(i), kLadder[due - 1]});
+  }
+}
+
+std::vector<Action> Supervisor::step(SteadyTime now) {
+  std::vector<Action> actions;
+  if (interrupts_ > 0) begin_ending(Outcome::kInterrupted, now);
+  for (LogEvent& event : std::exchange(pending_log_, {})) actions.emplace_back(std::move(event));
+  if (stage_ == Stage::kEnding) {
+    end(now, actions);
+    return actions;
+  }
+  if (stage_ == Stage::kDone) return actions;
+  keep_bodies(actions);
+  for (const CommandKind kind : std::exchange(pending_commands_, {})) command(kind, now, actions);
+  repeat_stop(now, actions);
+  if (phase_ != MissionPhase::kStopped) start_due(now, actions);
+  if (phase_ == MissionPhase::kStopped) stage_ = Stage::kRunning;
+  if (stage_ == Stage::kStarting && next_start_ == local_processes()) stage_ = Stage::kGathering;
+  if (stage_ == Stage::kGathering) gather(now, actions);
+  if (stage_ == Stage::kRunning) run(now, actions);
+  return actions;
+}
+
+Supervisor::Counts Supervisor::counts() const {
+  Counts c;
+  for (const Process& p : processes_) c.started += p.started ? 1 : 0;
+  for (const Robot& r : robots_) {
+    if (r.lost || has_failed(r)) {
+      ++c.lost;
+      continue;
+    }
+    c.ready += r.received && r.report.has_plan && r.report.receives_neighbours ? 1 : 0;
+    c.arrived += r.report.mode == RobotMode::kArrived && has_newest_goal(r) ? 1 : 0;
+    c.settled += r.report.settled && has_newest_goal(r) ? 1 : 0;
+    c.stopped += r.report.mode == RobotMode::kStopped ? 1 : 0;
+  }
+  return c;
+}
+
+std::vector<RobotId> Supervisor::unstopped() const {
+  std::vector<RobotId> out;
+  for (std::uint32_t i = 0; i < robots_.size(); ++i) {
+    const std::uint32_t process = 1 + i / options_.per_process;
+    const bool runs = processes_[process].alive && !robots_[i].lost;
+    if (runs && robots_[i].report.mode != RobotMode::kStopped) out.emplace_back(i);
+  }
+  return out;
+}
+
+std::vector<RobotId> Supervisor::lost() const {
+  std::vector<RobotId> out;
+  for (std::uint32_t i = 0; i < robots_.size(); ++i) {
+    if (robots_[i].lost || has_failed(robots_[i])) out.emplace_back(i);
+  }
+  return out;
+}
+
+MissionTime Supervisor::mission_time(SteadyTime now) const {
+  return phase_ == MissionPhase::kReady || started_at_ == SteadyTime{}
+             ? MissionTime{0}
+             : MissionTime(now - started_at_);
+}
+
+}  // namespace swarm::launcher

@@ -1,0 +1,77 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <string>
+#include <utility>
+
+#include <fastdds/dds/publisher/Publisher.hpp>
+#include <fastdds/dds/subscriber/Subscriber.hpp>
+
+#include "swarm_link/adapters/fastdds/loopback_transport.hpp"
+#include "swarm_link/adapters/fastdds/raw_type.hpp"
+#include "swarm_link/adapters/fastdds/topic_registry.hpp"
+#include "swarm_link/raw_port.hpp"
+
+namespace swarm::link::fastdds {
+
+class FastDdsWriter final : public RawWriter {
+ public:
+  FastDdsWriter(eprosima::fastdds::dds::Publisher& publisher,
+                eprosima::fastdds::dds::DataWriter* writer, TopicRegistry& topics,
+                std::string topic)
+      : publisher_(publisher), writer_(writer), topics_(topics), topic_(std::move(topic)) {}
+  ~FastDdsWriter() override;
+  bool write(std::span<const std::byte> bytes) override;
+  int matched() const override;
+
+ private:
+  eprosima::fastdds::dds::Publisher& publisher_;
+  eprosima::fastdds::dds::DataWriter* writer_;
+  TopicRegistry& topics_;
+  std::string topic_;
+};
+
+/// A reader's hold on the multicast group it listens to.
+class GroupMembership {
+ public:
+  GroupMembership(std::shared_ptr<ReceiveSockets> sockets, const ReceiveSockets::Locator& group)
+      : sockets_(std::move(sockets)), group_(group), joined_(sockets_->join(group_)) {}
+  ~GroupMembership() {
+    if (joined_) sockets_->leave(group_);
+  }
+  GroupMembership(const GroupMembership&) = delete;
+  GroupMembership& operator=(const GroupMembership&) = delete;
+  bool joined() const { return joined_; }
+
+ private:
+  std::shared_ptr<ReceiveSockets> sockets_;
+  ReceiveSockets::Locator group_;
+  bool joined_;
+};
+
+class FastDdsReader final : public RawReader {
+ public:
+  FastDdsReader(eprosima::fastdds::dds::Subscriber& subscriber,
+                eprosima::fastdds::dds::DataReader* reader, TopicRegistry& topics,
+                std::string topic, std::unique_ptr<GroupMembership> group)
+      : subscriber_(subscriber),
+        reader_(reader),
+        topics_(topics),
+        topic_(std::move(topic)),
+        group_(std::move(group)) {}
+  ~FastDdsReader() override;
+  std::size_t take(const Sink& sink) override;
+  int matched() const override;
+
+ private:
+  eprosima::fastdds::dds::Subscriber& subscriber_;
+  eprosima::fastdds::dds::DataReader* reader_;
+  TopicRegistry& topics_;
+  std::string topic_;
+  std::unique_ptr<GroupMembership> group_;  // null: receives at the participant's own address
+  ByteSample sample_;                       // kept for its memory
+};
+
+}  // namespace swarm::link::fastdds

@@ -1,0 +1,61 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include <fastdds/dds/domain/DomainParticipant.hpp>
+#include <fastdds/dds/publisher/DataWriter.hpp>
+#include <fastdds/dds/publisher/Publisher.hpp>
+#include <fastdds/dds/subscriber/DataReader.hpp>
+#include <fastdds/dds/subscriber/Subscriber.hpp>
+#include <fastdds/dds/topic/TypeSupport.hpp>
+
+#include "swarm_link/adapters/fastdds/fastdds_participant.hpp"
+#include "swarm_link/adapters/fastdds/loopback_transport.hpp"
+#include "swarm_link/adapters/fastdds/participant_qos.hpp"
+#include "swarm_link/adapters/fastdds/topic_registry.hpp"
+
+namespace swarm::link::fastdds {
+
+/// The vendor's participant with what belongs to it, whatever the types of its samples.
+class Entities {
+ public:
+  static Result<std::unique_ptr<Entities>> make(const FastDdsOptions& options);
+  Entities(FastDdsOptions options, Ports ports, std::shared_ptr<ReceiveSockets> sockets,
+           eprosima::fastdds::dds::DomainParticipant* participant);
+  ~Entities();
+  Entities(const Entities&) = delete;
+  Entities& operator=(const Entities&) = delete;
+
+  const FastDdsOptions& options() const { return options_; }
+  eprosima::fastdds::dds::Publisher& publisher() { return *publisher_; }
+  eprosima::fastdds::dds::Subscriber& subscriber() { return *subscriber_; }
+  TopicRegistry& topics() { return topics_; }
+  const std::shared_ptr<ReceiveSockets>& sockets() { return sockets_; }
+
+  void register_type(const eprosima::fastdds::dds::TypeSupport& type);
+
+  /// Holds the topic until it is released in topics(). `group`: hears there as well.
+  Result<eprosima::fastdds::dds::DataWriter*> make_writer(const std::string& topic,
+                                                          const std::string& type, const Qos& qos);
+  Result<eprosima::fastdds::dds::DataReader*> make_reader(
+      const std::string& topic, const std::string& type, const Qos& qos,
+      const std::optional<eprosima::fastrtps::rtps::Locator_t>& group = {});
+
+  void receive();
+  Result<void> self_check() const;
+
+ private:
+  FastDdsOptions options_;
+  Ports ports_;
+  std::shared_ptr<ReceiveSockets> sockets_;
+  eprosima::fastdds::dds::DomainParticipant* participant_;
+  eprosima::fastdds::dds::Publisher* publisher_;
+  eprosima::fastdds::dds::Subscriber* subscriber_;
+  TopicRegistry topics_;
+};
+
+}  // namespace swarm::link::fastdds

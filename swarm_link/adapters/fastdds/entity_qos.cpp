@@ -1,0 +1,63 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "swarm_link/adapters/fastdds/entity_qos.hpp"
+
+#include "swarm_link/adapters/fastdds/loopback_transport.hpp"
+
+namespace swarm::link::fastdds {
+
+namespace dds = eprosima::fastdds::dds;
+namespace rtps = eprosima::fastrtps::rtps;
+
+namespace {
+
+// The vendor's default of 10 instances would drop the eleventh robot's status.
+constexpr int kMaxInstances = 16'384;
+
+template <class VendorQos>
+void translate(const Qos& qos, VendorQos& out) {
+  out.reliability().kind = qos.reliability == Reliability::kReliable
+                               ? dds::RELIABLE_RELIABILITY_QOS
+                               : dds::BEST_EFFORT_RELIABILITY_QOS;
+  out.durability().kind = qos.durability == Durability::kTransientLocal
+                              ? dds::TRANSIENT_LOCAL_DURABILITY_QOS
+                              : dds::VOLATILE_DURABILITY_QOS;
+  out.history().kind = dds::KEEP_LAST_HISTORY_QOS;
+  out.history().depth = qos.depth;
+  out.resource_limits().max_instances = kMaxInstances;
+  out.resource_limits().max_samples_per_instance = qos.depth;
+  out.resource_limits().max_samples = kMaxInstances * qos.depth;
+  out.resource_limits().allocated_samples = 1;
+  out.ownership().kind = qos.ownership == Ownership::kExclusive ? dds::EXCLUSIVE_OWNERSHIP_QOS
+                                                                : dds::SHARED_OWNERSHIP_QOS;
+  // Buffers as large as the samples that come, not as the largest that could.
+  out.endpoint().history_memory_policy = rtps::DYNAMIC_REUSABLE_MEMORY_MODE;
+  out.data_sharing().off();  // no shared memory
+}
+
+}  // namespace
+
+dds::DataWriterQos writer_qos(const Qos& qos, std::uint32_t ownership_strength) {
+  dds::DataWriterQos out;
+  translate(qos, out);
+  out.ownership_strength().value = ownership_strength;
+  out.publish_mode().kind =
+      qos.large ? dds::ASYNCHRONOUS_PUBLISH_MODE : dds::SYNCHRONOUS_PUBLISH_MODE;
+  out.reliable_writer_qos().times.heartbeatPeriod = {1, 0};
+  return out;
+}
+
+rtps::Locator_t group_of(std::uint32_t domain, const std::string& topic) {
+  std::uint32_t hash = 2'166'136'261U;  // FNV-1a
+  for (const char c : topic) hash = (hash ^ static_cast<unsigned char>(c)) * 16'777'619U;
+  return to_locator(multicast_group(domain, hash));
+}
+
+dds::DataReaderQos reader_qos(const Qos& qos, const std::optional<rtps::Locator_t>& group) {
+  dds::DataReaderQos out;
+  translate(qos, out);
+  if (group) out.endpoint().multicast_locator_list.push_back(*group);
+  return out;
+}
+
+}  // namespace swarm::link::fastdds

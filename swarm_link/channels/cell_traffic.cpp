@@ -1,0 +1,65 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "swarm_link/channels/cell_traffic.hpp"
+
+#include <algorithm>
+#include <iterator>
+
+#include "swarm_core/base/assert.hpp"
+
+namespace swarm::link {
+
+CellInterest::CellInterest(const CellOptions& options) : options_(options) {
+  SWARM_ASSERT(options.cell_size_m > 0.0 && options.communication_radius_m >= 0.0);
+  SWARM_ASSERT(0.0 <= options.join_margin_m && options.join_margin_m <= options.leave_margin_m);
+}
+
+std::span<const Cell> CellInterest::update(std::span<const Vec2> positions_m) {
+  const double size = options_.cell_size_m;
+  const auto join =
+      cells_around(positions_m, options_.communication_radius_m + options_.join_margin_m, size);
+  const auto keep =
+      cells_around(positions_m, options_.communication_radius_m + options_.leave_margin_m, size);
+  std::vector<Cell> kept;
+  std::set_intersection(wanted_.begin(), wanted_.end(), keep.begin(), keep.end(),
+                        std::back_inserter(kept));
+  wanted_.clear();
+  std::set_union(kept.begin(), kept.end(), join.begin(), join.end(), std::back_inserter(wanted_));
+  return wanted_;
+}
+
+std::span<const CellStatesMessage> CellBatches::sort(std::span<const RobotStateMessage> states) {
+  order_.clear();
+  for (std::size_t i = 0; i < states.size(); ++i) {
+    order_.emplace_back(cell_of({states[i].x_m, states[i].y_m}, cell_size_m_), i);
+  }
+  std::sort(order_.begin(), order_.end());
+  std::size_t used = 0;
+  CellStatesMessage* batch = nullptr;
+  for (const auto& [cell, i] : order_) {
+    if (batch == nullptr || Cell{batch->cell_x, batch->cell_y} != cell ||
+        batch->states.size() == kMaxCellStates) {
+      if (used == batches_.size()) batches_.emplace_back();
+      batch = &batches_[used++];
+      batch->cell_x = cell.x;
+      batch->cell_y = cell.y;
+      batch->states.clear();
+    }
+    batch->states.push_back(states[i]);
+  }
+  return std::span(batches_).first(used);
+}
+
+std::vector<Cell> cells_around(std::span<const Vec2> centers_m, double radius_m,
+                               double cell_size_m) {
+  std::vector<Cell> cells;
+  for (const Vec2& center : centers_m) {
+    const auto touching = cells_touching(center, radius_m, cell_size_m);
+    cells.insert(cells.end(), touching.begin(), touching.end());
+  }
+  std::sort(cells.begin(), cells.end());
+  cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+  return cells;
+}
+
+}  // namespace swarm::link

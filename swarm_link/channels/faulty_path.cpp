@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "swarm_link/channels/faulty_path.hpp"
+
+#include <algorithm>
+
+namespace swarm::link {
+
+void FaultyPath::receive(int fd, std::span<const std::byte> bytes, const sockaddr_in& sender,
+                         UtcTime at) {
+  UtcTime due = at;
+  if (reception_.faults.at(at - reception_.run_began)) {
+    const auto delay = fate(reception_.faults, reception_.seed, received_++);
+    if (!delay) return;
+    due += *delay;
+  }
+  if (late_.size() >= kMostKept) return;
+  const auto place =
+      std::upper_bound(late_.begin(), late_.end(), due,
+                       [](UtcTime time, const Late& late) { return time < late.due; });
+  late_.insert(place, {due, fd, sender, {bytes.begin(), bytes.end()}});
+}
+
+void FaultyPath::hand_due(int fd, UtcTime now, DatagramSink& sink) {
+  const auto end = std::upper_bound(late_.begin(), late_.end(), now,
+                                    [](UtcTime time, const Late& late) { return time < late.due; });
+  for (auto late = late_.begin(); late != end; ++late) {
+    if (late->fd == fd) sink.datagram(late->bytes, late->sender);
+  }
+  const auto done = [&](const Late& l) { return l.fd == fd || now - l.due > kAbandoned; };
+  late_.erase(std::remove_if(late_.begin(), end, done), end);
+}
+
+}  // namespace swarm::link

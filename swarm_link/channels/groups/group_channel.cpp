@@ -1,0 +1,172 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "swarm_link/channels/groups/group_channel.hpp"
+
+#include <algorithm>
+#include <random>
+#include <vector>
+
+#include <fmt/format.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include "swarm_link/cdr/codec.hpp"
+#include "swarm_link/channels/cell_traffic.hpp"
+#include "swarm_link/channels/groups/rtps_datagram.hpp"
+#include "swarm_link/udp_socket.hpp"
+
+namespace swarm::link {
+
+namespace {
+
+sockaddr_in group_of(std::uint32_t domain, const Cell& cell) {
+  return multicast_group(
+      domain, static_cast<std::uint32_t>(cell.x) * 359U + static_cast<std::uint32_t>(cell.y));
+}
+
+GuidPrefix random_prefix() {
+  std::random_device device;
+  GuidPrefix prefix{};
+  for (std::uint8_t& byte : prefix) byte = static_cast<std::uint8_t>(device() & 0xFFU);
+  return prefix;
+}
+
+/// One socket per group: the kernel then finds a datagram's few listeners by its address (a socket
+/// of many groups makes it look at every listener of the machine), and its limit of 20 groups per
+/// socket never matters. Open files are the limit.
+class GroupSocket {
+ public:
+  GroupSocket(const sockaddr_in& group, const in_addr& interface, int buffer_bytes)
+      : fd_(open_receive_socket(group, buffer_bytes)),
+        joined_(fd_ >= 0 && join_group(fd_, group.sin_addr, interface)) {}
+  ~GroupSocket() {
+    if (fd_ >= 0) ::close(fd_);  // and with it the membership
+  }
+  GroupSocket(GroupSocket&& other) noexcept
+      : fd_(std::exchange(other.fd_, -1)), joined_(other.joined_) {}
+  GroupSocket& operator=(GroupSocket&& other) noexcept {
+    std::swap(fd_, other.fd_);
+    std::swap(joined_, other.joined_);
+    return *this;
+  }
+
+  bool joined() const { return joined_; }
+  int fd() const { return fd_; }
+
+ private:
+  int fd_;
+  bool joined_;
+};
+
+class GroupChannel final : public StateChannel, private DatagramSink {
+ public:
+  explicit GroupChannel(const GroupChannelOptions& options)
+      : options_(options),
+        interest_(options.cells),
+        batches_(options.cells.cell_size_m),
+        prefix_(random_prefix()),
+        interface_(to_in_addr(options.interface)),
+        sender_(open_group_sender(interface_)),
+        drain_(options.faults) {}
+
+  ~GroupChannel() override {
+    if (sender_ >= 0) ::close(sender_);
+  }
+
+  bool can_send() const { return sender_ >= 0; }
+
+  std::size_t publish(std::span<const RobotStateMessage> states) override {
+    std::size_t sent = 0;
+    for (const CellStatesMessage& batch : batches_.sort(states)) {
+      if (!encode(batch, payload_)) continue;
+      encode_rtps(prefix_, ++sequence_number_, payload_, datagram_);
+      const sockaddr_in to = group_of(options_.domain, {batch.cell_x, batch.cell_y});
+      if (::sendto(sender_, datagram_.data(), datagram_.size(), 0,
+                   reinterpret_cast<const sockaddr*>(&to), sizeof to) >= 0) {
+        sent += batch.states.size();
+      }
+    }
+    return sent;
+  }
+
+  void listen_around(std::span<const Vec2> positions_m) override {
+    groups_.clear();  // two cells may share one
+    for (const Cell& cell : interest_.update(positions_m)) {
+      groups_.push_back(group_of(options_.domain, cell).sin_addr.s_addr);
+    }
+    std::sort(groups_.begin(), groups_.end());
+    groups_.erase(std::unique(groups_.begin(), groups_.end()), groups_.end());
+    std::erase_if(joined_, [&](const Joined& joined) {
+      return !std::binary_search(groups_.begin(), groups_.end(), joined.group);
+    });
+    for (const in_addr_t group : groups_) {
+      const auto at = std::lower_bound(joined_.begin(), joined_.end(), group,
+                                       [](const Joined& j, in_addr_t g) { return j.group < g; });
+      if (at != joined_.end() && at->group == group) continue;
+      sockaddr_in address = group_of(options_.domain, {});
+      address.sin_addr.s_addr = group;
+      GroupSocket socket(address, interface_, options_.receive_buffer_bytes);
+      if (socket.joined()) joined_.insert(at, {group, std::move(socket)});  // else again next time
+    }
+  }
+
+  std::size_t take(std::vector<CellStatesMessage>& out) override {
+    taking_ = &out;
+    const auto before = out.size();
+    for (const Joined& joined : joined_) drain_.drain(joined.socket.fd(), *this);
+    return out.size() - before;
+  }
+
+  std::uint64_t undecodable() const override { return undecodable_; }
+
+ private:
+  struct Joined {
+    in_addr_t group;
+    GroupSocket socket;
+  };
+
+  void datagram(std::span<std::byte> bytes, const sockaddr_in&) override {
+    const auto payload = decode_rtps(bytes);
+    if (payload && decode(*payload, taking_->emplace_back())) return;
+    if (payload) taking_->pop_back();
+    ++undecodable_;
+  }
+
+  GroupChannelOptions options_;
+  CellInterest interest_;
+  CellBatches batches_;
+  GuidPrefix prefix_;
+  std::uint64_t sequence_number_ = 0;
+  in_addr interface_;
+  int sender_;
+  DatagramDrain drain_;
+  std::vector<Joined> joined_;     // sorted by group
+  std::vector<in_addr_t> groups_;  // kept for its memory, as are these two
+  std::vector<std::byte> payload_;
+  std::vector<std::byte> datagram_;
+  std::vector<CellStatesMessage>* taking_ = nullptr;
+  std::uint64_t undecodable_ = 0;
+};
+
+}  // namespace
+
+GroupAddress group_address(std::uint32_t domain, Cell cell) {
+  const sockaddr_in address = group_of(domain, cell);
+  const std::uint32_t ip = ntohl(address.sin_addr.s_addr);
+  return {.host = fmt::format("239.255.{}.{}", (ip >> 8U) & 0xFFU, ip & 0xFFU),
+          .port = ntohs(address.sin_port)};
+}
+
+Result<std::unique_ptr<StateChannel>> make_group_channel(const GroupChannelOptions& options) {
+  auto channel = std::make_unique<GroupChannel>(options);
+  if (!channel->can_send() || !carries_multicast(options.interface)) {
+    return fail(ErrorCode::kEnvironment,
+                fmt::format("the interface with address {} carries no multicast: set it up ('ip "
+                            "link set lo up' for 127.0.0.1), let firewalls pass 239.255.0.0/16, or "
+                            "use --channel topics",
+                            options.interface));
+  }
+  return channel;
+}
+
+}  // namespace swarm::link

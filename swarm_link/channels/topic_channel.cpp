@@ -1,0 +1,117 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <map>
+#include <utility>
+
+#include "swarm_link/channels/cell_traffic.hpp"
+#include "swarm_link/channels/state_channel.hpp"
+
+namespace swarm::link {
+
+namespace {
+
+constexpr std::size_t kLingeringWriters = 8;
+
+class TopicChannel final : public StateChannel {
+ public:
+  TopicChannel(Participant& participant, const CellOptions& options)
+      : participant_(participant),
+        options_(options),
+        interest_(options),
+        batches_(options.cell_size_m) {}
+
+  std::size_t publish(std::span<const RobotStateMessage> states) override {
+    std::size_t sent = 0;
+    for (const CellStatesMessage& batch : batches_.sort(states)) {
+      auto* writer = writer_of({batch.cell_x, batch.cell_y});
+      if (writer != nullptr && writer->write(batch)) sent += batch.states.size();
+    }
+    retire_writers();
+    return sent;
+  }
+
+  void listen_around(std::span<const Vec2> positions_m) override {
+    ++now_;
+    const auto wanted = interest_.update(positions_m);
+    for (auto it = readers_.begin(); it != readers_.end();) {
+      if (std::binary_search(wanted.begin(), wanted.end(), it->first)) {
+        ++it;
+        continue;
+      }
+      undecodable_of_left_ += it->second->undecodable();
+      it = readers_.erase(it);
+    }
+    for (const Cell& cell : wanted) {
+      if (readers_.contains(cell)) continue;
+      auto reader = participant_.make_reader(cell_topic(cell));
+      if (reader) readers_.emplace(cell, *std::move(reader));  // else tried again next time
+    }
+    // A writer is discovered some tenths of a second after it is made: make it before the robot
+    // crosses into the cell, or its first states there go unheard.
+    for (const Cell& cell :
+         cells_around(positions_m, options_.join_margin_m, options_.cell_size_m)) {
+      writer_of(cell);
+    }
+    retire_writers();
+  }
+
+  std::size_t take(std::vector<CellStatesMessage>& out) override {
+    std::size_t taken = 0;
+    for (auto& [cell, reader] : readers_) taken += reader->take(out);
+    return taken;
+  }
+
+  std::uint64_t undecodable() const override {
+    std::uint64_t sum = undecodable_of_left_;
+    for (const auto& [cell, reader] : readers_) sum += reader->undecodable();
+    return sum;
+  }
+
+ private:
+  struct CellWriter {
+    WriterPtr<CellStatesMessage> writer;
+    std::uint64_t used = 0;  // value of now_
+  };
+
+  Writer<CellStatesMessage>* writer_of(const Cell& cell) {
+    auto it = writers_.find(cell);
+    if (it == writers_.end()) {
+      auto made = participant_.make_writer(cell_topic(cell));
+      if (!made) return nullptr;
+      it = writers_.emplace(cell, CellWriter{*std::move(made)}).first;
+    }
+    it->second.used = now_;
+    return it->second.writer.get();
+  }
+
+  // Deletes the writers that were not used for longest, never one used since the last
+  // listen_around().
+  void retire_writers() {
+    while (writers_.size() > kLingeringWriters) {
+      const auto oldest = std::min_element(
+          writers_.begin(), writers_.end(),
+          [](const auto& a, const auto& b) { return a.second.used < b.second.used; });
+      if (oldest->second.used == now_) return;
+      writers_.erase(oldest);
+    }
+  }
+
+  Participant& participant_;
+  CellOptions options_;
+  CellInterest interest_;
+  CellBatches batches_;
+  std::uint64_t now_ = 0;  // calls of listen_around()
+  std::map<Cell, ReaderPtr<CellStatesMessage>> readers_;
+  std::map<Cell, CellWriter> writers_;
+  std::uint64_t undecodable_of_left_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<StateChannel> make_topic_channel(Participant& participant,
+                                                 const CellOptions& options) {
+  return std::make_unique<TopicChannel>(participant, options);
+}
+
+}  // namespace swarm::link

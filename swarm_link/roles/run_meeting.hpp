@@ -1,0 +1,25 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <utility>
+
+#include "swarm_core/app/run_directory.hpp"
+#include "swarm_link/roles/join.hpp"
+
+namespace swarm::link {
+
+/// The meeting place that a run directory tells of.
+inline Meeting meeting_of(const shell::RunInfo& run, ReceptionFaults faults = {}) {
+  const auto vendor = [](bool cyclone) { return cyclone ? Vendor::kCycloneDds : Vendor::kFastDds; };
+  return {.domain = run.domain,
+          .server = {run.discovery_host, run.discovery_port},
+          .relays = run.relays,
+          .launcher = vendor(run.cyclone_launcher),
+          .planner = vendor(run.cyclone_planner),
+          .host = run.host,
+          .interface = run.interface,
+          .faults = std::move(faults)};
+}
+
+}  // namespace swarm::link

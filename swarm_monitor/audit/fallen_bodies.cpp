@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "swarm_monitor/audit/fallen_bodies.hpp"
+
+#include <algorithm>
+
+#include "swarm_core/mission/scene_bodies.hpp"
+
+namespace swarm::monitor {
+
+void lay_fallen_bodies(RecordedRun& run) {
+  double end_s = 0.0;
+  for (const Track& track : run.tracks) {
+    if (!track.points.empty()) end_s = std::max(end_s, track.points.back().time_s);
+  }
+  for (Track& track : run.tracks) {
+    if (!track.ended_gracefully && !track.points.empty()) track.body_until_s = end_s;
+  }
+  for (const FallenBody& body : bodies_of(run.scenes)) {
+    const std::uint32_t robot = body.robot.value();
+    if (robot >= run.tracks.size() || !body.cleared) continue;
+    Track& track = run.tracks[robot];
+    const double cleared_s = to_seconds(*body.cleared - run.begin);
+    // A body of an earlier life was cleared when the robot came back: its log goes on.
+    if (track.body_until_s > 0.0 && cleared_s >= track.points.back().time_s) {
+      track.body_until_s = std::min(track.body_until_s, cleared_s);
+    }
+  }
+}
+
+}  // namespace swarm::monitor

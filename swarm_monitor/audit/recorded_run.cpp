@@ -1,0 +1,310 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "swarm_monitor/audit/recorded_run.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <map>
+#include <numeric>
+#include <sstream>
+#include <string_view>
+#include <utility>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "swarm_core/robot_log/robot_log_file.hpp"
+#include "swarm_core/robot_log/reader.hpp"
+#include "swarmflow/mission/mission_file.hpp"
+#include "swarm_core/mission_file/scene_log.hpp"
+#include "swarm_core/plan/plan_json.hpp"
+#include "swarm_core/app/run_directory.hpp"
+
+namespace swarm::monitor {
+namespace {
+
+constexpr std::size_t kMaxMissionBytes = 16U << 20U;
+constexpr std::size_t kMaxSummaryBytes = 1U << 20U;
+constexpr std::size_t kMaxEventsBytes = 256U << 20U;
+constexpr std::size_t kMaxPlanBytes = 64U << 20U;
+constexpr std::size_t kMaxSceneBytes = 64U << 20U;
+constexpr std::size_t kMaxPlanningBytes = 64U << 10U;
+constexpr std::size_t kMaxClockBytes = 64U << 20U;
+
+std::vector<RunEvent> read_events(const std::string& text, UtcTime begin) {
+  std::vector<RunEvent> events;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    // The last line of a killed launcher may be cut: what is no event is left out.
+    const auto json = nlohmann::json::parse(line, nullptr, false);
+    if (!json.is_object()) continue;
+    const auto word = [&](const char* key) {
+      const auto it = json.find(key);
+      return it != json.end() && it->is_string() ? it->get<std::string>() : std::string();
+    };
+    const auto stamp = json.find("utc_ns");
+    if (stamp == json.end() || !stamp->is_number_integer()) continue;
+    const UtcTime at{Duration(stamp->get<std::int64_t>())};
+    events.push_back({.time_s = to_seconds(at - begin),
+                      .source = word("source"),
+                      .severity = word("severity"),
+                      .code = word("code"),
+                      .text = word("text")});
+  }
+  return events;
+}
+
+}  // namespace
+
+void TrackMaker::add(const robot_log::Record& record) {
+  std::visit([this](const auto& r) { take(r); }, record);
+}
+
+void TrackMaker::take(const robot_log::Header& header) {
+  close_incarnation();
+  track_.radius_m = header.radius_m;
+  track_.processes.push_back(header.process_id);
+  track_.ended_gracefully = false;
+}
+
+void TrackMaker::take(const robot_log::Step& step) {
+  if (step.lateness_us > Track::kLate_us) ++track_.late_steps;
+  const double time_s = to_seconds(step.stamp - origin_);
+  if (!track_.points.empty() && time_s <= track_.points.back().time_s) {
+    ++track_.damaged;
+    return;
+  }
+  track_.points.push_back({.time_s = time_s,
+                           .position_m = step.position_m,
+                           .mode = static_cast<RobotMode>(step.mode),
+                           .goal = step.goal,
+                           .neighbours = step.neighbours,
+                           .plan_version = step.plan_version,
+                           .plan_time_s = step.plan_time_s,
+                           .reference_x_m = step.reference_x_m,
+                           .reference_y_m = step.reference_y_m});
+}
+
+void TrackMaker::take(const robot_log::Estimate& estimate) {
+  track_.estimates.push_back({.time_s = to_seconds(estimate.stamp - origin_),
+                            .neighbour = estimate.neighbour,
+                            .position_m = estimate.position_m});
+}
+
+void TrackMaker::take(const robot_log::Note& note) {
+  track_.notes.push_back(note);
+  if (note.code == "exit") track_.ended_gracefully = true;
+}
+
+void TrackMaker::close_incarnation() {
+  track_.state_age.merge(incarnation_.state_age);
+  track_.states_sent += incarnation_.states_sent;
+  track_.refused += std::accumulate(incarnation_.refused.begin(), incarnation_.refused.end(), std::uint64_t{0});
+  incarnation_ = {};
+}
+
+Track TrackMaker::finish() {
+  close_incarnation();
+  return std::move(track_);
+}
+
+const Mixture& RecordedRun::goal() const {
+  return scenes.empty() || !scenes.back().goal ? mission.goal : *scenes.back().goal;
+}
+
+namespace {
+
+/// The files of a run beside its robot logs, by name.
+using Texts = std::map<std::string, std::string, std::less<>>;
+
+const std::string& text_of(const Texts& texts, std::string_view name) {
+  static const std::string kNone;
+  const auto it = texts.find(name);
+  return it == texts.end() ? kNone : it->second;
+}
+
+/// The version of the plan in a file: 1 of `plan.json`, 2 of `plan-0002.json`; 0 of any other name.
+std::uint32_t plan_version_of(std::string_view file) {
+  if (file == shell::kPlanFile) return 1;
+  constexpr std::string_view kBegin = "plan-", kEnd = ".json";
+  if (!file.starts_with(kBegin) || !file.ends_with(kEnd)) return 0;
+  file.remove_prefix(kBegin.size());
+  if (file.size() <= kEnd.size()) return 0;
+  file.remove_suffix(kEnd.size());
+  std::uint32_t version = 0;
+  const auto [end, error] = std::from_chars(file.data(), file.data() + file.size(), version);
+  return error == std::errc{} && end == file.data() + file.size() ? version : 0;
+}
+
+/// A plan that cannot be read is left out.
+std::vector<PublishedPlan> read_plans(const Texts& texts) {
+  std::vector<PublishedPlan> plans;
+  for (const auto& [name, text] : texts) {
+    const std::uint32_t version = plan_version_of(name);
+    if (version == 0) continue;
+    auto plan = plan_from_json(text);
+    if (plan) plans.push_back({version, std::move(*plan), excess_from_json(text)});
+  }
+  const auto older = [](const PublishedPlan& a, const PublishedPlan& b) {
+    return a.version < b.version;
+  };
+  std::sort(plans.begin(), plans.end(), older);
+  return plans;
+}
+
+/// Tracks in the making, by robot, with times since any stamp near the run: seconds since 1970
+/// would be too coarse.
+class TrackTable {
+ public:
+  explicit TrackTable(std::uint32_t robots) : makers_(robots) {}
+
+  void add(RobotId robot, const robot_log::Record& record) {
+    if (robot.value() >= makers_.size()) return;
+    if (!origin_) origin_ = robot_log::stamp_of(record);
+    auto& maker = makers_[robot.value()];
+    if (!maker) maker.emplace(robot, *origin_);
+    maker->add(record);
+  }
+
+  /// Makes `run.begin` the first step. False if there is none.
+  bool finish(RecordedRun& run) {
+    double begin_s = std::numeric_limits<double>::infinity();
+    for (std::uint32_t i = 0; i < makers_.size(); ++i) {
+      Track track = makers_[i] ? makers_[i]->finish() : Track{.robot = RobotId(i)};
+      // A box without a header tells no radius: take the mission's.
+      if (track.processes.empty()) track.radius_m = run.mission.robots.radius_m;
+      if (!track.points.empty()) begin_s = std::min(begin_s, track.points.front().time_s);
+      run.tracks.push_back(std::move(track));
+    }
+    if (!std::isfinite(begin_s)) return false;
+    // In whole nanoseconds, so that it does not matter which record was read first.
+    const Duration begin = from_seconds(begin_s);
+    const auto since_begin = [begin](double time_s) {
+      return to_seconds(from_seconds(time_s) - begin);
+    };
+    for (Track& track : run.tracks) {
+      for (TrackPoint& point : track.points) point.time_s = since_begin(point.time_s);
+      for (EstimatePoint& estimate : track.estimates) estimate.time_s = since_begin(estimate.time_s);
+    }
+    run.begin = *origin_ + begin;
+    return true;
+  }
+
+ private:
+  std::vector<std::optional<TrackMaker>> makers_;
+  std::optional<UtcTime> origin_;
+};
+
+Result<RecordedRun> with_mission(const std::string& yaml, const std::filesystem::path& from) {
+  auto mission = parse_mission(yaml, std::string(shell::kMissionFile), {}, open_catalogue());
+  if (!mission) {
+    return fail(ErrorCode::kEnvironment,
+                fmt::format("{} is no recorded run:\n{}", from.string(), mission.error().message));
+  }
+  return RecordedRun{.mission = std::move(*mission)};
+}
+
+Result<RecordedRun> finished(RecordedRun run, TrackTable& tracks, const Texts& texts,
+                             const std::filesystem::path& from) {
+  if (!tracks.finish(run)) {
+    return fail(ErrorCode::kEnvironment,
+                fmt::format("{}: no robot log holds a step; did any robot start?", from.string()));
+  }
+  run.plans = read_plans(texts);
+  run.planning = planning_record_from_json(text_of(texts, shell::kPlanningFile));
+  run.clock = read_plan_clock(text_of(texts, shell::kPlanClockFile));
+  run.scenes = replay_scene_log(text_of(texts, shell::kSceneFile), run.mission.world);
+  run.events = read_events(text_of(texts, shell::kEventsFile), run.begin);
+  run.launcher_summary = text_of(texts, shell::kSummaryFile);
+  return run;
+}
+
+Result<RecordedRun> read_directory(const std::filesystem::path& run_dir) {
+  Texts texts;
+  for (const auto& [name, limit] : {std::pair{shell::kMissionFile, kMaxMissionBytes},
+                                    {shell::kPlanningFile, kMaxPlanningBytes},
+                                    {shell::kPlanClockFile, kMaxClockBytes},
+                                    {shell::kSceneFile, kMaxSceneBytes},
+                                    {shell::kEventsFile, kMaxEventsBytes},
+                                    {shell::kSummaryFile, kMaxSummaryBytes}}) {
+    if (auto text = shell::read_file(run_dir / name, limit)) texts[std::string(name)] = *text;
+  }
+  std::error_code unreadable;
+  for (const auto& entry : std::filesystem::directory_iterator(run_dir, unreadable)) {
+    const std::string name = entry.path().filename().string();
+    if (plan_version_of(name) == 0) continue;
+    if (auto text = shell::read_file(entry.path(), kMaxPlanBytes)) texts[name] = *text;
+  }
+  auto run = with_mission(text_of(texts, shell::kMissionFile), run_dir);
+  if (!run) return run;
+  TrackTable tracks(run->mission.robots.count);
+  std::vector<Result<robot_log::Damage>> damages;
+  for (std::uint32_t i = 0; i < run->mission.robots.count; ++i) {
+    damages.push_back(
+        robot_log::read_records(robot_log::file_of(run_dir, RobotId(i)),
+                               [&](const auto& record) { tracks.add(RobotId(i), record); }));
+  }
+  run = finished(std::move(*run), tracks, texts, run_dir);
+  if (!run) return run;
+  for (std::size_t i = 0; i < damages.size(); ++i) {
+    if (damages[i]) {
+      run->tracks[i].damaged += damages[i]->damaged;
+    } else {
+      run->tracks[i].unreadable = damages[i].error().message;
+    }
+  }
+  return run;
+}
+
+Result<RecordedRun> read_recording(const std::filesystem::path& file) {
+  Texts texts;
+  std::optional<TrackTable> tracks;
+  std::optional<Result<RecordedRun>> run;
+  const auto damage = mcap::read(
+      file,
+      {.message =
+           [&](const mcap::Message& message, const mcap::Channel& channel, const mcap::Schema&) {
+             if (!tracks) return;
+             if (const auto record = robot_log::decode(message, channel)) {
+               tracks->add(record->robot, record->record);
+             }
+           },
+       .attachment =
+           [&](const mcap::Attachment& attachment) {
+             texts[attachment.name] = attachment.data;
+             if (attachment.name != shell::kMissionFile || run) return;
+             run = with_mission(attachment.data, file);
+             if (*run) tracks.emplace((*run)->mission.robots.count);
+           }});
+  if (!damage) return tl::unexpected(damage.error());
+  if (!run) {
+    return fail(ErrorCode::kEnvironment, fmt::format("{} holds no {}: is it a recording of a run?",
+                                                     file.string(), shell::kMissionFile));
+  }
+  if (!*run) return *run;
+  run = finished(std::move(**run), *tracks, texts, file);
+  if (!*run) return *run;
+  // Which robots' records these were cannot be told.
+  if (damage->damaged > 0) (*run)->tracks.front().damaged += damage->damaged;
+  for (Track& track : (*run)->tracks) {
+    if (track.points.empty()) track.unreadable = "the recording holds nothing of this robot";
+  }
+  return *run;
+}
+
+}  // namespace
+
+double RecordedRun::plan_excess_m() const {
+  double largest_m = 0.0;
+  for (const PublishedPlan& plan : plans) largest_m = std::max(largest_m, plan.excess_m);
+  return largest_m;
+}
+
+Result<RecordedRun> read_run(const std::filesystem::path& from) {
+  return std::filesystem::is_regular_file(from) ? read_recording(from) : read_directory(from);
+}
+
+}  // namespace swarm::monitor

@@ -1,0 +1,88 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "swarm_sim/recording.hpp"
+
+#include <utility>
+
+#include "swarm_core/base/assert.hpp"
+#include "swarm_core/robot_log/robot_log_file.hpp"
+
+namespace swarm::launcher {
+
+Recording::Recording(const Mission& mission, UtcTime begin, std::uint64_t keeps_every)
+    : mission_(mission),
+      begin_(begin),
+      keeps_every_(keeps_every),
+      notes_(mission.robots.count),
+      estimates_(mission.robots.count) {
+  SWARM_ASSERT(keeps_every >= 1);
+}
+
+void Recording::note(RobotId robot, robot_log::Note note) {
+  const bool follows_step = !periods_.empty() && periods_.back()[robot.value()].stamp == note.stamp;
+  notes_[robot.value()].push_back({.note = std::move(note), .follows_step = follows_step});
+}
+
+std::vector<robot_log::Step> Recording::last_steps(RobotId robot) const {
+  std::vector<robot_log::Step> steps;
+  for (auto period = periods_.rbegin(); period != periods_.rend() && steps.size() < 2; ++period) {
+    const robot_log::Step& step = (*period)[robot.value()];
+    if (step.stamp != kNever) steps.insert(steps.begin(), step);
+  }
+  return steps;
+}
+
+/// The records of one robot in the order a process would have written them.
+template <class Take>
+void Recording::replay(std::uint32_t robot, Take take) const {
+  take(robot_log::Header{.robot = RobotId(robot),
+                        .robots = mission_.robots.count,
+                        .process_id = 0,
+                        .radius_m = body_of(mission_.robots, RobotId(robot)).radius_m,
+                        .stamp = begin_});
+  auto note = notes_[robot].begin();
+  const auto last_note = notes_[robot].end();
+  auto estimate = estimates_[robot].begin();
+  const auto last_estimate = estimates_[robot].end();
+  for (const std::vector<robot_log::Step>& period : periods_) {
+    const robot_log::Step& step = period[robot];
+    if (step.stamp == kNever) continue;
+    const auto comes_first = [&](const PlacedNote& placed) {
+      return placed.note.stamp < step.stamp ||
+             (placed.note.stamp == step.stamp && !placed.follows_step);
+    };
+    for (; note != last_note && comes_first(*note); ++note) take(note->note);
+    take(step);
+    for (; estimate != last_estimate && estimate->stamp <= step.stamp; ++estimate) take(*estimate);
+  }
+  if (robot == 0) {
+    take(robot_log::LinkStats{.stamp = periods_.empty() ? begin_ : periods_.back()[robot].stamp,
+                             .states_sent = static_cast<std::uint32_t>(link_.states_sent),
+                             .states_received = static_cast<std::uint32_t>(link_.states_received),
+                             .refused = link_.refused,
+                             .state_age = link_.state_age});
+  }
+  for (; note != last_note; ++note) take(note->note);
+}
+
+std::vector<monitor::Track> Recording::tracks() const {
+  std::vector<monitor::Track> tracks;
+  tracks.reserve(notes_.size());
+  for (std::uint32_t i = 0; i < notes_.size(); ++i) {
+    monitor::TrackMaker maker(RobotId(i), begin_);
+    replay(i, [&](const auto& record) { maker.take(record); });
+    tracks.push_back(maker.finish());
+  }
+  return tracks;
+}
+
+Result<void> Recording::write(const std::filesystem::path& run_dir) const {
+  for (std::uint32_t i = 0; i < notes_.size(); ++i) {
+    robot_log::Batch box;
+    replay(i, [&](const auto& record) { box.append(record); });
+    if (auto written = box.write(robot_log::file_of(run_dir, RobotId(i))); !written) return written;
+  }
+  return {};
+}
+
+}  // namespace swarm::launcher

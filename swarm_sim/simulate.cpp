@@ -1,0 +1,174 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "swarm_sim/simulate.hpp"
+
+#include <chrono>
+#include <cstdio>
+#include <fstream>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "swarm_core/mission_file/scene_log.hpp"
+#include "swarm_core/plan/plan_json.hpp"
+#include "swarm_core/plan/planning_record.hpp"
+#include "swarm_core/app/run_dir.hpp"
+#include "swarm_core/app/run_directory.hpp"
+#include "swarm_core/app/stop_signal.hpp"
+#include "swarm_launcher/processes/builtin_catalogue.hpp"
+#include "swarm_launcher/supervision/event_log.hpp"
+#include "swarm_launcher/supervision/progress.hpp"
+#include "swarm_sim/simulation.hpp"
+#include "swarm_launcher/supervision/summary.hpp"
+#include "swarmflow/mission/mission_file.hpp"
+
+namespace swarm::launcher {
+namespace {
+
+/// Writes what happens into the run directory.
+class DirectoryObserver final : public SimulationObserver {
+ public:
+  explicit DirectoryObserver(std::filesystem::path dir)
+      : dir_(std::move(dir)),
+        events_(dir_ / shell::kEventsFile),
+        scenes_(dir_ / shell::kSceneFile, std::ios::app),
+        clock_(dir_ / shell::kPlanClockFile, std::ios::app) {}
+
+  void on_event(UtcTime at, const std::string& source, bool warning, const std::string& code,
+                const std::string& text) override {
+    events_.write(at, source, warning ? link::Severity::kWarning : link::Severity::kInfo, code,
+                  text);
+  }
+
+  void on_plan(std::uint32_t version, const planner::PlanResult& planned) override {
+    const auto name = version == 1 ? std::filesystem::path(shell::kPlanFile)
+                                   : std::filesystem::path(fmt::format("plan-{:04}.json", version));
+    if (auto w = shell::write_file(dir_ / name, to_json(planned.plan, planned.excess.by_m));
+        !w && !failure_) {
+      failure_ = w.error();
+    }
+  }
+
+  void on_clock(const PlanClock& reading) override {
+    clock_ << plan_clock_line(reading) << std::flush;
+  }
+
+  void on_scene(const Scene& scene, const SceneChange& change) override {
+    scenes_ << scene_log_line(scene.version, change) << std::flush;
+  }
+
+  const std::optional<Error>& failure() const { return failure_; }
+
+ private:
+  std::filesystem::path dir_;
+  EventLog events_;
+  std::ofstream scenes_;
+  std::ofstream clock_;
+  std::optional<Error> failure_;
+};
+
+/// Runs a simulation to its end, with a live line.
+void fly(Simulation& simulation, std::uint32_t robots) {
+  Progress progress;
+  SteadyTime shown_at;
+  int interrupts_seen = 0;
+  while (simulation.step()) {
+    for (; interrupts_seen < shell::stop_requests(); ++interrupts_seen) simulation.interrupt();
+    const SteadyTime now = std::chrono::steady_clock::now();
+    if (now - shown_at < std::chrono::milliseconds(250)) continue;
+    shown_at = now;
+    const Supervisor::Counts c = simulation.counts();
+    progress.show("simulating", fmt::format("t {:.0f} s  arrived {}/{}", simulation.mission_s(),
+                                            c.arrived, robots));
+  }
+}
+
+Result<ExitCode> summarise_unrecorded(const Simulation& simulation, const Measurements& measured,
+                                      bool json) {
+  const Supervisor::Counts c = simulation.counts();
+  const nlohmann::ordered_json summary = {
+      {"outcome", to_string(measured.outcome)},
+      {"arrived", c.arrived},
+      {"mission_s", simulation.mission_s()},
+      {"plan_ms", simulation.cost().plan_ms},
+      {"wall_s", *measured.wall_s},
+      {"ns_per_agent_step", *measured.ns_per_agent_step},
+  };
+  if (json) {
+    std::printf("%s\n", summary.dump(2).c_str());
+  } else {
+    fmt::print(
+        "mission          {}\narrived          {}\nmission time     {:.1f} s\n"
+        "wall time        {:.2f} s, {:.0f} ns per agent and step\n",
+        to_string(measured.outcome), c.arrived, simulation.mission_s(), *measured.wall_s,
+        *measured.ns_per_agent_step);
+  }
+  return measured.outcome == Outcome::kCompleted ? ExitCode::kOk : ExitCode::kCriteriaNotMet;
+}
+
+}  // namespace
+
+Result<ExitCode> simulate_mission(const SimulateOptions& options) {
+  auto mission = load_mission(options.mission_file, builtin_catalogue());
+  if (!mission) return tl::unexpected(mission.error());
+  if (options.robots) mission->robots.count = *options.robots;
+  for (const Kill& kill : options.kills) {
+    for (const RobotId robot : kill.robots) {
+      if (robot.value() < mission->robots.count) continue;
+      return fail(ErrorCode::kBadInput,
+                  fmt::format("--kill: there is no robot {}, the mission has 0 to {}",
+                              robot.value(), mission->robots.count - 1));
+    }
+  }
+
+  std::filesystem::path dir;
+  std::unique_ptr<SimulationObserver> observer = std::make_unique<SimulationObserver>();
+  const DirectoryObserver* written = nullptr;
+  if (options.record) {
+    const auto made = shell::make_run_dir(options.out, mission->name);
+    if (!made) return tl::unexpected(made.error());
+    dir = *made;
+    std::fprintf(stderr, "run directory: %s\n", dir.c_str());
+    if (auto w = shell::write_file(dir / shell::kMissionFile, to_yaml(*mission)); !w) {
+      return tl::unexpected(w.error());
+    }
+    if (auto w = shell::write_run_info(dir, {.seed = options.seed}); !w) {
+      return tl::unexpected(w.error());
+    }
+    auto to_directory = std::make_unique<DirectoryObserver>(dir);
+    written = to_directory.get();
+    observer = std::move(to_directory);
+  }
+
+  const auto begin = std::chrono::steady_clock::now();
+  Recording recording(*mission, Simulation::begin_utc(),
+                      options.record ? 1 : Recording::kFirstAndLast);
+  const SimulationOptions simulated{
+      .seed = options.seed,
+      .faults = options.faults,
+      .clocks_in_step = options.clocks_in_step,
+      .threads = options.threads > 0 ? options.threads : useful_threads(mission->robots.count),
+      .kills = options.kills};
+  auto simulation = Simulation::make(*mission, simulated, recording, *observer);
+  if (!simulation) return tl::unexpected(simulation.error());
+  if (options.record) {
+    const PlanningRecord promised{mission->planner.method,
+                                  (*simulation)->planning_method().traits().density_cap_per_m2};
+    if (auto w = shell::write_file(dir / shell::kPlanningFile, to_json(promised)); !w) {
+      return tl::unexpected(w.error());
+    }
+  }
+  fly(**simulation, mission->robots.count);
+  const Simulation::Cost cost = (*simulation)->cost();
+  Measurements measured{.outcome = (*simulation)->outcome(),
+                        .channel = std::nullopt,
+                        .plan_ms = cost.plan_ms,
+                        .wall_s = to_seconds(std::chrono::steady_clock::now() - begin),
+                        .ns_per_agent_step = cost.median_step_ns};
+  if (!options.record) return summarise_unrecorded(**simulation, measured, options.json);
+  if (written->failure()) return tl::unexpected(*written->failure());
+  if (auto w = recording.write(dir); !w) return tl::unexpected(w.error());
+  return summarise(dir, measured, options.json);
+}
+
+}  // namespace swarm::launcher

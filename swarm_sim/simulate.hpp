@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "swarmflow/core/result.hpp"
+#include "swarm_core/mission/link_faults.hpp"
+#include "swarm_sim/simulated_network.hpp"
+#include "swarm_sim/kills.hpp"
+
+namespace swarm::launcher {
+
+struct SimulateOptions {
+  std::filesystem::path mission_file;
+  std::optional<std::uint32_t> robots;  ///< instead of the mission's
+  std::uint64_t seed = 1;
+  LinkFaults faults;
+  bool clocks_in_step = true;
+  std::vector<Kill> kills{};  ///< robots whose processes die
+  std::size_t threads = 0;    ///< 0: as many as make it faster
+  bool record = true;         ///< robot logs, audit and report; else arrivals and times alone
+  std::filesystem::path out;  ///< run directory; empty: runs/<mission>-<time>
+  bool json = false;
+};
+
+/// `swarm_launcher simulate`: the mission in lock-step, in one process, as fast as it goes; the
+/// same run directory and audit as of a real run. Result on stdout, progress on stderr.
+Result<ExitCode> simulate_mission(const SimulateOptions& options);
+
+}  // namespace swarm::launcher

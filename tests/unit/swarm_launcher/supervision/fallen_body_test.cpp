@@ -1,0 +1,102 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "swarm_launcher/supervision/fallen_body.hpp"
+
+#include <gtest/gtest.h>
+
+#include "robot_agent/drivers/simulated_robot.hpp"
+#include "swarmflow/core/random.hpp"
+
+namespace swarm::launcher {
+namespace {
+
+using std::chrono::milliseconds;
+
+Mission mission_of(const std::string& model) {
+  Mission mission;
+  mission.robots.model = model;
+  return mission;
+}
+
+UtcTime at_s(double s) { return UtcTime(from_seconds(100.0 + s)); }
+
+// Drivers integrate in steps of 5 ms: of the last one before rest, at 3 m/s², this much too far.
+constexpr double kStep_m = 2e-5;
+
+bool covers(const Circle& circle, const Vec2& centre_m, double radius_m) {
+  return (centre_m - circle.center_m).norm() + radius_m <= circle.radius_m + kStep_m;
+}
+
+// The driver is the oracle: wherever the body goes after the last command, it is inside, whatever
+// it was commanded before.
+TEST(CircleOfFallen, CoversTheBodyFromTheLastTickToItsRest) {
+  Rng rng(4);
+  for (const std::string model : {"single_integrator", "double_integrator", "unicycle"}) {
+    const Mission mission = mission_of(model);
+    for (int i = 0; i < 300; ++i) {
+      const SteadyTime begin{std::chrono::seconds(1)};
+      agent::SimulatedRobot body = agent::make_simulated_body(mission.robots, begin, {5, 5}, rng());
+      std::vector<robot_log::Step> log;
+      SteadyTime now = begin;
+      Vec2 command_mps = Vec2::Zero();
+      for (int tick = 0; tick < 12; ++tick, now += milliseconds(100)) {
+        if (tick == 0 || rng() % 4 == 0) {
+          const double angle = uniform(rng, 0.0, 6.2831853);
+          command_mps = uniform(rng, 0.0, 1.5) * Vec2(std::cos(angle), std::sin(angle));
+          if (rng() % 4 == 0) command_mps = Vec2::Zero();
+        }
+        log.push_back({.stamp = at_s(0.1 * tick),
+                       .position_m = body.measure(now).position_m,
+                       .velocity_mps = command_mps});
+        body.command(now, command_mps, milliseconds(200));
+      }
+
+      const auto known = last_known(log, mission);
+      ASSERT_TRUE(known.has_value());
+      const Circle circle = circle_of_fallen(*known, at_s(1.2), mission, RobotId(0));
+
+      for (int look = 0; look < 30; ++look, now += milliseconds(50)) {
+        ASSERT_TRUE(covers(circle, body.measure(now).position_m, mission.robots.radius_m))
+            << model << ", flight " << i << ", look " << look;
+      }
+    }
+  }
+}
+
+TEST(CircleOfFallen, IsTheBodyWhereARobotIsAtRest) {
+  const Circle by_log = circle_of_fallen(
+      {.at = at_s(0.0), .position_m = {3, 4}, .command_mps = Vec2(0, 0), .speed_mps = 0.0},
+      at_s(0.1), mission_of("single_integrator"), RobotId(0));
+  const Circle by_status =
+      circle_of_fallen({.at = at_s(0.0), .position_m = {3, 4}, .at_rest = true}, at_s(0.9),
+                       mission_of("single_integrator"), RobotId(0));
+
+  for (const Circle& circle : {by_log, by_status}) {
+    EXPECT_EQ(circle.center_m, Vec2(3, 4));
+    EXPECT_EQ(circle.radius_m, 0.2);
+  }
+}
+
+TEST(CircleOfFallen, GrowsWithTheAgeOfAStatusAndNotForGood) {
+  const Mission mission = mission_of("single_integrator");
+  const LastKnown status{.at = at_s(0.0), .position_m = {3, 4}};
+  const auto radius_m = [&](double age_s) {
+    return circle_of_fallen(status, at_s(age_s), mission, RobotId(0)).radius_m;
+  };
+
+  EXPECT_NEAR(radius_m(0.5), 0.2 + 1.5 * (0.5 + 0.2), 1e-9);
+  EXPECT_NEAR(radius_m(30.0), 0.2 + 1.5 * (1.0 + 0.2), 1e-9) << "a period of its statuses";
+  EXPECT_NEAR(radius_m(-3.0), 0.2 + 1.5 * 0.2, 1e-9) << "a clock that is ahead of ours";
+}
+
+TEST(CircleOfFallen, DoesNotTrustAnOldCommand) {
+  const Circle circle =
+      circle_of_fallen({.at = at_s(0.0), .position_m = {3, 4}, .command_mps = Vec2(1.0, 0.0)},
+                       at_s(1.0), mission_of("single_integrator"), RobotId(0));
+
+  EXPECT_EQ(circle.center_m, Vec2(3, 4));
+  EXPECT_NEAR(circle.radius_m, 0.2 + 1.5 * 1.2, 1e-9);
+}
+
+}  // namespace
+}  // namespace swarm::launcher

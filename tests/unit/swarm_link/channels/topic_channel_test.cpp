@@ -1,0 +1,148 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include <array>
+#include <cmath>
+#include <map>
+
+#include <gtest/gtest.h>
+
+#include "swarmflow/core/random.hpp"
+#include "swarm_link/inproc/inproc_bus.hpp"
+#include "swarm_link/channels/state_channel.hpp"
+
+namespace swarm::link {
+namespace {
+
+constexpr CellOptions kOptions{
+    .cell_size_m = 10.0, .communication_radius_m = 4.0, .join_margin_m = 1.5, .leave_margin_m = 3.0};
+
+double distance_to_cell_m(const Vec2& p, const Cell& cell) {
+  const Vec2 low(cell.x * kOptions.cell_size_m, cell.y * kOptions.cell_size_m);
+  const Vec2 high = low + Vec2::Constant(kOptions.cell_size_m);
+  return (p.cwiseMax(low).cwiseMin(high) - p).norm();
+}
+
+// Endpoints on every cell of a 6 × 6 field, whose matches reveal what the channel has open.
+struct TopicChannelTest : testing::Test {
+  TopicChannelTest() {
+    for (int x = 0; x < 6; ++x) {
+      for (int y = 0; y < 6; ++y) {
+        writers[{x, y}] = probe->make_writer(cell_topic({x, y})).value();
+        readers[{x, y}] = probe->make_reader(cell_topic({x, y})).value();
+      }
+    }
+  }
+  bool listens_to(const Cell& cell) { return writers[cell]->matched() > 1; }  // 1: the own probe
+  bool publishes_in(const Cell& cell) { return readers[cell]->matched() > 1; }
+
+  InprocBus bus;
+  std::unique_ptr<Participant> probe = bus.make_participant();
+  std::unique_ptr<Participant> own = bus.make_participant();
+  std::unique_ptr<StateChannel> channel = make_topic_channel(*own, kOptions);
+  std::map<Cell, WriterPtr<CellStatesMessage>> writers;
+  std::map<Cell, ReaderPtr<CellStatesMessage>> readers;
+};
+
+TEST_F(TopicChannelTest, ListensToAllCellsItNeedsAndToNoneItDoesNot) {
+  Rng rng(1);
+  Vec2 p(30.0, 30.0);
+  int joined_between = 0;
+  for (int step = 0; step < 2'000; ++step) {
+    p += Vec2(uniform(rng, -1.0, 1.0), uniform(rng, -1.0, 1.0));
+    p = p.cwiseMax(1.0).cwiseMin(59.0);
+    channel->listen_around({&p, 1});
+
+    for (const auto& [cell, writer] : writers) {
+      const double d = distance_to_cell_m(p, cell);
+      if (d <= kOptions.communication_radius_m + kOptions.join_margin_m) {
+        EXPECT_TRUE(listens_to(cell));
+      } else if (d > kOptions.communication_radius_m + kOptions.leave_margin_m) {
+        EXPECT_FALSE(listens_to(cell));
+      } else {
+        joined_between += listens_to(cell) ? 1 : 0;  // hysteresis: either is right
+      }
+    }
+  }
+  EXPECT_GT(joined_between, 0);
+}
+
+TEST_F(TopicChannelTest, HasItsWritersBeforeTheRobotCrosses) {
+  for (double x = 25.0; x < 35.0; x += 0.1) {
+    const Vec2 p(x, 25.0);
+    channel->listen_around({&p, 1});
+    for (const auto& [cell, reader] : readers) {
+      if (distance_to_cell_m(p, cell) <= kOptions.join_margin_m) {
+        EXPECT_TRUE(publishes_in(cell));
+      }
+    }
+  }
+}
+
+TEST_F(TopicChannelTest, KeepsFewWritersOfLeftCells) {
+  for (double s = 0.0; s < 55.0; s += 0.5) {
+    const Vec2 p(1.0 + s, 1.0 + s);
+    const RobotStateMessage state{.x_m = p.x(), .y_m = p.y()};
+    channel->listen_around({&p, 1});
+    EXPECT_EQ(channel->publish({&state, 1}), 1U);
+
+    int open = 0;
+    for (const auto& [cell, reader] : readers) open += publishes_in(cell) ? 1 : 0;
+    EXPECT_LE(open, 8);
+    EXPECT_TRUE(publishes_in(cell_of(p, kOptions.cell_size_m)));
+  }
+}
+
+TEST_F(TopicChannelTest, PublishesInMoreCellsAtOnceThanItKeeps) {
+  std::vector<RobotStateMessage> states;
+  std::vector<Vec2> positions_m;
+  for (int i = 0; i < 36; ++i) {
+    positions_m.emplace_back(5.0 + 10.0 * (i % 6), 5.0 + 10.0 * (i / 6));
+    states.push_back({.robot_id = static_cast<std::uint32_t>(i),
+                      .x_m = positions_m.back().x(),
+                      .y_m = positions_m.back().y()});
+  }
+  for (int tick = 0; tick < 3; ++tick) {
+    channel->listen_around(positions_m);
+    EXPECT_EQ(channel->publish(states), 36U);
+  }
+  for (auto& [cell, reader] : readers) {
+    std::vector<CellStatesMessage> received;
+    EXPECT_EQ(reader->take(received), 3U);
+  }
+}
+
+TEST_F(TopicChannelTest, SplitsBatchesOverTheBoundAndLosesNone) {
+  std::vector<RobotStateMessage> states(700);
+  for (std::uint32_t i = 0; i < states.size(); ++i) {
+    states[i].robot_id = i;
+    states[i].x_m = i % 7 == 0 ? 15.0 : 5.0;
+    states[i].y_m = 5.0;
+  }
+
+  EXPECT_EQ(channel->publish(states), 700U);
+
+  std::array<int, 700> received_times{};
+  for (auto& [cell, reader] : readers) {
+    std::vector<CellStatesMessage> batches;
+    reader->take(batches);
+    for (const auto& batch : batches) {
+      EXPECT_EQ((Cell{batch.cell_x, batch.cell_y}), cell);
+      EXPECT_LE(batch.states.size(), kMaxCellStates);
+      for (const auto& state : batch.states) {
+        EXPECT_EQ(cell_of({state.x_m, state.y_m}, kOptions.cell_size_m), cell);
+        ++received_times[state.robot_id];
+      }
+    }
+  }
+  for (const int times : received_times) EXPECT_EQ(times, 1);
+}
+
+TEST_F(TopicChannelTest, LeavesEveryCellWithTheLastRobot) {
+  const Vec2 p(30.0, 30.0);
+  channel->listen_around({&p, 1});
+  channel->listen_around({});
+  for (const auto& [cell, writer] : writers) EXPECT_FALSE(listens_to(cell));
+}
+
+}  // namespace
+}  // namespace swarm::link

@@ -1,0 +1,80 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "swarm_sim/kills.hpp"
+
+#include <set>
+
+#include <gtest/gtest.h>
+
+namespace swarm::launcher {
+namespace {
+
+/// A row of robots, a metre apart.
+std::vector<Candidate> row(std::uint32_t robots) {
+  std::vector<Candidate> candidates;
+  for (std::uint32_t i = 0; i < robots; ++i) candidates.push_back({RobotId(i), {1.0 * i, 0.5}});
+  return candidates;
+}
+
+TEST(ParseKill, ReadsNumbersIdsAndBoxes) {
+  const auto number = parse_kill("10@60");
+  ASSERT_TRUE(number.has_value()) << number.error().message;
+  EXPECT_EQ(number->count, 10U);
+  EXPECT_EQ(number->at_s, 60.0);
+  EXPECT_FALSE(number->in_m.has_value());
+
+  const auto ids = parse_kill("ids:3,7@6.5");
+  ASSERT_TRUE(ids.has_value()) << ids.error().message;
+  EXPECT_EQ(ids->robots, std::vector({RobotId(3), RobotId(7)}));
+  EXPECT_EQ(ids->at_s, 6.5);
+
+  const auto boxed = parse_kill("2@60,in=-1:0:4.5:2");
+  ASSERT_TRUE(boxed.has_value()) << boxed.error().message;
+  EXPECT_EQ(boxed->in_m->min_m, Vec2(-1, 0));
+  EXPECT_EQ(boxed->in_m->max_m, Vec2(4.5, 2));
+}
+
+TEST(ParseKill, ReportsHowItIsWritten) {
+  for (const char* bad : {"", "10", "@60", "10@", "10@-1", "10@x", "10@nan", "0@60", "-3@60",
+                          "ids:@60", "ids:3,x@60", "ids:3@60,in=0:0:1:1", "10@60,in=0:0:1",
+                          "10@60,in=0:0:1:1:2", "10@60,in=2:0:1:1", "10@60,at=0:0:1:1", "1.5@60"}) {
+    const auto kill = parse_kill(bad);
+    ASSERT_FALSE(kill.has_value()) << bad;
+    EXPECT_NE(kill.error().message.find("10@60"), std::string::npos) << bad;
+  }
+}
+
+TEST(ChooseKilled, DrawsBySeedAndEachRobotAtMostOnce) {
+  const auto living = row(100);
+  const auto one = choose({.count = 10}, living, 1);
+  EXPECT_EQ(std::set(one.begin(), one.end()).size(), 10U);
+  EXPECT_TRUE(std::is_sorted(one.begin(), one.end()));
+  EXPECT_EQ(choose({.count = 10}, living, 1), one);
+  EXPECT_NE(choose({.count = 10}, living, 2), one);
+}
+
+TEST(ChooseKilled, DrawsEveryRobotAboutAsOften) {
+  std::vector<int> often(20);
+  for (std::uint64_t seed = 0; seed < 2000; ++seed) {
+    for (const RobotId robot : choose({.count = 5}, row(20), seed)) ++often[robot.value()];
+  }
+  // 500 each; five standard deviations of a binomial are 97.
+  for (const int times : often) EXPECT_NEAR(times, 500, 97);
+}
+
+TEST(ChooseKilled, LooksInsideTheBoxAlone) {
+  const Kill kill{.count = 3, .in_m = Box{{2.5, 0}, {7.5, 1}}};
+  for (const RobotId robot : choose(kill, row(20), 5)) {
+    EXPECT_GE(robot.value(), 3U);
+    EXPECT_LE(robot.value(), 7U);
+  }
+  EXPECT_EQ(choose(kill, row(5), 5), std::vector({RobotId(3), RobotId(4)})) << "there are but two";
+}
+
+TEST(ChooseKilled, TakesTheIdsThatStillLive) {
+  EXPECT_EQ(choose({.robots = {RobotId(4), RobotId(1), RobotId(30)}}, row(20), 5),
+            std::vector({RobotId(1), RobotId(4)}));
+}
+
+}  // namespace
+}  // namespace swarm::launcher
