@@ -72,7 +72,7 @@ int main(int argc, char** argv) {
     shell::add_common_options(app);
     const launcher::Act table = launcher::add_table(app);
     const launcher::Act soak = launcher::add_soak(app);
-    const auto done = shell::parse(app, argc, argv, launcher::builtin_catalogue());
+    const auto done = shell::parse(app, argc, argv, builtin_catalogue());
     if (!done) return tl::unexpected(done.error());
     if (*done) return **done;
     shell::catch_stop_signals();

@@ -7,7 +7,7 @@
 namespace swarm::agent {
 namespace {
 
-constexpr double kAtRest_mps = 0.01;
+constexpr double kSendsNothingBelow_mps = 0.01;
 constexpr double kOfGap = 0.2;          // an error of this share of the nearest gap matters
 constexpr double kLeastError_m = 0.01;  // and of less than this never
 
@@ -22,7 +22,7 @@ bool SendPolicy::must_send(const SendInput& input) const {
   // What is published now is used when it was received; until then they have the last state update.
   if (silent_s + std::max(period_s, input.link.late_s) > input.listeners.timeout_s) return true;
   const bool is_stopped =
-      input.velocity_mps == last_->velocity_mps && input.velocity_mps.norm() < kAtRest_mps;
+      input.velocity_mps == last_->velocity_mps && input.velocity_mps.norm() < kSendsNothingBelow_mps;
   if (input.link.poor && input.listeners.nearest_gap_m < options_->near_m && !is_stopped) return true;
   // Whoever turns only now will be where nobody expects it before it can speak again.
   const Vec2 off_m = last_->position_m + silent_s * last_->velocity_mps - input.position_m;

@@ -31,8 +31,7 @@ void add_options(CLI::App& app, const std::shared_ptr<CommandLine>& line) {
       ->check(CLI::Range(1, kMostSimulated));
   app.add_option("--seed", o->seed, "Seed of placement, plan, robots, faults");
   app.add_option("--fault", line->fault, "A bad network, as for run")->type_name("FAULT");
-  app
-      ->add_option("--kill", line->kills,
+  app.add_option("--kill", line->kills,
                    "Robots die and their bodies stay: N@SECONDS drawn by the seed,\n"
                    "N@SECONDS,in=X0:Y0:X1:Y1 of those in a box, or ids:A,B@SECONDS; repeatable")
       ->allow_extra_args(false)
@@ -71,7 +70,7 @@ int main(int argc, char** argv) {
     shell::add_common_options(app);
     const auto line = std::make_shared<launcher::CommandLine>();
     launcher::add_options(app, line);
-    const auto done = shell::parse(app, argc, argv, launcher::builtin_catalogue());
+    const auto done = shell::parse(app, argc, argv, builtin_catalogue());
     if (!done) return tl::unexpected(done.error());
     if (*done) return **done;
     shell::catch_stop_signals();

@@ -74,8 +74,8 @@ double risk_share(const monitor::RecordedRun& run) {
 std::vector<double> energy_m2(const monitor::RecordedRun& run) {
   const ControlSpec& control = run.mission.control;
   const auto keys = agent::intermittent_diffusion_keys().read(control.options);
-  const agent::CotangentOptions repulsion{keys.strength_m2,
-                                          keys.range_or_default_m(run.mission.robots.radius_m)};
+  const double range_m = keys.range_or_default_m(run.mission.robots.radius_m);
+  const agent::CotangentOptions repulsion{keys.strength_m2, range_m};
   const double points_hz = control.rate_hz / static_cast<double>(periods_a_point(run.mission));
   const auto every = static_cast<std::size_t>(std::max(1.0, Flown::kEnergyEvery_s * points_hz));
   std::vector<double> energy;

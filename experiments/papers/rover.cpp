@@ -79,14 +79,14 @@ Result<void> rover_experiment(Rows& rows) {
   for (std::size_t i = 0; i < kPublished.size(); ++i) {
     auto mission = rows.load(fmt::format("rover_scenario{}_standin", i + 1));
     if (!mission) return tl::unexpected(mission.error());
-    if (rows.quick()) mission->planner.replan_period_s = kQuickPeriod_s;
+    if (rows.quick()) mission->planner.options.set("replan_period_s", kQuickPeriod_s);
     mission->robots.count = robots;
     const std::string name = fmt::format("scenario {}", i + 1);
     if (auto added = rows.add(name, kPublished[i], *mission, seeds); !added) return added;
   }
   auto mission = rows.load("rover_scenario2_standin");
   if (!mission) return tl::unexpected(mission.error());
-  if (rows.quick()) mission->planner.replan_period_s = kQuickPeriod_s;
+  if (rows.quick()) mission->planner.options.set("replan_period_s", kQuickPeriod_s);
   mission->robots.count = robots;
   // α = 0.05 is scenario 2 as it is: the same flights, which the row above holds.
   constexpr std::size_t kScenario2 = 1;

@@ -95,7 +95,7 @@ Result<void> Rows::add_in_turns(const std::vector<Named>& named, std::span<const
   for (std::size_t i = 0; i < missions.size(); ++i) {
     title =
         fmt::format("{}: {} robots, {} seed(s)", named[i].name, missions[i].robots.count, seeds);
-    if (i + 1 < missions.size()) progress.add_line(title);
+    if (i + 1 < missions.size()) progress.print(title);
   }
   progress.show(title, "");
   std::size_t count = 0;

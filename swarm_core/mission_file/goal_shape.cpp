@@ -17,7 +17,7 @@ namespace swarm {
 namespace {
 
 using mission_fields::between;
-using mission_fields::kMaxExtent_m;
+using mission_fields::kCoordinate_m;
 using yaml::MapReader;
 using yaml::Node;
 
@@ -26,7 +26,6 @@ constexpr std::uint64_t kFitSeed = 20240216;
 // The fit's time grows with both.
 constexpr std::size_t kMaxShapeVertices = 1'000;
 constexpr double kMaxChosenComponents = 64;
-constexpr yaml::Range kCoordinate_m = between(-kMaxExtent_m, kMaxExtent_m);
 
 std::optional<Polygon> read_vertices(const Node& node, const std::string& path,
                                      yaml::Violations& violations) {

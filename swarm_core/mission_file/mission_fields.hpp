@@ -30,6 +30,7 @@ using swarm::positive;
 
 /// Coordinates and sizes: beyond this it is no place robots of this size drive in.
 inline constexpr double kMaxExtent_m = 1e6;
+inline constexpr yaml::Range kCoordinate_m = between(-kMaxExtent_m, kMaxExtent_m);
 inline constexpr double kMaxRobots = 200'000;
 inline constexpr std::size_t kMaxRobotGroups = 64;
 inline constexpr std::size_t kMaxComponents = 255;  ///< a robot log names goals by one byte

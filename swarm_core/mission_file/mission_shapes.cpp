@@ -18,8 +18,7 @@ using yaml::Range;
 
 namespace {
 
-constexpr Range kCoordinate_m =
-    mission_fields::between(-mission_fields::kMaxExtent_m, mission_fields::kMaxExtent_m);
+using mission_fields::kCoordinate_m;
 constexpr Range kVariance_m2 = mission_fields::between(-1e12, 1e12);
 constexpr Range kWeight = mission_fields::positive(1);
 

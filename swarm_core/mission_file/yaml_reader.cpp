@@ -17,6 +17,10 @@ namespace {
 /// Enough to repair a file by; a hostile one must not fill the terminal.
 constexpr std::size_t kMaxReported = 1000;
 
+/// A key of missions of version 0.1 whose name the nearest spelling would not lead to.
+constexpr std::string_view kFormerKey = "hear_radius_m";
+constexpr std::string_view kRenamedKey = "communication_radius_m";
+
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), 0);
@@ -113,7 +117,10 @@ std::vector<std::pair<std::string, const Node*>> MapReader::take_scalars() {
 
 void MapReader::finish() {
   for (const auto& [key, entry] : entries_) {
-    const std::optional<std::string> nearest = nearest_word(key, known_);
+    const bool was_renamed =
+        key == kFormerKey && std::find(known_.begin(), known_.end(), kRenamedKey) != known_.end();
+    const std::optional<std::string> nearest =
+        was_renamed ? std::string(kRenamedKey) : nearest_word(key, known_);
     violations_.add(entry->at,
                     nearest ? fmt::format("unknown key {}; did you mean {}?",
                                           path_of(key.substr(0, 80)), path_of(*nearest))

@@ -3,7 +3,8 @@
 #include <memory>
 
 #include "swarm_launcher/cli/commands.hpp"
-#include "swarm_launcher/commands/gateway.hpp"
+#include "swarm_launcher/cli/shared_options.hpp"
+#include "swarm_launcher/flight/gateway.hpp"
 #include "swarm_launcher/hosts/join_host.hpp"
 
 namespace swarm::launcher::cli {

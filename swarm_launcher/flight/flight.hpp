@@ -22,7 +22,7 @@
 #include "swarm_launcher/supervision/event_log.hpp"
 #include "swarm_launcher/supervision/fallen_body.hpp"
 #include "swarm_launcher/flight/flight_choices.hpp"
-#include "swarm_launcher/commands/gateway.hpp"
+#include "swarm_launcher/flight/gateway.hpp"
 #include "swarm_launcher/flight/health_inbox.hpp"
 #include "swarm_launcher/hosts/remote_hosts.hpp"
 #include "swarm_launcher/flight/monitors.hpp"

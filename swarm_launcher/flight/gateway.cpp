@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-#include "swarm_launcher/commands/gateway.hpp"
+#include "swarm_launcher/flight/gateway.hpp"
 
 #include <csignal>
 #include <cstdio>
