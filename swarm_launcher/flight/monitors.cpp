@@ -16,7 +16,7 @@ namespace swarm::launcher {
 namespace {
 
 constexpr Duration kMonitorStep = std::chrono::milliseconds(20);
-constexpr Duration kTimeout = std::chrono::seconds(5);
+constexpr Duration kMonitorTimeout = std::chrono::seconds(5);
 constexpr std::size_t kMaxLogBytes = 1U << 20U;
 
 }  // namespace
@@ -61,7 +61,7 @@ std::optional<std::string> Monitors::on_exit(pid_t pid) {
 
 void Monitors::finish() {
   for (const auto& [pid, what] : running_) ::kill(pid, SIGINT);
-  const auto until = std::chrono::steady_clock::now() + kTimeout;
+  const auto until = std::chrono::steady_clock::now() + kMonitorTimeout;
   while (!running_.empty() && std::chrono::steady_clock::now() < until) {
     std::erase_if(running_, [](const auto& child) {
       int status = 0;

@@ -27,7 +27,7 @@ SendInput state(int ms, const Vec2& position_m, const Vec2& velocity_mps) {
 TEST(SendPolicy, SendsNothingWhileTheExtrapolationHolds) {
   SendPolicy sut(options());
   EXPECT_TRUE(sut.must_send(state(0, {0, 0}, {1, 0})));
-  sut.sent(state(0, {0, 0}, {1, 0}));
+  sut.record_sent(state(0, {0, 0}, {1, 0}));
 
   EXPECT_FALSE(sut.must_send(state(400, {0.4, 0.04}, {1, 0})));
   EXPECT_TRUE(sut.must_send(state(400, {0.4, 0.06}, {1, 0})));
@@ -35,7 +35,7 @@ TEST(SendPolicy, SendsNothingWhileTheExtrapolationHolds) {
 
 TEST(SendPolicy, SendsBeforeATurnInvalidatesTheExtrapolation) {
   SendPolicy sut(options());
-  sut.sent(state(0, {0, 0}, {1, 0}));
+  sut.record_sent(state(0, {0, 0}, {1, 0}));
 
   EXPECT_FALSE(sut.must_send(state(100, {0.1, 0}, {1, 0.4})));  // 4 cm until it can speak again
   EXPECT_TRUE(sut.must_send(state(100, {0.1, 0}, {1, 0.6})));
@@ -43,7 +43,7 @@ TEST(SendPolicy, SendsBeforeATurnInvalidatesTheExtrapolation) {
 
 TEST(SendPolicy, IsMoreExactWhereItAlmostTouches) {
   SendPolicy sut(options());
-  sut.sent(state(0, {0, 0}, {0, 0}));
+  sut.record_sent(state(0, {0, 0}, {0, 0}));
   SendInput moved = state(100, {0.03, 0}, {0, 0});
 
   EXPECT_FALSE(sut.must_send(moved));
@@ -56,7 +56,7 @@ TEST(SendPolicy, IsMoreExactWhereItAlmostTouches) {
 
 TEST(SendPolicy, SendsAtLeastOncePerInterval) {
   SendPolicy sut(options());
-  sut.sent(state(0, {0, 0}, {0, 0}));
+  sut.record_sent(state(0, {0, 0}, {0, 0}));
 
   EXPECT_FALSE(sut.must_send(state(499, {0, 0}, {0, 0})));
   EXPECT_TRUE(sut.must_send(state(500, {0, 0}, {0, 0})));
@@ -64,7 +64,7 @@ TEST(SendPolicy, SendsAtLeastOncePerInterval) {
 
 TEST(SendPolicy, SendsBeforeFollowersTimeOut) {
   SendPolicy sut(options());
-  sut.sent(state(0, {0, 0}, {1, 0}));
+  sut.record_sent(state(0, {0, 0}, {1, 0}));
   SendInput followed = state(200, {0.2, 0}, {1, 0});
 
   followed.listeners.timeout_s = 0.31;  // what is published at the next tick comes in time
@@ -78,7 +78,7 @@ TEST(SendPolicy, SendsBeforeFollowersTimeOut) {
 
 TEST(SendPolicy, SendsAtEveryTickNearOthersOnADegradedLinkUnlessStopped) {
   SendPolicy sut(options());
-  sut.sent(state(0, {0, 0}, {0.5, 0}));
+  sut.record_sent(state(0, {0, 0}, {0.5, 0}));
   SendInput near = state(100, {0.05, 0}, {0.5, 0});
   near.listeners.nearest_gap_m = 0.99;
 
@@ -86,7 +86,7 @@ TEST(SendPolicy, SendsAtEveryTickNearOthersOnADegradedLinkUnlessStopped) {
   near.link.poor = true;
   EXPECT_TRUE(sut.must_send(near));
 
-  sut.sent(state(200, {0, 0}, {0, 0}));
+  sut.record_sent(state(200, {0, 0}, {0, 0}));
   SendInput is_stopped = state(300, {0, 0}, {0, 0});
   is_stopped.listeners.nearest_gap_m = 0.99;
   is_stopped.link.poor = true;
