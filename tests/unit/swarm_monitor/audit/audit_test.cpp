@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "swarm_core/robot_log/robot_log_file.hpp"
-#include "synthetic_run.hpp"
+#include "tests/unit/swarm_monitor/synthetic_run.hpp"
 
 namespace swarm::monitor {
 namespace {

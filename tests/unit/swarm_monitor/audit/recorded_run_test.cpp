@@ -7,7 +7,7 @@
 #include "swarm_core/plan/plan_json.hpp"
 #include "swarm_core/plan/planning_record.hpp"
 #include "swarm_monitor/audit/tracking/density_course.hpp"
-#include "synthetic_run.hpp"
+#include "tests/unit/swarm_monitor/synthetic_run.hpp"
 
 namespace swarm::monitor {
 namespace {

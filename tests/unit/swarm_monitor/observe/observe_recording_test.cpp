@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "swarmflow/observe/observer.hpp"
-#include "synthetic_run.hpp"
+#include "tests/unit/swarm_monitor/synthetic_run.hpp"
 
 namespace swarm::monitor {
 namespace {

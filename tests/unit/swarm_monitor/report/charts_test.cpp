@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "well_formed.hpp"
+#include "tests/unit/swarm_monitor/well_formed.hpp"
 
 namespace swarm::monitor {
 namespace {

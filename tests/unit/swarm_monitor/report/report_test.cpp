@@ -7,8 +7,8 @@
 
 #include <gtest/gtest.h>
 
-#include "synthetic_run.hpp"
-#include "well_formed.hpp"
+#include "tests/unit/swarm_monitor/synthetic_run.hpp"
+#include "tests/unit/swarm_monitor/well_formed.hpp"
 
 namespace swarm::monitor {
 namespace {

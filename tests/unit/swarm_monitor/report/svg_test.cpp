@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "swarmflow/core/random.hpp"
-#include "well_formed.hpp"
+#include "tests/unit/swarm_monitor/well_formed.hpp"
 
 namespace swarm::monitor {
 namespace {

@@ -8,8 +8,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "fake_view_source.hpp"
-#include "frame_mutator.hpp"
+#include "tests/unit/swarm_monitor/fake_view_source.hpp"
+#include "tests/unit/swarm_monitor/frame_mutator.hpp"
 
 namespace swarm::monitor {
 namespace {

@@ -7,9 +7,9 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "fake_view_source.hpp"
+#include "tests/unit/swarm_monitor/fake_view_source.hpp"
 #include "swarm_monitor/view/origin_check.hpp"
-#include "view_client.hpp"
+#include "tests/unit/swarm_monitor/view_client.hpp"
 
 namespace swarm::monitor {
 namespace {

@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include "../well_formed.hpp"
-#include "planned_run.hpp"
+#include "tests/unit/swarm_monitor/well_formed.hpp"
+#include "tests/unit/swarm_monitor/tracking/planned_run.hpp"
 #include "swarm_monitor/report/report.hpp"
 #include "swarm_monitor/audit/tracking/tracking_json.hpp"
 
