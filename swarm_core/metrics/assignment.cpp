@@ -19,6 +19,7 @@
 namespace swarm {
 namespace {
 
+/// Costs are rounded to 1e-6 and bounded by 1e9: sums of 1e15 units per pair fit 64-bit integers.
 constexpr double kUnitsPerCost = 1e6;
 constexpr double kMaxCost = 1e9;
 
@@ -104,6 +105,8 @@ class Assignment {
           at_second = j;
         }
       }
+      // With a strict gap the row keeps its first choice even if another row owned that column;
+      // with a tie it avoids the owned column, or two rows would displace each other for ever.
       const bool outbids = first < second;
       std::size_t j = at_first;
       potential_[j] -= second - first;
@@ -123,6 +126,8 @@ class Assignment {
     from_.assign(n_, free_row);
     open_.resize(n_);
     std::iota(open_.begin(), open_.end(), 0);
+    // Distances are reduced costs c(i, j) − v(j) along the path; `from_` stores the row before a
+    // column.
     std::size_t nearest = 0;  // index into open_
     for (std::size_t j = 0; j < n_; ++j) {
       distance_[j] = row(free_row)[j] - potential_[j];
@@ -135,6 +140,9 @@ class Assignment {
       open_.pop_back();
       closed_.push_back(j);
       const std::size_t i = row_of_[j];
+      // Reaches the open columns through the row that owns column j. `offset` turns its reduced
+      // costs into distances from the free row. Among equal distances a free column is preferred:
+      // it ends the search.
       const std::int64_t offset = row(i)[j] - potential_[j] - distance_[j];
       std::int64_t least = kFar;
       for (std::size_t o = 0; o < open_.size(); ++o) {
@@ -152,7 +160,9 @@ class Assignment {
     }
     const std::size_t end = open_[nearest];
     const std::int64_t reached = distance_[end];
+    // The update of the potentials keeps every assigned pair a cheapest one of its row.
     for (const std::size_t j : closed_) potential_[j] += distance_[j] - reached;
+    // Walks back to the free row; every row on the path moves to the column after it.
     for (std::size_t j = end;;) {
       const std::size_t i = from_[j];
       const std::size_t next = column_of_[i];
@@ -172,6 +182,8 @@ class Assignment {
 
 }  // namespace
 
+/// The transport as a minimum-cost flow on the complete bipartite graph. Integer costs make the
+/// network simplex exact; arcs are added row by row, so the id of an arc is its index in `costs`.
 double transport_cost(std::span<const double> costs, std::span<const std::int64_t> supplies,
                       std::span<const std::int64_t> demands) {
   SWARM_ASSERT(costs.size() == supplies.size() * demands.size());

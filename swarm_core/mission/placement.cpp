@@ -48,6 +48,8 @@ class PlacedRobots {
     return {static_cast<std::int64_t>(std::floor(p.x() / cell_m_)),
             static_cast<std::int64_t>(std::floor(p.y() / cell_m_))};
   }
+  // A hash of both indices. Cells that collide share a bucket, which costs distance checks and
+  // changes no result.
   static std::uint64_t key(std::int64_t x, std::int64_t y) {
     return mix_seed(static_cast<std::uint64_t>(x), static_cast<std::uint64_t>(y));
   }
@@ -56,6 +58,8 @@ class PlacedRobots {
   std::unordered_map<std::uint64_t, std::vector<Vec2>> cells_;
 };
 
+/// Rejection sampling, robot after robot (random sequential addition). Each robot has its own
+/// generator, so its samples do not depend on how many tries the robots before it needed.
 Result<std::vector<Vec2>> place_once(const Mission& mission, std::uint64_t seed) {
   const RobotsSpec& spec = mission.robots;
   const double radius_m = largest_radius_m(spec);
@@ -63,6 +67,8 @@ Result<std::vector<Vec2>> place_once(const Mission& mission, std::uint64_t seed)
   const Vec2 wall_m = Vec2::Constant(radius_m + mission.safety.obstacle_margin_m);
   const Box free_m{mission.world.bounds_m().min_m + wall_m,
                    mission.world.bounds_m().max_m - wall_m};
+  // All robots keep the distances of the largest one: a robot's position then does not depend on
+  // its group.
   const double obstacle_clearance_m = radius_m + spec.placement_gap_m;
   PlacedRobots placed(2.0 * radius_m + spec.placement_gap_m);
   std::vector<Vec2> positions;
@@ -104,6 +110,8 @@ double stratified_share(std::uint32_t robot, std::uint32_t robots) {
   return (static_cast<double>(robot) + 0.5) / static_cast<double>(robots);
 }
 
+/// The first attempt uses the seed itself; later ones use seeds derived from it, so the result
+/// stays a function of mission and seed.
 Result<std::vector<Vec2>> place_robots(const Mission& mission, std::uint64_t seed) {
   Result<std::vector<Vec2>> placed = place_once(mission, seed);
   for (std::uint64_t again = 1; again < kAttempts && !placed; ++again) {

@@ -28,6 +28,7 @@ constexpr std::size_t kMaxShapeVertices = 1'000;
 constexpr double kMaxChosenComponents = 64;
 constexpr yaml::Range kCoordinate_m = between(-kMaxExtent_m, kMaxExtent_m);
 
+// Reads all points before it gives up, so that every wrong one is reported.
 std::optional<Polygon> read_vertices(const Node& node, const std::string& path,
                                      yaml::Violations& violations) {
   const auto* items = yaml::read_list(node, path, 3, kMaxShapeVertices, violations);
@@ -45,11 +46,13 @@ std::optional<Polygon> read_vertices(const Node& node, const std::string& path,
   return std::nullopt;
 }
 
+// Reads one drawn goal: its outline or picture, how to fit it, then fits the mixture.
 class GoalShapeReader {
  public:
   GoalShapeReader(std::filesystem::path directory, yaml::Violations& violations)
       : directory_(std::move(directory)), violations_(violations) {}
 
+  // All keys are read before the first return: a file with several mistakes is reported in full.
   std::optional<DrawnGoal> read(const Node& node, const std::string& path) {
     MapReader keys(node, path, violations_);
     const Node* polygon = keys.take("polygon_m");
@@ -72,6 +75,8 @@ class GoalShapeReader {
   }
 
  private:
+  // The number of components that the user sets may be larger than the one that the BIC may choose,
+  // because the search fits every number up to its bound.
   std::optional<FitOptions> read_options(MapReader& keys) {
     FitOptions options;
     bool good = true;
@@ -104,6 +109,7 @@ class GoalShapeReader {
     return patches;
   }
 
+  // A drawing that cannot become a field leaves `shape_` null: the mixture alone is still a goal.
   void keep_shape(std::vector<Polygon> polygons, std::vector<Box> boxes_m) {
     auto shape = ShapeField::make(std::move(polygons), std::move(boxes_m));
     if (shape) shape_ = std::make_shared<const ShapeField>(*std::move(shape));
@@ -134,6 +140,7 @@ class GoalShapeReader {
     return std::nullopt;
   }
 
+  // Where the picture lies in the world; `dark` selects which pixels are the shape.
   std::optional<ImageFrame> read_frame(MapReader& keys) {
     ImageFrame frame;
     const Node* origin_node = keys.take("origin_m", true);
@@ -174,6 +181,7 @@ std::optional<DrawnGoal> read_goal_shape(const Node& node, const std::string& pa
   return GoalShapeReader(directory, violations).read(node, path);
 }
 
+// The inverse of the writer in mission_yaml.cpp.
 std::shared_ptr<const ShapeField> read_shape_field(const Node& node, const std::string& path,
                                                    yaml::Violations& violations) {
   MapReader keys(node, path, violations);

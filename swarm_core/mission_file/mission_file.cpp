@@ -38,6 +38,8 @@ class MissionReader {
                 yaml::Violations& violations)
       : violations_(violations), shapes_(violations, directory), sections_(catalogue, violations) {}
 
+  // The order matters: robots come before the mixtures, whose means must clear obstacles by a
+  // robot's radius, and the world comes before mixtures and script. Rules between keys come last.
   Mission read(const Node& root) {
     MapReader top(root, "", violations_);
     read_version(top);
@@ -66,6 +68,7 @@ class MissionReader {
   }
 
  private:
+  // Version 1 is the only one.
   void read_version(MapReader& top) {
     const Node* node = top.take("version", true);
     if (node == nullptr) return;
@@ -90,6 +93,8 @@ class MissionReader {
     sections_.read(top.take(name), name, section, fields);
   }
 
+  // Without a valid world the checks of positions against it are skipped instead of failing at
+  // every mean.
   void read_world(const Node& node) {
     MapReader keys(node, "world", violations_);
     std::optional<Box> bounds;
@@ -134,6 +139,7 @@ class MissionReader {
     mission_.goal_shape = read_shape_field(node, "goal_shape", violations_);
   }
 
+  // An empty mixture stands for a violation, which is reported; the mission is then not returned.
   Mixture read_mixture(MapReader& top, const std::string& key,
                        std::shared_ptr<const ShapeField>* drawing = nullptr) {
     const Node* node = top.take(key, true);
@@ -155,6 +161,8 @@ class MissionReader {
 
 }  // namespace
 
+/// Syntax errors end the reading at once, as the tree behind them is unknown; all other violations
+/// are collected and returned together, in order of the file.
 Result<Mission> parse_mission(std::string_view text, const std::string& name,
                               const std::filesystem::path& directory, const Catalogue& catalogue) {
   if (text.size() > kMaxMissionBytes) {

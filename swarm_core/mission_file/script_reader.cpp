@@ -18,6 +18,8 @@ using yaml::MapReader;
 using yaml::Node;
 using yaml::Position;
 
+// Reads events in order and applies their changes to a scene, which shows whether each of them is
+// possible at its time.
 class ScriptReader {
  public:
   ScriptReader(const ScriptContext& context, ShapeReader& shapes, yaml::Violations& violations)
@@ -45,6 +47,8 @@ class ScriptReader {
   }
 
  private:
+  // The previous time is kept even if it is out of order, so that one misplaced event gives one
+  // message.
   std::optional<double> read_time(MapReader& keys) {
     const Node* node = keys.take("at_s", true);
     if (node == nullptr) return std::nullopt;
@@ -58,6 +62,7 @@ class ScriptReader {
     return at_s;
   }
 
+  // A command has no keys but its name; every other action is a change of the scene.
   std::optional<MissionAction> read_action(const std::string& name, MapReader& keys,
                                            const std::string& path, Position at) {
     for (const CommandKind kind : {CommandKind::kPause, CommandKind::kResume, CommandKind::kStop}) {

@@ -17,6 +17,7 @@ namespace {
 /// Enough to repair a file by; a hostile one must not fill the terminal.
 constexpr std::size_t kMaxReported = 1000;
 
+/// Levenshtein distance with one row of the dynamic programme; O(|a| · |b|).
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), 0);
@@ -52,6 +53,7 @@ void Violations::add(Position at, std::string what_and_what_instead) {
   all_.emplace_back(at, std::move(what_and_what_instead));
 }
 
+/// Sorted by position, since sections are read in an order of their own.
 Error Violations::to_error(const std::string& file) const {
   std::vector<std::pair<Position, std::string>> sorted = all_;
   std::stable_sort(sorted.begin(), sorted.end(),
@@ -66,6 +68,7 @@ Error Violations::to_error(const std::string& file) const {
   return {ErrorCode::kBadInput, std::move(message)};
 }
 
+/// Of a key given twice the first value counts, and the second is the violation.
 MapReader::MapReader(const Node& node, std::string path, Violations& violations)
     : path_(std::move(path)), at_(node.at), violations_(violations) {
   is_map_ = node.kind == Node::Kind::kMap;
@@ -86,6 +89,8 @@ std::string MapReader::path_of(std::string_view key) const {
   return path_.empty() ? std::string(key) : fmt::format("{}.{}", path_, key);
 }
 
+/// A taken key is removed, so that finish() finds the unknown ones. Every key asked for is
+/// remembered for "did you mean".
 const Node* MapReader::take(std::string_view key, bool required) {
   known_.emplace_back(key);
   const auto it = entries_.find(key);
@@ -111,6 +116,7 @@ std::vector<std::pair<std::string, const Node*>> MapReader::take_scalars() {
   return scalars;
 }
 
+/// A key that is far from every known one gets the list of known keys instead of a suggestion.
 void MapReader::finish() {
   for (const auto& [key, entry] : entries_) {
     const std::optional<std::string> nearest = nearest_word(key, known_);
@@ -123,6 +129,7 @@ void MapReader::finish() {
   entries_.clear();
 }
 
+/// Strict: no quotes, no hexadecimal, no units, no trailing characters, nothing that is not finite.
 std::optional<double> read_number(const Node& node, const std::string& path, const Range& range,
                                   Violations& violations) {
   const auto refuse = [&](std::string_view what) {
@@ -175,6 +182,7 @@ std::optional<std::string> read_choice(const Node& node, const std::string& path
   return std::nullopt;
 }
 
+/// Every wrong number of the list is reported, with its index in the path.
 std::optional<std::vector<double>> read_numbers(const Node& node, const std::string& path,
                                                 std::size_t size, const Range& range,
                                                 Violations& violations) {

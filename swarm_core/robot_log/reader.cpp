@@ -16,6 +16,7 @@
 namespace swarm::mcap {
 namespace {
 
+/// Opcode (1 byte) and length (8 bytes).
 constexpr std::size_t kRecordHead = 9;
 /// Beyond this a chunk is not unpacked: a few damaged bytes must not exhaust memory.
 constexpr std::uint64_t kMaxChunkBytes = 1ULL << 30U;
@@ -65,6 +66,7 @@ class Get {
   bool good_ = true;
 };
 
+/// A record inside the mapped file; `content` refers to its bytes.
 struct Record {
   Op op = Op::kHeader;
   View content{};
@@ -77,6 +79,8 @@ struct Front {
   bool cut = false;  // plausible, but its end is not there
 };
 
+/// Opcode 0 is invalid in MCAP. A length beyond the end of the bytes is taken for a truncated file
+/// only if opcode and length are plausible, else for damage.
 Front front_of(View bytes) {
   if (bytes.size() < kRecordHead) return {.cut = true};
   Get get(bytes);
@@ -89,6 +93,8 @@ Front front_of(View bytes) {
                            .size = kRecordHead + length}};
 }
 
+/// One pass over the records of a file. After a damaged record it searches for the next chunk with
+/// a correct checksum.
 class FileReader {
  public:
   explicit FileReader(const Handlers& handlers) : handlers_(handlers) {}
@@ -116,6 +122,8 @@ class FileReader {
           std::memchr(rest.data() + 1, static_cast<int>(Op::kChunk), rest.size() - 1));
       rest = next == nullptr ? View() : rest.subspan(static_cast<std::size_t>(next - rest.data()));
     }
+    // A truncated last record is reported as such and not as damage; if whole records followed
+    // after all, it was damage.
     if (damage_.truncated && in_damage) --damage_.damaged;
     if (!in_damage) damage_.truncated = false;
     return damage_;
@@ -155,6 +163,8 @@ class FileReader {
     }
   }
 
+  // Schemas and channels may be repeated, for example after the writer was restarted; the last one
+  // counts.
   bool take_schema(View content) {
     Get get(content);
     Schema schema;
@@ -178,6 +188,7 @@ class FileReader {
     return get.good();
   }
 
+  // A message of an unknown channel cannot be decoded and counts as damage.
   bool take_message(View content) {
     Get get(content);
     Message message;
@@ -194,6 +205,8 @@ class FileReader {
     return true;
   }
 
+  // Checks everything about a chunk before the first of its messages is handed over: handlers never
+  // receive messages from a damaged chunk.
   bool take_chunk(View content) {
     Get get(content);
     const auto begin_ns = get.number<std::int64_t>();
@@ -256,6 +269,7 @@ class FileReader {
     attachment.name = get.text();
     attachment.media_type = get.text();
     const View data = get.long_bytes();
+    // The checksum covers the record's content up to itself.
     const View signed_part = content.first(content.size() - get.rest().size());
     const auto crc = get.number<std::uint32_t>();
     if (!get.good() || (crc != 0 && crc_of(signed_part) != crc)) return false;
@@ -282,6 +296,7 @@ class FileReader {
 
 }  // namespace
 
+/// An empty file is what a writer leaves that was killed before its first write.
 Result<Damage> read(const std::filesystem::path& file, const Handlers& handlers) {
   const auto mapped = MappedFile::open(file);
   if (!mapped) return tl::unexpected(mapped.error());

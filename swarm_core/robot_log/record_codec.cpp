@@ -68,6 +68,7 @@ class Decoder {
     }
     return value;
   }
+  // Numbers that are not finite are refused: no record has any.
   double get_double() {
     const double value = std::bit_cast<double>(get<std::uint64_t>());
     good_ = good_ && std::isfinite(value);
@@ -83,6 +84,7 @@ class Decoder {
     return {x, get_double()};
   }
   UtcTime get_time() { return UtcTime(Duration(static_cast<std::int64_t>(get<std::uint64_t>()))); }
+  // CDR counts the terminating 0 in the length of a string.
   std::string get_text() {
     const auto bytes = take(get<std::uint32_t>());
     good_ = good_ && !bytes.empty() && bytes.back() == 0 && bytes.size() <= kMaxNoteText + 1;
@@ -108,6 +110,7 @@ class Decoder {
   bool good_ = true;
 };
 
+/// The fields in the order of idl/blackbox.idl, as in all functions put() and get() below.
 void put(Encoder& out, RobotId robot, const Header& header) {
   out.put(header.stamp);
   out.put(robot.value());
@@ -138,6 +141,7 @@ void put(Encoder& out, RobotId robot, const Estimate& estimate) {
   out.put(estimate.position_m);
 }
 
+/// Histograms are mostly empty, so only the bins with samples are written, each with its index.
 void put(Encoder& out, RobotId robot, const LinkStats& stats) {
   out.put(stats.stamp);
   out.put(robot.value());
@@ -199,6 +203,8 @@ RobotId get(Decoder& in, Estimate& estimate) {
   return robot;
 }
 
+/// Counts come from a file and are checked before they are used: a loop ends at the first missing
+/// value.
 RobotId get(Decoder& in, LinkStats& stats) {
   stats.stamp = in.get_time();
   const RobotId robot(in.get<std::uint32_t>());
@@ -231,6 +237,7 @@ RobotId get(Decoder& in, Note& note) {
   return robot;
 }
 
+/// Returned by value and only when the whole message was valid.
 template <class R>
 std::optional<RobotRecord> decode_as(std::span<const unsigned char> message) {
   Decoder in(message);
@@ -242,6 +249,8 @@ std::optional<RobotRecord> decode_as(std::span<const unsigned char> message) {
 
 }  // namespace
 
+/// In the order of the alternatives of Record: the index is also the channel's number in robot
+/// logs.
 const std::array<Kind, std::variant_size_v<Record>>& kinds() {
   static const std::array<Kind, std::variant_size_v<Record>> kKinds = {
       {{"blackbox/header", "swarm::blackbox::Header", {"Header"}},
@@ -252,6 +261,7 @@ const std::array<Kind, std::variant_size_v<Record>>& kinds() {
   return kKinds;
 }
 
+/// The robot's id is a parameter because most records of a log do not hold it.
 void encode(RobotId robot, const Record& record, std::vector<unsigned char>& out) {
   Encoder encoder(out);
   std::visit([&](const auto& r) { put(encoder, robot, r); }, record);

@@ -58,6 +58,7 @@ bool remove_end(int fd) {
   return ::ftruncate(fd, begin) == 0;
 }
 
+/// By topic and not by channel number, which differs in recordings of several robots.
 std::optional<std::size_t> kind_of(const std::string& topic) {
   for (std::size_t i = 0; i < kinds().size(); ++i) {
     if (kinds()[i].topic == topic) return i;
@@ -73,6 +74,7 @@ std::filesystem::path file_of(const std::filesystem::path& run_dir, RobotId robo
 
 RecordEncoder::RecordEncoder() = default;
 
+/// The header comes first and gives the id that the records after it are encoded with.
 void RecordEncoder::add(const Record& record) {
   if (const auto* header = std::get_if<Header>(&record)) robot_ = header->robot;
   encode(robot_, record, message_);
@@ -89,6 +91,8 @@ void RecordEncoder::move_chunk(mcap::Bytes& out, mcap::Compression compression) 
   chunk_.clear();
 }
 
+/// O_APPEND makes every write go to the end of the file, also after another process has appended to
+/// it.
 Result<Writer> Writer::open(const std::filesystem::path& file, std::uint32_t at_once,
                             std::uint32_t turn) {
   SWARM_ASSERT(turn < at_once);
@@ -104,6 +108,7 @@ Result<Writer> Writer::open(const std::filesystem::path& file, std::uint32_t at_
 
 Writer::Writer(Writer&& other) noexcept { *this = std::move(other); }
 
+/// Swapping leaves the old file to the other writer, whose destructor ends and closes it.
 Writer& Writer::operator=(Writer&& other) noexcept {
   if (this == &other) return *this;
   std::swap(fd_, other.fd_);
@@ -115,6 +120,7 @@ Writer& Writer::operator=(Writer&& other) noexcept {
   return *this;
 }
 
+/// Writes what waits and the end. An empty file gets none: nothing could be read from it anyway.
 Writer::~Writer() {
   if (fd_ < 0) return;
   write();
@@ -126,6 +132,8 @@ Writer::~Writer() {
   ::close(fd_);
 }
 
+/// A counter, so that many robots of one process can spread their writes over the control steps
+/// (`turn`).
 void Writer::append(const Record& record) {
   encoder_.add(record);
   if (--until_written_ > 0) return;
@@ -133,6 +141,7 @@ void Writer::append(const Record& record) {
   write();
 }
 
+/// One write(2) for each chunk: a killed process leaves whole chunks, apart from the last one.
 void Writer::write() {
   const std::uint32_t records = encoder_.waiting();
   if (records == 0) return;
@@ -158,12 +167,14 @@ void Writer::write() {
 
 Batch::Batch() : bytes_(preamble()) {}
 
+/// Large compressed chunks, since the whole log is in memory and nothing is lost between them.
 void Batch::append(const Record& record) {
   constexpr std::uint32_t kRecordsAChunk = 10'000;
   encoder_.add(record);
   if (encoder_.waiting() >= kRecordsAChunk) encoder_.move_chunk(bytes_, mcap::Compression::kZstd);
 }
 
+/// Replaces the file, unlike Writer, which appends to it.
 Result<void> Batch::write(const std::filesystem::path& file) {
   encoder_.move_chunk(bytes_, mcap::Compression::kZstd);
   const mcap::Bytes& end = mcap::plain_end();
@@ -183,6 +194,7 @@ std::optional<RobotRecord> decode(const mcap::Message& message, const mcap::Chan
   return kind ? decode(*kind, message.data) : std::nullopt;
 }
 
+/// Messages that are not valid records count as damage.
 Result<Damage> read_records(const std::filesystem::path& file,
                             const std::function<void(const Record&)>& take) {
   std::uint64_t malformed = 0;
@@ -199,6 +211,8 @@ Result<Damage> read_records(const std::filesystem::path& file,
   return damage;
 }
 
+/// A robot that is started again takes its position from here. A file that does not exist is no
+/// error: the robot had not recorded a step.
 Result<std::vector<Step>> last_steps(const std::filesystem::path& file) {
   std::vector<Step> last;
   if (!std::filesystem::exists(file)) return last;

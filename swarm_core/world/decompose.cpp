@@ -66,6 +66,7 @@ class EarClipper {
   }
 
  private:
+  // O(n) for each candidate, O(n²) for most polygons and O(n³) at worst.
   std::uint32_t find_ear(std::uint32_t start, std::size_t left) const {
     std::uint32_t at = start;
     for (std::size_t i = 0; i < left; ++i, at = next_[at]) {
@@ -85,6 +86,7 @@ class EarClipper {
     return flattest;
   }
 
+  // Whether no remaining vertex lies in the triangle of a corner.
   bool is_empty(std::uint32_t ear) const {
     const Vec2& a = v_[previous_[ear]];
     const Vec2& b = v_[ear];
@@ -103,6 +105,7 @@ std::size_t position_of(const Loop& loop, std::uint32_t vertex) {
   return static_cast<std::size_t>(std::find(loop.begin(), loop.end(), vertex) - loop.begin());
 }
 
+// The vertex `steps` further along the loop.
 std::uint32_t after(const Loop& loop, std::size_t position, std::size_t steps) {
   return loop[(position + steps) % loop.size()];
 }
@@ -139,6 +142,7 @@ void merge_parts(const std::vector<Vec2>& v, std::vector<Loop>& parts) {
   }
   std::vector<std::size_t> merged_into(parts.size());
   for (std::size_t part = 0; part < parts.size(); ++part) merged_into[part] = part;
+  // Union-find with path halving: a part that was merged points to the part that took it.
   const auto root = [&](std::size_t part) {
     while (merged_into[part] != part) part = merged_into[part] = merged_into[merged_into[part]];
     return part;
@@ -146,6 +150,8 @@ void merge_parts(const std::vector<Vec2>& v, std::vector<Loop>& parts) {
   for (const auto& [edge, part] : owner) {
     const auto [a, b] = edge;
     const auto opposite = owner.find({b, a});
+    // Each diagonal has two directed edges; only one of them is used. Edges of the outline have no
+    // opposite.
     if (a > b || opposite == owner.end()) continue;
     const std::size_t left = root(part);
     const std::size_t right = root(opposite->second);
@@ -155,6 +161,7 @@ void merge_parts(const std::vector<Vec2>& v, std::vector<Loop>& parts) {
 
 }  // namespace
 
+// Straight corners, which ear clipping keeps, are dropped from the parts at the end.
 std::vector<std::vector<Vec2>> decompose_convex(const Polygon& polygon) {
   const std::vector<Vec2>& v = polygon.vertices_m();
   if (polygon.is_convex()) return {v};

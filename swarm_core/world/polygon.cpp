@@ -31,6 +31,7 @@ bool is_superfluous(const Vec2& a, const Vec2& b, const Vec2& c) {
   return ab.dot(bc) > 0.0 && std::abs(cross(ab, ac)) <= kTiny_m * ac.norm();
 }
 
+// A stack: a new vertex removes the corners before it that became superfluous.
 std::vector<Corner> corners_of(const std::vector<Vec2>& vertices_m) {
   std::vector<Corner> corners;
   corners.reserve(vertices_m.size());
@@ -57,6 +58,7 @@ std::vector<Corner> corners_of(const std::vector<Vec2>& vertices_m) {
   return corners;
 }
 
+// For p on the line through a and b.
 bool on_segment(const Vec2& a, const Vec2& b, const Vec2& p) {
   return (a.cwiseMin(b).array() <= p.array()).all() && (p.array() <= a.cwiseMax(b).array()).all();
 }
@@ -122,6 +124,8 @@ double signed_area_twice_m2(std::span<const Vec2> vertices_m) {
   return twice;
 }
 
+// Clean-up comes before the test for self-intersection, because repeated vertices would touch.
+// Orientation and convexity follow at last, from a polygon known to be simple.
 Result<Polygon> Polygon::make(std::vector<Vec2> vertices_m) {
   if (vertices_m.size() > kMaxVertices) {
     return fail(ErrorCode::kBadInput, fmt::format("polygon: {} vertices, at most {} are accepted",
@@ -174,6 +178,7 @@ Polygon Polygon::shifted(const Vec2& by_m) const {
   return polygon;
 }
 
+// Ray casting to the right; the half-open comparison counts a vertex on the ray once.
 bool Polygon::contains(const Vec2& point_m) const {
   bool inside = false;
   const Vec2* from = &vertices_m_.back();

@@ -13,6 +13,7 @@ namespace swarm {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+// Cells of the grid: a few megabytes at most, small against the robots' own data.
 constexpr double kCellsMax = 128.0 * 128.0;
 constexpr double kHair_m = 1e-9;  // rounding must not hide a candidate
 
@@ -27,6 +28,7 @@ double depth_m(const Box& box, const Vec2& p) {
 
 }  // namespace
 
+// Pieces are numbered: boxes first, then convex parts of polygons, in one index.
 Result<ShapeField> ShapeField::make(std::vector<Polygon> polygons, std::vector<Box> boxes_m) {
   if (polygons.empty() && boxes_m.empty()) {
     return fail(ErrorCode::kBadInput, "a shape must have a polygon or a box");
@@ -59,6 +61,7 @@ Result<ShapeField> ShapeField::make(std::vector<Polygon> polygons, std::vector<B
   return field;
 }
 
+// Squared distance of a point to a piece and the offset from its nearest point; 0 inside.
 ShapeField::Nearest ShapeField::piece(std::uint32_t i, const Vec2& point_m) const {
   if (i < boxes_m_.size()) {
     const Box& box = boxes_m_[i];
@@ -70,6 +73,8 @@ ShapeField::Nearest ShapeField::piece(std::uint32_t i, const Vec2& point_m) cons
   return {outside_m * outside_m, outside_m * sd.gradient};
 }
 
+// Exact search without the grid: a few near pieces give a bound, the index the rest. Ends at the
+// first piece that contains the point.
 ShapeField::Nearest ShapeField::searched(const Vec2& point_m) const {
   Nearest best{kInfinity, Vec2::Zero()};
   const auto look = [&](std::uint32_t i) {
@@ -85,6 +90,10 @@ ShapeField::Nearest ShapeField::searched(const Vec2& point_m) const {
   return best;
 }
 
+// For each cell the pieces that can be nearest to any of its points: the distance is 1-Lipschitz,
+// so a piece is no candidate if it is farther from the cell's centre than the nearest one by more
+// than twice the distance from centre to corner. A cell inside one piece has no candidates, which
+// stands for the value 0.
 void ShapeField::build_grid() {
   // As far as robots are likely to come from.
   const Vec2 size_m = extent_m_.max_m - extent_m_.min_m;
@@ -116,6 +125,8 @@ void ShapeField::build_grid() {
   first_.push_back(static_cast<std::uint32_t>(candidates_.size()));
 }
 
+// F = dist² and its gradient 2(x − nearest point) [diffusion, eq. 6]. Inside the grid only the
+// candidates of the cell are visited.
 ShapeField::Value ShapeField::at(const Vec2& point_m) const {
   const Vec2 cell = (point_m - grid_min_m_) * cells_per_m_;
   Nearest best{kInfinity, Vec2::Zero()};
