@@ -128,7 +128,7 @@ std::vector<ControlServer::Request> ControlServer::poll() {
 void ControlServer::answer(ClientId id, const std::string& text) {
   const auto client =
       std::find_if(clients_.begin(), clients_.end(), [&](const Client& c) { return c.id == id; });
-  if (client == clients_.end()) return;  // went without waiting for it
+  if (client == clients_.end()) return;  // the client left before the answer
   send_line(client->fd, text);
   ::close(client->fd);
   clients_.erase(client);
@@ -149,7 +149,7 @@ Result<bool> send_command(const std::filesystem::path& run_dir, const std::strin
   const std::string text = line + "\n";
   for (std::size_t sent = 0; sent < text.size();) {
     const ssize_t n = ::send(fd, text.data() + sent, text.size() - sent, MSG_NOSIGNAL);
-    if (n <= 0) break;  // it says why below, or nothing
+    if (n <= 0) break;  // the server closed early: its answer, read below, gives the reason
     sent += static_cast<std::size_t>(n);
   }
   std::string input;

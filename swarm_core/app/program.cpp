@@ -31,13 +31,14 @@ int run_main(const std::string& name, const std::function<Result<ExitCode>()>& b
 
 void add_common_options(CLI::App& app) {
   app.set_version_flag("--version", app.get_name() + " " + SWARM_VERSION);
-  app.add_option("--check", "Validate a mission file, say all that is wrong with it, and exit")
+  app.add_option("--check", "Validate a mission file, report every error in it, and exit")
       ->type_name("MISSION.yaml");
 }
 
 Result<std::optional<ExitCode>> parse(CLI::App& app, int argc, char** argv,
                                       const Catalogue& catalogue) {
-  // --check is a task of its own: what the program needs otherwise is not required beside it.
+  // --check replaces the program's normal task, so it is handled before the parser demands the
+  // options that the program otherwise requires.
   for (int i = 1; i < argc; ++i) {
     const std::string argument = argv[i];
     // CLI11 accepts both `--check FILE` and `--check=FILE`; so does this search before its parser

@@ -24,7 +24,7 @@ void catch_stop_signals() {
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
   std::signal(SIGPIPE, SIG_IGN);
-  std::signal(SIGXFSZ, SIG_IGN);  // a limit of file sizes is a full disk like any other
+  std::signal(SIGXFSZ, SIG_IGN);  // a write over the limit of file sizes fails as on a full disk
 }
 
 int stop_requests() { return requests.load(std::memory_order_relaxed); }

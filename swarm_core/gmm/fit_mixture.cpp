@@ -20,7 +20,7 @@ constexpr std::uint32_t kMaxComponents = 255;
 constexpr std::uint32_t kBicStepsWithoutGain = 3;
 // EM iterations that each start is given before the best start is chosen.
 constexpr std::uint32_t kFirstSteps = 10;
-// A component with less than this of the weight has no covariance worth a name.
+// A component with less than this share of the weight has no meaningful covariance.
 constexpr double kNothing = 1e-12;
 // A share below e⁻⁴⁰ is lost in the rounding of the others' sum.
 constexpr double kNoShare = -40.0;
@@ -113,7 +113,7 @@ class Fitter {
   Fitter(std::vector<Patch> patches, const FitOptions& options)
       : patches_(std::move(patches)), options_(options) {}
 
-  // A few steps from each start tell which is worth climbing on.
+  // Runs a few EM iterations from each start, then continues from the start with the largest F.
   Climb best_of_starts(std::uint32_t components, Rng& rng) {
     Climb best;
     for (std::uint32_t start = 0; start < options_.starts; ++start) {
@@ -126,7 +126,8 @@ class Fitter {
     return climb_from(std::move(best.components));
   }
 
-  // Leaves out what is too light to matter and climbs again without it.
+  // Removes components lighter than weight_min and runs EM again without them, until none is left.
+  // The heaviest component always stays.
   void drop_light(Climb& climb_so_far) {
     for (std::uint32_t round = 0; round < kMaxComponents; ++round) {
       std::vector<Component>& components = climb_so_far.components;
@@ -212,8 +213,8 @@ class Fitter {
     return climb(options_.iterations_max);
   }
 
-  // From the shares at hand. The first maximisation only starts it: F is known after the first
-  // expectation that follows.
+  // EM iterations from the current shares. F is known after the expectation step that follows a
+  // maximisation, so convergence is tested from the second iteration on.
   Climb climb(std::uint32_t iterations) {
     Climb climbed;
     for (std::uint32_t i = 0; i < iterations; ++i) {
@@ -255,8 +256,8 @@ class Fitter {
     return sum;
   }
 
-  // M-step, in one sweep: sums about the old means, so that far from the origin nothing cancels.
-  // Components that own nothing any more are forgotten.
+  // M-step, in one sweep. Moments are summed about the old means, because sums about the origin
+  // would cancel far away from it. Components without weight are removed.
   void maximise() {
     const std::size_t k = components_.size();
     std::vector<Sums> sums(k);
@@ -314,7 +315,7 @@ Result<void> check(const FitOptions& o) {
   return {};
 }
 
-// Those with weight, their weights scaled to sum 1.
+// The patches with positive weight, their weights scaled to sum 1.
 Result<std::vector<Patch>> normalised(std::span<const Patch> patches) {
   std::vector<Patch> good;
   double sum = 0.0;

@@ -11,7 +11,7 @@
 namespace swarm {
 namespace {
 
-// Sums about a reference point near by: far from the origin nothing cancels.
+// Moments about a reference point nearby, because sums about the origin would cancel far from it.
 struct Moments {
   double weight = 0.0;
   Vec2 first = Vec2::Zero();
@@ -47,7 +47,8 @@ void add_convex(std::span<const Vec2> vertices_m, const Vec2& reference_m, Momen
   }
 }
 
-// What of a convex polygon has coordinate `axis` in [low, high].
+// The part of a convex polygon whose coordinate `axis` is in [low, high], by clipping it at two
+// half-planes (Sutherland–Hodgman).
 void clip(const std::vector<Vec2>& vertices_m, Eigen::Index axis, double low, double high,
           std::vector<Vec2>& scratch_m, std::vector<Vec2>& clipped_m) {
   const auto keep_side = [axis](const std::vector<Vec2>& in, double limit, double sign,

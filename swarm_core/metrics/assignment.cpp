@@ -23,9 +23,9 @@ namespace {
 constexpr double kUnitsPerCost = 1e6;
 constexpr double kMaxCost = 1e9;
 
-/// Shortest augmenting paths with two cheap rounds before them (Jonker and Volgenant, 1987), on
-/// whole costs: every step is exact. Column potentials v keep c(i, j) − v(j) smallest at i's
-/// column.
+/// Shortest augmenting paths after two reductions that assign most rows cheaply (Jonker and
+/// Volgenant, 1987), on integer costs, so every step is exact. Invariant: with the column potentials
+/// v, the reduced cost c(i, j) − v(j) of each assigned row i is least at its own column. O(n³).
 class Assignment {
  public:
   Assignment(const std::vector<std::int64_t>& costs, std::size_t n)
@@ -52,8 +52,8 @@ class Assignment {
     column_of_[i] = j;
   }
 
-  /// Each column to its cheapest row, if that row is still free; then the potential of each such
-  /// column is lowered as far as its row allows.
+  /// Column reduction: assigns each column to its cheapest row if that row is still free. Then the
+  /// potential of the only column of a row is lowered until another column is as good for the row.
   void reduce_columns() {
     std::vector<std::size_t> cheapest(n_, 0);
     for (std::size_t j = 0; j < n_; ++j) potential_[j] = costs_[j];
@@ -79,8 +79,9 @@ class Assignment {
     }
   }
 
-  /// Each free row takes its cheapest column, at the price at which the second one is as cheap; who
-  /// had it is free in turn. At most a few tries a row: what is left costs an augmentation each.
+  /// Augmenting row reduction: each free row takes its column of least reduced cost and lowers that
+  /// column's potential until its second-best column is as good; the row that owned the column
+  /// becomes free. The number of tries is bounded; rows that stay free are assigned by augment().
   void reduce_rows() {
     std::vector<std::size_t> left;
     std::size_t tries = 4 * n_;
@@ -120,7 +121,8 @@ class Assignment {
     free_ = std::move(left);
   }
 
-  /// The cheapest path from a free row to a free column (Dijkstra), along which rows move on.
+  /// Finds the cheapest alternating path from a free row to a free column (Dijkstra on reduced
+  /// costs) and reassigns the rows along it. O(n²).
   void augment(std::size_t free_row) {
     distance_.resize(n_);
     from_.assign(n_, free_row);

@@ -15,10 +15,10 @@
 namespace swarm {
 namespace {
 
-/// Cost of a pair without a way: more than all ways together in any world robots drive in.
+/// Cost of a pair without a path: more than the sum of all path lengths in any realistic world.
 constexpr double kNoPath_m = 1e8;
 
-/// Points gathered at one of them each.
+/// Groups of points, each of which has one of its points as its centre.
 struct Groups {
   std::vector<Vec2> centers_m;
   std::vector<std::int64_t> sizes;
@@ -67,7 +67,8 @@ Groups groups_of(std::span<const Vec2> points, const ShortestPaths& paths) {
   }
   std::vector<std::size_t> indices(points.size());
   std::iota(indices.begin(), indices.end(), 0);
-  // Halving ends between most and 2·most: aim so that the number of groups stays near the limit.
+  // Halving ends with groups between half of the limit and the limit: a limit of 2·most − 1 keeps
+  // the number of groups near kExactBoundRobots.
   gather(points, indices, 2 * most - 1, paths, groups);
   return groups;
 }

@@ -11,7 +11,7 @@
 namespace swarm {
 namespace {
 
-/// Bins per power of two, and the exponent below which every value has a bin of its own.
+/// Bins per power of two, and its logarithm: every value below 2⁴ has a bin of its own.
 constexpr std::size_t kPerOctave = 16;
 constexpr int kLinearBits = 4;
 constexpr std::int64_t kLargest_us = (std::int64_t{1} << 32) - 1;

@@ -16,7 +16,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// Largest distance between an arc and its chord; coarser only in worlds with very many corners.
 constexpr double kSagitta_m = 1e-3;
 
-/// Obstacles are entered when a path is deeper inside than this: walking along a wall is allowed.
+/// A path enters an obstacle if it is deeper inside than this, so paths along a wall are allowed.
 constexpr double kSkin_m = 1e-7;
 
 double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }

@@ -35,7 +35,7 @@ class Rules {
   std::vector<BrokenRule> broken;
 };
 
-constexpr double kGroupCellsMax = 4.0;  // per hear radius: at most 100 cells a robot
+constexpr double kGroupCellsMax = 4.0;  // per communication radius: at most 100 cells per robot
 
 }  // namespace
 
@@ -107,7 +107,7 @@ std::vector<BrokenRule> broken_rules(const Mission& mission) {
               {"plan_clock.lag_stop_s", plan_clock.lag_stop_s});
   rules.at_most({"plan_clock.lag_stop_s", plan_clock.lag_stop_s},
                 {"plan_clock.hopeless_lag_s", plan_clock.hopeless_lag_s});
-  // One lost heartbeat must not stop the swarm.
+  // The loss of one heartbeat must not stop the swarm.
   if (timing.planner_silence_s * timing.heartbeat_hz < 2.0) {
     rules.add({"timing.planner_silence_s", "timing.heartbeat_hz"},
               fmt::format("timing.planner_silence_s is {}; must be >= {}, two heartbeats",

@@ -12,14 +12,15 @@
 namespace swarm {
 namespace {
 
-/// Tries per robot before its component counts as full: a free share of 0.2 % of the ellipse is
-/// still found with 1 − e⁻²⁰.
+/// Tries per robot before its component counts as full: free space of 0.2 % of the probability is
+/// still found with probability 1 − e⁻²⁰.
 constexpr int kMaxTries = 10'000;
-/// Of placing all: robots placed at random leave gaps that are too small, a lucky draw fewer.
+/// Attempts to place all robots: in a dense component, random placement leaves gaps that are too
+/// small for another robot, and how many depends on the draw.
 constexpr std::uint64_t kAttempts = 10;
 
-/// Robots placed so far, in square cells as wide as the least distance: whoever is too near stands
-/// in one of nine cells.
+/// Robots placed so far, in square cells as wide as the least distance: a robot that is too near to
+/// a point is in one of the nine cells around it.
 class PlacedRobots {
  public:
   explicit PlacedRobots(double least_distance_m) : cell_m_(least_distance_m) {}
@@ -63,7 +64,7 @@ class PlacedRobots {
 Result<std::vector<Vec2>> place_once(const Mission& mission, std::uint64_t seed) {
   const RobotsSpec& spec = mission.robots;
   const double radius_m = largest_radius_m(spec);
-  // Off the walls as far as the safety filter keeps robots.
+  // As far from the walls as the safety filter keeps robots.
   const Vec2 wall_m = Vec2::Constant(radius_m + mission.safety.obstacle_margin_m);
   const Box free_m{mission.world.bounds_m().min_m + wall_m,
                    mission.world.bounds_m().max_m - wall_m};

@@ -48,7 +48,7 @@ Result<SceneObstacle*> find(Scene& scene, std::uint32_t id, const World& mission
 }
 
 Result<void> make(Scene& scene, const AddObstacle& add, const World&, UtcTime) {
-  const auto at = find_obstacle(scene.obstacles, scene.next_id);  // bodies stay behind it
+  const auto at = find_obstacle(scene.obstacles, scene.next_id);  // bodies have larger ids
   scene.obstacles.insert(at, {.id = scene.next_id++, .shape = add.shape});
   return {};
 }

@@ -21,7 +21,7 @@ using mission_fields::kMaxExtent_m;
 using yaml::MapReader;
 using yaml::Node;
 
-// A goal is read before any seed is known, and must be the same in every run.
+// A goal is read before the seed of the run is known, and must be the same in every run.
 constexpr std::uint64_t kFitSeed = 20240216;
 // The fit's time grows with both.
 constexpr std::size_t kMaxShapeVertices = 1'000;
@@ -123,7 +123,7 @@ class GoalShapeReader {
     const auto frame = read_frame(keys);
     keys.finish();
     if (!file || !frame) return std::nullopt;
-    // What is transparent is no part of the shape.
+    // Transparent pixels do not belong to the shape: the background is the colour outside of it.
     const auto image = load_bitmap(directory_ / *file, frame->dark ? 255 : 0);
     if (!image) {
       violations_.add(file_node->at, fmt::format("{}.file: {}", path, image.error().message));

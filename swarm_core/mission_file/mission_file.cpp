@@ -128,7 +128,7 @@ class MissionReader {
     return obstacles;
   }
 
-  /// Of a resolved mission, whose goal is the mixture fitted to it.
+  /// The drawing of a resolved mission, whose goal is the mixture that was fitted to it.
   void read_drawing(const Node& node) {
     if (mission_.goal_shape != nullptr) {
       violations_.add(node.at,
@@ -187,8 +187,8 @@ Result<Mission> load_mission(const std::filesystem::path& file, const Catalogue&
     return fail(ErrorCode::kBadInput,
                 fmt::format("{}: cannot be opened; is the path right?", file.string()));
   }
-  // In pieces: making room for the largest mission allowed took half of an agent's start-up. One
-  // byte more than allowed tells a file that is too large, without trusting its size.
+  // In pieces: allocating room for the largest mission took half of an agent's start-up time. A
+  // file that is too large shows by more bytes than allowed; its reported size is not trusted.
   std::string text;
   std::array<char, 16'384> piece;
   while (text.size() <= kMaxMissionBytes) {

@@ -25,13 +25,13 @@ struct Row {
   std::string_view doc;
 };
 
-/// What the values of a key must be, without the verb of the messages.
+/// The accepted values of a key, without the "must be" of error messages.
 std::string range_text(const Range& range) {
   constexpr std::string_view kVerb = "must be ";
   return to_string(range).substr(kVerb.size());
 }
 
-/// A bar would end the cell.
+/// Escapes bars, which would end the cell of a Markdown table.
 std::string cell(std::string_view text) {
   std::string escaped;
   for (const char c : text) escaped += c == '|' ? std::string("\\|") : std::string(1, c);

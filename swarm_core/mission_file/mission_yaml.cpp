@@ -96,7 +96,7 @@ void write_options(Out out, const OptionValues& options) {
   for (const auto& [key, text] : options.all()) fmt::format_to(out, "  {}: {}\n", key, text);
 }
 
-/// A section must not be empty, and none of its keys need be set.
+/// None of its keys need be set, but a section must not be empty: then it is left out.
 void write_criteria(Out out, const CriteriaSpec& criteria) {
   std::string keys;
   write_fields(Out(keys), criteria, mission_fields::kCriteria);

@@ -47,7 +47,7 @@ class ChangeReader {
   std::optional<SceneChange> go_to(ShapeReader& shapes) {
     const Node* node = keys_.take("goal", true);
     if (node == nullptr) return std::nullopt;
-    // Obstacles come and go: whether the goal is free then is the planner's to say.
+    // Obstacles may be added and removed until then: the planner checks whether the goal is free.
     auto goal = shapes.read_mixture(*node, keys_.path_of("goal"),
                                     {.world = &mission_world_, .clear_of_obstacles = false});
     if (!goal) return std::nullopt;

@@ -38,7 +38,7 @@ class ScriptReader {
                           ? std::nullopt
                           : yaml::read_choice(*node, keys.path_of("action"),
                                               mission_fields::kScriptActions, violations_);
-    if (!name) return std::nullopt;  // which other keys belong here is not known
+    if (!name) return std::nullopt;  // the other keys depend on the action
     const auto action = read_action(*name, keys, path, item.at);
     keys.finish();
     if (!at_s || !action) return std::nullopt;
@@ -47,7 +47,7 @@ class ScriptReader {
   }
 
  private:
-  // The previous time is kept even if it is out of order, so that one misplaced event gives one
+  // A time out of order still becomes the previous one, so that one misplaced event gives one
   // message.
   std::optional<double> read_time(MapReader& keys) {
     const Node* node = keys.take("at_s", true);
@@ -73,8 +73,8 @@ class ScriptReader {
     return *std::move(change);
   }
 
-  /// Obstacles that a script moves or removes must be there by then. Which robots fall is not
-  /// known: a script may clear any.
+  /// Obstacles that a script moves or removes must exist at that time. Which robots will fall is not
+  /// known, so a script may clear the body of any robot.
   void follow_scene(const MissionAction& action, double at_s, Position at,
                     const std::string& path) {
     const auto* change = std::get_if<SceneChange>(&action);

@@ -84,7 +84,7 @@ void SectionReader::read_groups(const Node& node, RobotsSpec& robots) {
   if (items == nullptr) return;
   std::uint64_t grouped = 0;
   for (std::size_t i = 0; i < items->size(); ++i) {
-    RobotGroupSpec group{robots, 0};  // what it does not set is as for the others
+    RobotGroupSpec group{robots, 0};  // keys that the group does not set are those of all robots
     MapReader keys((*items)[i], fmt::format("robots.groups[{}]", i), violations_);
     if (const Node* value = keys.take("count", true)) {
       group.count = yaml::read_count(*value, keys.path_of("count"),
@@ -111,8 +111,8 @@ void SectionReader::read_body(MapReader& keys, BodySpec& body) {
   read_options(keys, drivers(), body.options);
 }
 
-/// What the mission leaves to the driver. Written out with the mission it is then known to programs
-/// that do not have the driver.
+/// Fills in the lag that the driver declares. As a part of the resolved mission it is then known to
+/// programs that do not have the driver.
 void SectionReader::set_lag(BodySpec& body) const {
   const ComponentSpec* driver = find_component(catalogue_.drivers, body.model);
   if (driver != nullptr && !body.lag_s) body.lag_s = declared_lag_s(body, driver->lag);

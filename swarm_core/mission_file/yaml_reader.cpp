@@ -14,7 +14,7 @@
 namespace swarm::yaml {
 namespace {
 
-/// Enough to repair a file by; a hostile one must not fill the terminal.
+/// Violations that are reported at most: a hostile file must not fill the terminal.
 constexpr std::size_t kMaxReported = 1000;
 
 /// Levenshtein distance with one row of the dynamic programme; O(|a| · |b|).
@@ -32,7 +32,7 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return row.back();
 }
 
-/// YAML's spellings of what from_chars would read as a number or not at all.
+/// Whether a text is one of YAML's spellings of NaN and infinity, some of which from_chars accepts.
 bool is_not_finite(std::string_view text) {
   if (!text.empty() && (text[0] == '-' || text[0] == '+')) text.remove_prefix(1);
   if (!text.empty() && text[0] == '.') text.remove_prefix(1);
@@ -168,7 +168,7 @@ std::optional<std::uint32_t> read_count(const Node& node, const std::string& pat
 std::optional<std::string> read_text(const Node& node, const std::string& path,
                                      Violations& violations) {
   if (node.kind == Node::Kind::kScalar) return node.text;
-  violations.add(node.at, fmt::format("{} is {}; must be a word", path, describe(node)));
+  violations.add(node.at, fmt::format("{} is {}; must be a text", path, describe(node)));
   return std::nullopt;
 }
 
@@ -221,7 +221,7 @@ std::optional<std::string> nearest_word(std::string_view word,
                                         const std::vector<std::string>& candidates) {
   if (word.size() > 80) return std::nullopt;
   std::optional<std::string> best;
-  // A third of the letters wrong is still a slip, more is another word.
+  // Up to a third of the letters may be mistyped; with more the key is probably not meant.
   std::size_t best_distance = std::max<std::size_t>(2, word.size() / 3) + 1;
   for (const std::string& candidate : candidates) {
     const std::size_t distance = edit_distance(word, candidate);

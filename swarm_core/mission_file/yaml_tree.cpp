@@ -92,7 +92,7 @@ class TreeBuilder final : public YAML::EventHandler {
             Node::Kind kind) {
     check(mark, tag, anchor);
     if (!levels_.empty() && is_key_next())
-      refuse(mark, "a key that is no word; keys are plain text");
+      refuse(mark, "a key that is not a text; keys are plain text");
     if (levels_.size() >= static_cast<std::size_t>(kMaxDepth)) {
       refuse(mark, fmt::format("nested deeper than {} levels", kMaxDepth));
     }
@@ -132,7 +132,7 @@ class TreeBuilder final : public YAML::EventHandler {
       level.node.items.push_back(std::move(node));
       return;
     }
-    // yaml-cpp places an empty value at whatever comes after it.
+    // yaml-cpp gives an empty value the position of the text after it.
     if (node.kind == Node::Kind::kNull) node.at = level.entry.at;
     level.entry.value = std::move(node);
     level.node.entries.push_back(std::move(level.entry));
@@ -148,7 +148,7 @@ class TreeBuilder final : public YAML::EventHandler {
 class ViewBuffer final : public std::streambuf {
  public:
   explicit ViewBuffer(std::string_view text) {
-    // streambuf wants char*, but nothing here writes.
+    // std::streambuf requires char*, but this buffer never writes.
     char* begin = const_cast<char*>(text.data());
     setg(begin, begin, begin + text.size());
   }

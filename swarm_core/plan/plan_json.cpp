@@ -139,7 +139,7 @@ std::string to_json(const FlowPlan& plan, double excess_m) {
 
 // Each part is checked on its own first; FlowPlan::make() then checks the flow as a whole.
 Result<FlowPlan> plan_from_json(std::string_view text) {
-  // Without exceptions the parser says only that it failed.
+  // Parsing without exceptions reports that it failed, but not where.
   Json document = Json::parse(text, nullptr, false);
   if (document.is_object() && document.contains(kExcess) && document[kExcess].is_number()) {
     document.erase(kExcess);

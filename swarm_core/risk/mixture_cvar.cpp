@@ -13,7 +13,7 @@
 namespace swarm {
 namespace {
 
-// Bisection alone would need 60.
+// Most rounds of the root search; bisection alone needs 60 for double precision.
 constexpr int kRounds = 100;
 
 double density(double z) { return std::exp(-0.5 * z * z) / std::sqrt(2.0 * std::numbers::pi); }
@@ -59,7 +59,8 @@ TailRisk mixture_tail_risk(std::span<const LineComponent> components, double alp
     // The tail probability falls with z, so its sign tells on which side of the root `var_m` lies.
     (above > 0.0 ? low_m : high_m) = var_m;
     if (above == 0.0) break;
-    // Beside a narrow component Newton leaps or creeps: it must stay inside and halve its steps.
+    // Near a narrow component Newton's steps are too long or too short: a step must stay inside the
+    // bracket and be at most half as long as the one before, or it is replaced by a bisection.
     double next_m = var_m - above / slope;
     const bool good = next_m > low_m && next_m < high_m &&
                       2.0 * std::abs(next_m - var_m) <= std::abs(last_step_m);

@@ -105,7 +105,7 @@ class FileReader {
     while (!rest.empty()) {
       if (damage_.ended) break;
       const Front front = front_of(rest);
-      // After damage only a chunk, which has a checksum, tells where records begin again.
+      // After damage reading resumes at a chunk only, whose checksum proves that it is a record.
       const bool trusted = front.record && (!in_damage || front.record->op == Op::kChunk);
       if (trusted && take(*front.record)) {
         rest = rest.subspan(front.record->size);
@@ -117,7 +117,7 @@ class FileReader {
         ++damage_.damaged;
         in_damage = true;
       }
-      // The length of a damaged record is not to be believed: look for a whole one byte by byte.
+      // The length of a damaged record may be wrong: search for the next chunk byte by byte.
       const auto* next = static_cast<const unsigned char*>(
           std::memchr(rest.data() + 1, static_cast<int>(Op::kChunk), rest.size() - 1));
       rest = next == nullptr ? View() : rest.subspan(static_cast<std::size_t>(next - rest.data()));
@@ -130,7 +130,7 @@ class FileReader {
   }
 
  private:
-  /// False if it is not what its opcode says.
+  /// False if the content does not match the opcode.
   bool take(const Record& record) {
     switch (record.op) {
       case Op::kSchema:
@@ -146,7 +146,7 @@ class FileReader {
       case Op::kMetadata:
         return take_metadata(record.content);
       case Op::kDataEnd:
-        damage_.ended = true;  // what follows repeats what was published
+        damage_.ended = true;  // the summary that follows repeats data that was read already
         return true;
       case Op::kHeader:
         return true;
@@ -156,7 +156,8 @@ class FileReader {
         return get.number<std::uint32_t>() == get.rest().size() && get.good();
       }
       default:
-        // Others' own records begin at 0x80; or it was a chunk once. The rest follows the end.
+        // Opcodes from 0x80 on are private records of other programs, or a chunk whose opcode was
+        // damaged; both are skipped and counted. All other opcodes occur only after the data end.
         if (static_cast<std::uint8_t>(record.op) < 0x80) return false;
         ++damage_.damaged;
         return true;
@@ -216,7 +217,7 @@ class FileReader {
     const std::string compression = get.text();
     View records = get.long_bytes();
     if (!get.good() || !get.rest().empty() || size > kMaxChunkBytes) return false;
-    // Until channels are known, chunks may be where they are told.
+    // A chunk may declare channels, so none is skipped before the first channel is known.
     if (end_ns < handlers_.from_ns && !channels_.empty()) return true;
     if (compression == "zstd") {
       unpacked_.resize(size);
@@ -240,8 +241,8 @@ class FileReader {
     return true;
   }
 
-  /// Whether it is made of whole records, and what it says of their times, which the checksum
-  /// leaves out, is true.
+  /// Whether a chunk consists of whole records and its begin and end time, which the checksum does
+  /// not cover, are those of its messages.
   static bool times_are(View records, std::int64_t begin_ns, std::int64_t end_ns) {
     std::int64_t first = std::numeric_limits<std::int64_t>::max();
     std::int64_t last = std::numeric_limits<std::int64_t>::min();

@@ -21,7 +21,7 @@
 namespace swarm::robot_log {
 namespace {
 
-/// What a box begins with: its kinds of records.
+/// The first bytes of every robot log: magic, header, and schema and channel of each kind of record.
 const mcap::Bytes& preamble() {
   static const mcap::Bytes kPreamble = [] {
     mcap::Bytes out(mcap::kMagic.begin(), mcap::kMagic.end());
@@ -42,7 +42,8 @@ const mcap::Bytes& preamble() {
   return kPreamble;
 }
 
-/// A life that came to its end has closed the file: the next one opens it again.
+/// Removes the end that an earlier incarnation of the robot's process wrote when it finished, so
+/// that this one can append to the file.
 bool remove_end(int fd) {
   const mcap::Bytes& end = mcap::plain_end();
   struct stat status {};
@@ -148,7 +149,7 @@ void Writer::write() {
   struct stat before {};
   bool written = ::fstat(fd_, &before) == 0;
   buffer_.clear();
-  // How the file begins goes with the first record that the disk takes, in the same write.
+  // An empty file gets the preamble in the same write as its first records.
   if (before.st_size == 0) buffer_ = preamble();
   encoder_.move_chunk(buffer_, mcap::Compression::kNone);
   if (written) {

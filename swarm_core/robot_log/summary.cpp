@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-// What ends a recording: where everything is, and how much of it.
+// The summary at the end of a recording: indexes and statistics.
 #include <algorithm>
 #include <array>
 

@@ -85,7 +85,7 @@ bool Writer::put(const Bytes& bytes) {
     size_ += done;
     return true;
   }
-  // Half a record would end the file for simple readers.
+  // A partial record would end the file for simple readers, so it is removed.
   const int reason = errno;
   if (done > 0 && ::ftruncate(fd_, static_cast<off_t>(size_)) == 0) {
     ::lseek(fd_, static_cast<off_t>(size_), SEEK_SET);

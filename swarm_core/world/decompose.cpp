@@ -66,13 +66,13 @@ class EarClipper {
   }
 
  private:
-  // O(n) for each candidate, O(n²) for most polygons and O(n³) at worst.
+  // All ears of a polygon together cost O(n²) for most polygons and O(n³) at worst.
   std::uint32_t find_ear(std::uint32_t start, std::size_t left) const {
     std::uint32_t at = start;
     for (std::size_t i = 0; i < left; ++i, at = next_[at]) {
       if (turns_left(v_[previous_[at]], v_[at], v_[next_[at]]) && is_empty(at)) return at;
     }
-    // Only rounding leads here: what is left is as thin as that. The flattest corner goes.
+    // Only rounding leads here, in a remainder as thin as the rounding: the flattest corner is cut.
     std::uint32_t flattest = start;
     double least = std::abs(turn(v_[previous_[start]], v_[start], v_[next_[start]]));
     at = start;
@@ -132,7 +132,7 @@ bool merge(const std::vector<Vec2>& v, Loop& left, Loop& right, std::uint32_t a,
   return true;
 }
 
-// Hertel–Mehlhorn: every diagonal is looked at once and goes if both its ends stay convex.
+// Hertel–Mehlhorn: visits every diagonal once and removes it if both its ends stay convex.
 void merge_parts(const std::vector<Vec2>& v, std::vector<Loop>& parts) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> owner;  // directed edge → part
   for (std::size_t part = 0; part < parts.size(); ++part) {
@@ -177,7 +177,7 @@ std::vector<std::vector<Vec2>> decompose_convex(const Polygon& polygon) {
       perimeter_m += (next - at).norm();
       if (turns_left(v[after(part, i, part.size() - 1)], at, next)) corners.push_back(at);
     }
-    // What rounding left as a line covers nothing.
+    // A part that rounding reduced to a line has no area and is dropped.
     if (corners.size() >= 3 && signed_area_twice_m2(corners) > kTiny_m * perimeter_m) {
       convex.push_back(std::move(corners));
     }

@@ -21,8 +21,8 @@ struct Corner {
   std::size_t index = 0;
 };
 
-// Whether b lies on the way from a to c and may go; a corner that folds back (dot < 0) must stay
-// for the check to see it.
+// Whether b lies on the segment from a to c and can be removed. A corner at which the outline folds
+// back (dot < 0) must stay, so that the test for self-intersection finds it.
 bool is_superfluous(const Vec2& a, const Vec2& b, const Vec2& c) {
   const Vec2 ab = b - a;
   const Vec2 bc = c - b;
@@ -44,8 +44,8 @@ std::vector<Corner> corners_of(const std::vector<Vec2>& vertices_m) {
       corners.push_back({vertices_m[i], i});
     }
   }
-  // The seam between the last vertex and the first: a repeated one first, for it would hide the
-  // rest.
+  // The seam between the last vertex and the first: a repeated vertex is removed first, because it
+  // would hide the others.
   while (corners.size() >= 3 && ((corners.back().at_m - corners.front().at_m).norm() <= kTiny_m ||
                                  is_superfluous(corners[corners.size() - 2].at_m,
                                                 corners.back().at_m, corners.front().at_m))) {
@@ -63,7 +63,7 @@ bool on_segment(const Vec2& a, const Vec2& b, const Vec2& p) {
   return (a.cwiseMin(b).array() <= p.array()).all() && (p.array() <= a.cwiseMax(b).array()).all();
 }
 
-// Crossing or touching.
+// Whether two segments cross or touch, by the signs of the four orientations.
 bool segments_meet(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) {
   const double side_c = cross(b - a, c - a);
   const double side_d = cross(b - a, d - a);

@@ -13,7 +13,7 @@ namespace swarm {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-// Cells of the grid: a few megabytes at most, small against the robots' own data.
+// Cells of the grid: 128 along each side of a square, 64 kB of offsets besides the candidates.
 constexpr double kCellsMax = 128.0 * 128.0;
 constexpr double kHair_m = 1e-9;  // rounding must not hide a candidate
 
@@ -95,7 +95,7 @@ ShapeField::Nearest ShapeField::searched(const Vec2& point_m) const {
 // than twice the distance from centre to corner. A cell inside one piece has no candidates, which
 // stands for the value 0.
 void ShapeField::build_grid() {
-  // As far as robots are likely to come from.
+  // The margin covers the surroundings from which robots are likely to approach.
   const Vec2 size_m = extent_m_.max_m - extent_m_.min_m;
   const double margin_m = 0.5 * size_m.maxCoeff();
   const Vec2 grid_m = size_m + Vec2::Constant(2.0 * margin_m);

@@ -70,8 +70,8 @@ std::vector<ConvexEdge> edges_of(std::span<const Vec2> vertices_m) {
   return edges;
 }
 
-// Inside, the nearest edge is the one whose line is nearest. Outside, a foot that lies on an edge
-// is the nearest point; without one it is a corner.
+// Inside, the nearest edge is the one whose line is nearest. Outside, a perpendicular foot on an
+// edge that faces the point is the nearest point; if there is none, the nearest corner is.
 ConvexObstacle::Faced convex_distance(std::span<const ConvexEdge> edges, const Vec2& p) {
   double farthest_m = -std::numeric_limits<double>::infinity();
   const ConvexEdge* facing = nullptr;

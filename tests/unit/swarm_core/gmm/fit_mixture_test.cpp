@@ -143,7 +143,7 @@ TEST(FitMixture, DropsWhatIsTooLight) {
   double sum = 0.0;
   for (const auto& [weight, gaussian] : fit->mixture.components()) {
     EXPECT_GE(weight, 1e-3);
-    EXPECT_LT(gaussian.mean_m().norm(), 21.0);  // the dot of weight 1e-4 at (30, 30) is nobody's
+    EXPECT_LT(gaussian.mean_m().norm(), 21.0);  // the dot of weight 1e-4 at (30, 30) is dropped
     sum += weight;
   }
   EXPECT_NEAR(sum, 1.0, 1e-12);
