@@ -10,11 +10,11 @@
 
 #include "swarmflow/core/result.hpp"
 
-/// `swarm_launcher command` sends commands to the launcher of a run through a Unix socket in the run
-/// directory. The launcher's DDS endpoints are matched with those of every agent already, so a stop
-/// goes out without discovery. The protocol is line-based: the client sends one line, a command and
-/// its arguments; the server answers with lines of text, the last of which starts with "done" or
-/// "failed".
+/// `swarm_launcher command` sends commands to the launcher of a run through a Unix socket in the
+/// run directory. The launcher's DDS endpoints are matched with those of every agent already, so a
+/// stop goes out without discovery. The protocol is line-based: the client sends one line, a
+/// command and its arguments; the server answers with lines of text, the last of which starts with
+/// "done" or "failed".
 namespace swarm::shell {
 
 /// The launcher's end of the socket; single-threaded, polled by the launcher's loop. Only the user

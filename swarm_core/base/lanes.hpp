@@ -6,9 +6,9 @@
 
 namespace swarm {
 
-/// Four numbers in one SIMD register, by the vector extension of g++ and clang, which works on every
-/// machine: + − · / and [] act lane by lane, a comparison gives −1 where it holds and 0 elsewhere,
-/// and `mask ? a : b` selects.
+/// Four numbers in one SIMD register, by the vector extension of g++ and clang, which works on
+/// every machine: + − · / and [] act lane by lane, a comparison gives −1 where it holds and 0
+/// elsewhere, and `mask ? a : b` selects.
 using Float4 [[gnu::vector_size(16)]] = float;
 using Int4 [[gnu::vector_size(16)]] = std::int32_t;
 /// Numbers in a vector.

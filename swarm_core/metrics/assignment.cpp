@@ -24,8 +24,9 @@ constexpr double kUnitsPerCost = 1e6;
 constexpr double kMaxCost = 1e9;
 
 /// Shortest augmenting paths after two reductions that assign most rows cheaply (Jonker and
-/// Volgenant, 1987), on integer costs, so every step is exact. Invariant: with the column potentials
-/// v, the reduced cost c(i, j) − v(j) of each assigned row i is least at its own column. O(n³).
+/// Volgenant, 1987), on integer costs, so every step is exact. Invariant: with the column
+/// potentials v, the reduced cost c(i, j) − v(j) of each assigned row i is least at its own column.
+/// O(n³).
 class Assignment {
  public:
   Assignment(const std::vector<std::int64_t>& costs, std::size_t n)

@@ -225,8 +225,8 @@ std::vector<double> ShortestPaths::distances_to_vertices(std::span<const Edge> f
   return distances;
 }
 
-/// One Dijkstra for each start; the last edge to each target is joined afterwards, so targets are
-/// no vertices of the graph. A visible target needs neither.
+/// One Dijkstra search for each start. Targets are not vertices of the graph: their edges are added
+/// afterwards. A target that the start sees is at the straight distance.
 std::vector<double> ShortestPaths::distances_m(std::span<const Vec2> from,
                                                std::span<const Vec2> to) const {
   std::vector<std::vector<std::uint32_t>> around_to;

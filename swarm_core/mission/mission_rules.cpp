@@ -93,7 +93,7 @@ std::vector<BrokenRule> broken_rules(const Mission& mission) {
   // every step.
   rules.below({"link.join_margin_m", link.join_margin_m},
               {"link.leave_margin_m", link.leave_margin_m});
-  // With cells at least as wide as the radius, the 3 × 3 cells around a robot cover it.
+  // With cells at least as wide as the radius, the area within it touches at most 3 × 3 cells.
   rules.at_most({"link.communication_radius_m", link.communication_radius_m}, {"link.cell_size_m", link.cell_size_m});
   if (link.communication_radius_m > kGroupCellsMax * link.group_cell_size_m) {
     rules.add({"link.group_cell_size_m", "link.communication_radius_m"},

@@ -17,8 +17,8 @@ struct BrokenRule {
 };
 
 /// Least communication radius of robots, between their centres [m]: the safety filter begins to
-/// brake at a surface gap of m + 2·v_max·dt/γ, and until its next state update (send_interval_max_s)
-/// a pair of robots may approach at 2·v_max.
+/// brake at a surface gap of m + 2·v_max·dt/γ, and until its next state update
+/// (send_interval_max_s) a pair of robots may approach at 2·v_max.
 double least_communication_radius_m(const Mission& mission);
 
 /// All rules between keys that `mission` violates. Each single value must be in its range.

@@ -193,8 +193,8 @@ World world_at(const World& mission_world, const Scene& scene, UtcTime now) {
   return *std::move(world);
 }
 
-/// Obstacles that move are sampled at the begin, the middle and the end of the period; a plan that
-/// avoids all three copies avoids the obstacle except between the samples.
+/// A moving obstacle is represented by three copies, at the begin, the middle and the end of the
+/// period. What it covers between them is not represented.
 World world_during(const World& mission_world, const Scene& scene, UtcTime begin, Duration span) {
   const World now = world_at(mission_world, scene, begin);
   std::vector<Obstacle> obstacles = now.obstacles();

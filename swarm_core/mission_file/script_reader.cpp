@@ -73,8 +73,8 @@ class ScriptReader {
     return *std::move(change);
   }
 
-  /// Obstacles that a script moves or removes must exist at that time. Which robots will fall is not
-  /// known, so a script may clear the body of any robot.
+  /// Obstacles that a script moves or removes must exist at that time. Which robots will fall is
+  /// not known, so a script may clear the body of any robot.
   void follow_scene(const MissionAction& action, double at_s, Position at,
                     const std::string& path) {
     const auto* change = std::get_if<SceneChange>(&action);

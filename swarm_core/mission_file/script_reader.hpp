@@ -16,8 +16,8 @@ struct ScriptContext {
   std::uint32_t robots = 0;      ///< number of robots, for events that name one
 };
 
-/// Reads the script of a mission: events in order of time, each of which is a command or a change of
-/// the scene that is possible at its time.
+/// Reads the script of a mission: events in order of time, each of which is a command or a change
+/// of the scene that is possible at its time.
 std::vector<ScriptEvent> read_script(const yaml::Node& node, const ScriptContext& context,
                                      ShapeReader& shapes, yaml::Violations& violations);
 

@@ -168,7 +168,7 @@ std::optional<std::uint32_t> read_count(const Node& node, const std::string& pat
 std::optional<std::string> read_text(const Node& node, const std::string& path,
                                      Violations& violations) {
   if (node.kind == Node::Kind::kScalar) return node.text;
-  violations.add(node.at, fmt::format("{} is {}; must be a text", path, describe(node)));
+  violations.add(node.at, fmt::format("{} is {}; must be text", path, describe(node)));
   return std::nullopt;
 }
 

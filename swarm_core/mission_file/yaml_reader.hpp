@@ -32,8 +32,8 @@ class Violations {
 using swarm::Range;
 
 /// Reads the keys of one mapping strictly: each known key may be given at most once, and an unknown
-/// key is a violation that names the nearest known one. Messages name values by their paths, such as
-/// `link.communication_radius_m`.
+/// key is a violation that names the nearest known one. Messages name values by their paths, such
+/// as `link.communication_radius_m`.
 class MapReader {
  public:
   /// A `node` that is no mapping is a violation, and the reader then behaves like an empty one.

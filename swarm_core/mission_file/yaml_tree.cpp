@@ -92,7 +92,7 @@ class TreeBuilder final : public YAML::EventHandler {
             Node::Kind kind) {
     check(mark, tag, anchor);
     if (!levels_.empty() && is_key_next())
-      refuse(mark, "a key that is not a text; keys are plain text");
+      refuse(mark, "a key that is not text; keys are plain text");
     if (levels_.size() >= static_cast<std::size_t>(kMaxDepth)) {
       refuse(mark, fmt::format("nested deeper than {} levels", kMaxDepth));
     }

@@ -53,8 +53,8 @@ struct ParseError {
 };
 
 /// Parses one document. Refuses features that a mission does not need and an attacker could use:
-/// anchors and aliases, tags, several documents, keys that are not scalars, nesting beyond kMaxDepth
-/// and more than kMaxNodes nodes. Never throws.
+/// anchors and aliases, tags, several documents, keys that are not scalars, nesting beyond
+/// kMaxDepth and more than kMaxNodes nodes. Never throws.
 tl::expected<Node, ParseError> parse(std::string_view text);
 
 }  // namespace swarm::yaml

@@ -56,7 +56,7 @@ TailRisk mixture_tail_risk(std::span<const LineComponent> components, double alp
       above += c.weight * tail(z);
       slope -= c.weight * density(z) / c.sigma_m;
     }
-    // The tail probability falls with z, so its sign tells on which side of the root `var_m` lies.
+    // The tail probability falls with z: above α, `var_m` is below the root.
     (above > 0.0 ? low_m : high_m) = var_m;
     if (above == 0.0) break;
     // Near a narrow component Newton's steps are too long or too short: a step must stay inside the

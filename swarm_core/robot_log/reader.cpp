@@ -164,8 +164,7 @@ class FileReader {
     }
   }
 
-  // Schemas and channels may be repeated, for example after the writer was restarted; the last one
-  // counts.
+  // Schemas and channels may be repeated in a file; the last one counts.
   bool take_schema(View content) {
     Get get(content);
     Schema schema;
@@ -206,8 +205,8 @@ class FileReader {
     return true;
   }
 
-  // Checks everything about a chunk before the first of its messages is handed over: handlers never
-  // receive messages from a damaged chunk.
+  // Checks size, checksum and times of a chunk before it passes on the first message: handlers
+  // receive no message of a chunk whose checksum is wrong.
   bool take_chunk(View content) {
     Get get(content);
     const auto begin_ns = get.number<std::int64_t>();
@@ -297,7 +296,7 @@ class FileReader {
 
 }  // namespace
 
-/// An empty file is what a writer leaves that was killed before its first write.
+/// An empty file is not an error: a writer that was killed before its first write leaves one.
 Result<Damage> read(const std::filesystem::path& file, const Handlers& handlers) {
   const auto mapped = MappedFile::open(file);
   if (!mapped) return tl::unexpected(mapped.error());

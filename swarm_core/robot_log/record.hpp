@@ -42,8 +42,8 @@ struct Step {
   static constexpr std::uint8_t kNoGoal = 255;
 };
 
-/// The robot's estimate of a neighbour's position at `stamp`; the neighbours near it are recorded in
-/// turn.
+/// The robot's estimate of a neighbour's position at `stamp`; the neighbours near it are recorded
+/// in turn.
 struct Estimate {
   UtcTime stamp{};
   RobotId neighbour;

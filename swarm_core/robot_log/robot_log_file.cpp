@@ -21,7 +21,8 @@
 namespace swarm::robot_log {
 namespace {
 
-/// The first bytes of every robot log: magic, header, and schema and channel of each kind of record.
+/// The first bytes of every robot log: magic, header, and schema and channel of each kind of
+/// record.
 const mcap::Bytes& preamble() {
   static const mcap::Bytes kPreamble = [] {
     mcap::Bytes out(mcap::kMagic.begin(), mcap::kMagic.end());

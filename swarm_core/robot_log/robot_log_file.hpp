@@ -90,8 +90,8 @@ using Damage = mcap::Damage;
 /// The robot-log record in a message of any recording; nothing if the message is not one.
 std::optional<RobotRecord> decode(const mcap::Message& message, const mcap::Channel& channel);
 
-/// Calls `take` for every readable record in turn. Fails only if the file cannot be read or is not a
-/// robot log at all.
+/// Calls `take` for every readable record in turn. Fails only if the file cannot be read or is not
+/// a robot log at all.
 Result<Damage> read_records(const std::filesystem::path& file,
                             const std::function<void(const Record&)>& take);
 

@@ -8,8 +8,8 @@
 
 namespace swarm::mcap {
 
-// The sections of the summary in the order in which the MCAP specification lists them, then the
-// offsets of these groups and the footer. `begin` is the position of the summary in the file.
+// The groups of the summary, then the offsets of these groups, the footer and the magic number.
+// `begin` is the position of the summary in the file.
 void Writer::append_summary(Bytes& out, std::uint64_t begin) const {
   Put put(out);
   // All records of one kind, which must be adjacent.

@@ -94,8 +94,8 @@ bool Writer::put(const Bytes& bytes) {
   return false;
 }
 
-// The chunk so far is flushed first, so declarations stay outside chunks and are read even if a
-// chunk is damaged. Declarations that the disk refused are repeated before the next chunk.
+// Declarations are written outside of chunks, after the current chunk and before the first one that
+// uses them. Declarations that the disk refused are written again before the next chunk.
 std::uint16_t Writer::add_channel(const std::string& topic, const Schema& schema,
                                   const std::map<std::string, std::string>& metadata) {
   flush();

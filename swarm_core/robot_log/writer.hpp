@@ -14,8 +14,9 @@
 namespace swarm::mcap {
 
 /// Writes a recording: append-only, in chunks of about 1 MiB, with index and statistics at the end.
-/// A process that is killed loses the messages that are not flushed; all earlier ones can be read. A
-/// full disk loses chunks, whose messages are counted; writing continues when there is room again.
+/// A process that is killed loses the messages that are not flushed; all earlier ones can be read.
+/// A full disk loses chunks, whose messages are counted; writing continues when there is room
+/// again.
 class Writer {
  public:
   /// Creates the file. Fails if it exists: recordings are not overwritten.

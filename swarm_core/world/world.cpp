@@ -278,8 +278,8 @@ double World::distance_up_to_m(const Vec2& point_m, double most_m) const {
   return least_m;
 }
 
-// By convex parts: near a part the distance to the part is that of the obstacle or larger, so the
-// test of all parts is the test of the obstacles.
+// An obstacle is farther than the clearance if and only if all its convex parts are, and distances
+// to parts are cheaper because their edges are precomputed.
 bool World::is_clear(const Vec2& point_m, double clearance_m) const {
   return !convex_boxes_.any_within({point_m, point_m}, clearance_m, [&](std::uint32_t i) {
     return convex_obstacles_[i].signed_distance(point_m).distance_m <= clearance_m;

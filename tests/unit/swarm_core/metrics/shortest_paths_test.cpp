@@ -128,8 +128,8 @@ TEST(ShortestPaths, LetAPointInsideAGrownObstacleOut) {
   EXPECT_NEAR(distance(paths, {5, 9}, {5, 6.2}), 2.8, 1e-9);
 }
 
-/// Shortest path on a grid with moves to 16 neighbours: never shorter than the true one, and in free
-/// space longer by at most 1/cos(½·26.57°) = 2.75 %.
+/// Shortest path on a grid with moves to 16 neighbours: never shorter than the true one, and in
+/// free space longer by at most 1/cos(½·26.57°) = 2.75 %.
 class GridOracle {
  public:
   GridOracle(const World& world, double radius, double cell, int cells)

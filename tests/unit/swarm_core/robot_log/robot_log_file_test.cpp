@@ -66,7 +66,7 @@ class RobotLogFile : public testing::Test {
  protected:
   RobotLogFile() {
     folder_ = std::filesystem::temp_directory_path() /
-              ("blackbox_test_" + std::to_string(::getpid()) + "_" +
+              ("robot_log_test_" + std::to_string(::getpid()) + "_" +
                testing::UnitTest::GetInstance()->current_test_info()->name());
     file_ = file_of(folder_, RobotId(42));
   }
