@@ -126,8 +126,8 @@ class Fitter {
     return climb_from(std::move(best.components));
   }
 
-  // Removes components lighter than weight_min and runs EM again without them, until none is left.
-  // The heaviest component always stays.
+  // Removes components lighter than weight_min and runs EM again without them, until no component
+  // is too light. The heaviest component always stays.
   void drop_light(Climb& climb_so_far) {
     for (std::uint32_t round = 0; round < kMaxComponents; ++round) {
       std::vector<Component>& components = climb_so_far.components;

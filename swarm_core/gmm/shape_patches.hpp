@@ -31,7 +31,7 @@ struct GreyImage {
 struct ImageFrame {
   Vec2 origin_m = Vec2::Zero();  ///< lower left corner of the lower left pixel
   double pixel_m = 1.0;          ///< side of a pixel
-  bool dark = true;              ///< the shape is what is dark; false: what is bright
+  bool dark = true;              ///< the dark pixels are the shape; false: the bright ones
 };
 
 /// Patches of a picture, in square blocks of pixels just large enough to need at most `blocks_max`:

@@ -55,8 +55,8 @@ Json components_json(const Components& components) {
   return list;
 }
 
-// Throws nlohmann's exceptions on what is missing or of another type; catalogue_from_json() ends
-// them.
+// Throws nlohmann's exceptions for keys that are missing or of another type; catalogue_from_json()
+// catches them.
 // An unknown kind is read as a number, the default of OptionSpec.
 OptionSpec option_from(const Json& json) {
   OptionSpec option{.key = json.at("key").get<std::string>(),

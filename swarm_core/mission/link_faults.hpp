@@ -27,7 +27,7 @@ struct LinkFaults {
 };
 
 /// Reads `loss=0.2,delay-ms=150,jitter-ms=50,from=10,to=60`: every key may be left out, times since
-/// the run began are in seconds. Fails (kBadInput) with what is allowed.
+/// the run began are in seconds. kBadInput names what is allowed.
 Result<LinkFaults> parse_link_faults(std::string_view text);
 
 /// The delay with which a message arrives, or nothing if it is lost. A function of the faults, the

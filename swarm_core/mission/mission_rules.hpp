@@ -13,7 +13,7 @@ namespace swarm {
 /// A rule between several keys that a mission violates.
 struct BrokenRule {
   std::vector<std::string> keys;  ///< paths of the keys it ties, the most likely culprit first
-  std::string message;            ///< what is wrong; what would be right
+  std::string message;            ///< the wrong value and the values that would be right
 };
 
 /// Least communication radius of robots, between their centres [m]: the safety filter begins to

@@ -7,7 +7,7 @@
 namespace swarm {
 
 bool has_body(const Scene& scene, RobotId robot) {
-  // Bodies come last, and are few: most robots are looked for in a scene without any.
+  // From the end, where the few bodies are.
   return std::any_of(scene.obstacles.rbegin(), scene.obstacles.rend(),
                      [&](const SceneObstacle& o) { return o.owner == robot; });
 }

@@ -46,7 +46,7 @@ bool is_not_finite(std::string_view text) {
 }  // namespace
 
 void Violations::add(Position at, std::string what_and_what_instead) {
-  // Quoted pieces of the file must not break the line or steer the terminal.
+  // Quoted parts of the file must not break the line or send control characters to the terminal.
   for (char& c : what_and_what_instead) {
     if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) c = ' ';
   }

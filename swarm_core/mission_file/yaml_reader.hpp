@@ -36,7 +36,8 @@ using swarm::Range;
 /// as `link.communication_radius_m`.
 class MapReader {
  public:
-  /// A `node` that is no mapping is a violation, and the reader then behaves like an empty one.
+  /// A `node` that is not a mapping is a violation; the reader then behaves as for an empty
+  /// mapping.
   MapReader(const Node& node, std::string path, Violations& violations);
 
   /// The value of a key, or null if it is absent (a violation if `required`).

@@ -16,7 +16,7 @@ namespace swarm {
 namespace {
 
 bool is_mass(double mass) {
-  // The tolerance lets a lone source carry 1 with the rounding of a sum.
+  // The tolerance allows a single source whose mass is 1 plus the rounding of a sum.
   return std::isfinite(mass) && mass > 0.0 && mass <= 1.0 + FlowPlan::kMassTolerance;
 }
 

@@ -14,8 +14,8 @@ namespace {
 constexpr std::size_t kEncapsulationBytes = 4;
 constexpr std::array<unsigned char, kEncapsulationBytes> kPlainLittleEndian = {0, 1, 0, 0};
 
-/// Puts values where CDR has them: each at a multiple of its size, counted behind the
-/// encapsulation.
+/// Writes values as CDR: each at a multiple of its size, counted from the end of the encapsulation
+/// header.
 class Encoder {
  public:
   explicit Encoder(std::vector<unsigned char>& out) : out_(out) {
@@ -29,7 +29,8 @@ class Encoder {
       out_.push_back(static_cast<unsigned char>(value >> (8U * i)));
     }
   }
-  /// RTPS carries multiples of four bytes: so is what is recorded, or a replay would change it.
+  /// Pads the message to a multiple of four bytes, as RTPS does: a message that is published again
+  /// in a replay then has the same bytes as the recorded one.
   void finish() { out_.resize((out_.size() + 3) / 4 * 4); }
   void put(float value) { put(std::bit_cast<std::uint32_t>(value)); }
   void put(double value) { put(std::bit_cast<std::uint64_t>(value)); }
@@ -92,7 +93,7 @@ class Decoder {
   }
   void refuse() { good_ = false; }
 
-  /// Whether everything read was there and well-formed, and nothing but padding is left over.
+  /// Whether all values read were present and well-formed and only padding is left.
   bool finished() const { return good_ && in_.size() < 4; }
   bool good() const { return good_; }
 

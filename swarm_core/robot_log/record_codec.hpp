@@ -15,7 +15,7 @@
 /// Robot-log records as messages: plain CDR of the structs of idl/blackbox.idl, little-endian.
 namespace swarm::robot_log {
 
-/// Largest text kept of a note's code and text, and most refusal counters.
+/// Most bytes of a note's code and of its text, and most refusal counters; the rest is cut off.
 inline constexpr std::size_t kMaxNoteText = 4096;
 inline constexpr std::size_t kMaxRefusals = 255;
 

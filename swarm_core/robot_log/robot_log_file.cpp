@@ -76,7 +76,7 @@ std::filesystem::path file_of(const std::filesystem::path& run_dir, RobotId robo
 
 RecordEncoder::RecordEncoder() = default;
 
-/// The header comes first and gives the id that the records after it are encoded with.
+/// The header is the first record; the records after it are encoded with its robot id.
 void RecordEncoder::add(const Record& record) {
   if (const auto* header = std::get_if<Header>(&record)) robot_ = header->robot;
   encode(robot_, record, message_);
@@ -122,7 +122,8 @@ Writer& Writer::operator=(Writer&& other) noexcept {
   return *this;
 }
 
-/// Writes what waits and the end. An empty file gets none: nothing could be read from it anyway.
+/// Writes the waiting records and the end. An empty file gets no end: without a beginning it could
+/// not be read.
 Writer::~Writer() {
   if (fd_ < 0) return;
   write();
@@ -159,8 +160,8 @@ void Writer::write() {
       bytes = ::write(fd_, buffer_.data(), buffer_.size());
     } while (bytes < 0 && errno == EINTR);
     written = bytes == static_cast<ssize_t>(buffer_.size());
-    // Half a record would hide the next one from a simple reader. If this fails too, readers
-    // resync.
+    // A partial record would hide the next one from a simple reader, so it is removed. If that
+    // fails too, readers resume at the next chunk.
     if (!written && bytes > 0) [[maybe_unused]]
       const int ignored = ::ftruncate(fd_, before.st_size);
   }

@@ -45,8 +45,9 @@ class RecordEncoder {
 /// respawned robot's process appends to the same file.
 class Writer {
  public:
-  /// Creates the file and its folder if need be. Writes `at_once` records at a time, the first time
-  /// `turn` records earlier: what is not written yet is lost when the process is killed.
+  /// Creates the file and its folder if they do not exist. Writes `at_once` records at a time, the
+  /// first time `turn` records earlier. Records that are not written are lost when the process is
+  /// killed.
   static Result<Writer> open(const std::filesystem::path& file, std::uint32_t at_once = 1,
                              std::uint32_t turn = 0);
   Writer(Writer&& other) noexcept;

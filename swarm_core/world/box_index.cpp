@@ -32,8 +32,8 @@ BoxIndex::BoxIndex(std::vector<Box> boxes) : boxes_(std::move(boxes)) {
   build(0, static_cast<std::uint32_t>(boxes_.size()));
 }
 
-// Halves by the median of the centres on the longer side of all: depth log₂ n for any input, equal
-// boxes included.
+// Splits the boxes at the median of their centres along the axis on which the centres spread most:
+// the depth is log₂ n for any input, equal boxes included.
 void BoxIndex::build(std::uint32_t first, std::uint32_t last) {
   const std::size_t at = tree_.size();
   tree_.emplace_back();

@@ -15,7 +15,7 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // Cells of the grid: 128 along each side of a square, 64 kB of offsets besides the candidates.
 constexpr double kCellsMax = 128.0 * 128.0;
-constexpr double kHair_m = 1e-9;  // rounding must not hide a candidate
+constexpr double kHair_m = 1e-9;  // slack, so that rounding does not exclude a candidate
 
 Box grown(const Box& box, const Vec2& point_m) {
   return {box.min_m.cwiseMin(point_m), box.max_m.cwiseMax(point_m)};
@@ -47,7 +47,7 @@ Result<ShapeField> ShapeField::make(std::vector<Polygon> polygons, std::vector<B
   for (const Polygon& polygon : polygons) {
     for (const Vec2& v : polygon.vertices_m()) field.extent_m_ = grown(field.extent_m_, v);
   }
-  // A world cuts polygons into convex parts that know their distance.
+  // A World decomposes polygons into convex parts, which compute signed distances.
   auto world =
       World::make(field.extent_m_, std::vector<Obstacle>(polygons.begin(), polygons.end()));
   if (!world) return tl::unexpected(world.error());
