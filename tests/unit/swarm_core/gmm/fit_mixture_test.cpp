@@ -85,7 +85,7 @@ TEST(FitMixture, BicFindsTheNumberOfComponents) {
 }
 
 TEST(FitMixture, LikelihoodNeverFalls) {
-  // With covariances at their floor and patches of some extent: where a careless M-step would fall.
+  // Covariances at their floor and patches with an extent: a wrong M-step would lower F here.
   for (const double sigma_min_m : {0.01, 0.5, 2.0}) {
     for (std::uint32_t components = 1; components <= 12; ++components) {
       Rng rng(components);

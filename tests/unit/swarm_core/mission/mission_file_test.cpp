@@ -17,7 +17,7 @@
 namespace swarm {
 namespace {
 
-/// As our own programs read it.
+/// Parses with the built-in components.
 Result<Mission> parse(std::string_view yaml, const std::string& name) {
   return parse_mission(yaml, name, {}, builtin_catalogue());
 }
