@@ -7,7 +7,7 @@
 #   Swarmflow::robot     drivers and control methods; run_robot()
 #   Swarmflow::planning  planning methods; run_planner()
 #   Swarmflow::observe   observers of a run in flight or of its recording
-#   Swarmflow::bus       the bus behind the others, for whoever links it by itself
+#   Swarmflow::bus       the bus that robot, planning and observe use, for programs that link it directly
 include(CMakePackageConfigHelpers)
 
 # swarm_export(TARGET [NAME]): the package has this target, as Swarmflow::NAME.

@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-// A control method of one's own: each robot runs after a carrot on its path through the plan and
-// keeps a little away from its neighbours. The safety filter below every method keeps contacts out.
+// A control method of one's own: each robot follows a carrot on its path through the plan and keeps
+// a small distance from its neighbours. The safety filter, which limits the velocity desired by any
+// method, prevents contacts.
 #include <algorithm>
 
 #include <swarmflow/mission/option_table.hpp>

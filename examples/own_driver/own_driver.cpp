@@ -27,7 +27,7 @@ class LaggingBase final : public Driver {
       : options_(options), position_m_(context.position_m), at_(context.now) {}
 
   Measurement measure(SteadyTime now) override {
-    // The watchdog that every base has: a command holds until valid_until_, then the base stops.
+    // The watchdog that every base has: a command is valid until valid_until_, then the base stops.
     const SteadyTime until = std::clamp(valid_until_, at_, now);
     advance(to_seconds(until - at_), command_mps_);
     advance(to_seconds(now - until), Vec2::Zero());

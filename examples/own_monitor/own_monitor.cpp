@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-// A monitor of one's own: once a second of mission time, how far the swarm's centre is from where
-// the plan has it; events as they come. Of a run in flight, or with --recorded of a finished one.
+// A monitor of one's own: once per second of mission time it prints how far the swarm's centre is
+// from where the plan has it, and every event when it is received. It observes a run in flight, or
+// with --recorded a finished one.
 #include <cstdio>
 #include <string_view>
 #include <vector>

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-// A planning method of one's own: the whole swarm flows through one gate whose place the mission
-// tells, straight from its start and straight to its goal.
+// A planning method of one's own: the whole swarm flows through one gate, whose position is an
+// option of the mission file: straight from the start to the gate and from there to the goal.
 #include <algorithm>
 #include <utility>
 #include <vector>

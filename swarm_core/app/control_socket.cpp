@@ -22,6 +22,7 @@
 namespace swarm::shell {
 namespace {
 
+/// A client gives up when the launcher sends nothing for this long.
 constexpr int kAnswerTimeout_ms = 15'000;
 constexpr std::size_t kMaxLine = 256 * 1024;  // a polygon of 4096 corners
 
@@ -55,6 +56,8 @@ void send_line(int fd, const std::string& line) {
 
 }  // namespace
 
+/// Removes the socket that a killed launcher may have left in the directory: bind() would refuse
+/// it.
 Result<ControlServer> ControlServer::listen(const std::filesystem::path& run_dir) {
   ControlServer server;
   server.socket_ = run_dir / kControlSocket;
@@ -84,6 +87,9 @@ ControlServer::~ControlServer() {
   ::unlink(socket_.c_str());
 }
 
+/// Accepts all waiting clients and reads what they sent, both without blocking. Only the first line
+/// of a client is its request; the connection stays open until answer(), or until the client closes
+/// it.
 std::vector<ControlServer::Request> ControlServer::poll() {
   for (int fd = 0;
        (fd = ::accept4(listen_fd_, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC)) >= 0;) {
@@ -97,8 +103,12 @@ std::vector<ControlServer::Request> ControlServer::poll() {
            client.input.size() <= kMaxLine) {
       client.input.append(buffer.data(), static_cast<std::size_t>(n));
     }
+    // A read of 0 bytes is the client's end of file; EAGAIN only means that nothing has arrived
+    // yet.
     const bool gone = n == 0 || (n < 0 && errno != EAGAIN && errno != EINTR);
     const std::size_t end = client.input.find('\n');
+    // A complete request is served even if its sender has closed its side: the command may be a
+    // stop.
     if (!client.asked && end != std::string::npos) {
       client.asked = true;
       requests.push_back({client.id, client.input.substr(0, end)});
@@ -118,12 +128,14 @@ std::vector<ControlServer::Request> ControlServer::poll() {
 void ControlServer::answer(ClientId id, const std::string& text) {
   const auto client =
       std::find_if(clients_.begin(), clients_.end(), [&](const Client& c) { return c.id == id; });
-  if (client == clients_.end()) return;  // went without waiting for it
+  if (client == clients_.end()) return;  // the client left before the answer
   send_line(client->fd, text);
   ::close(client->fd);
   clients_.erase(client);
 }
 
+/// Blocks until the launcher closes the connection, which it does after the last line of its
+/// answer. The result is decided by that last line.
 Result<bool> send_command(const std::filesystem::path& run_dir, const std::string& line,
                           const std::function<void(const std::string&)>& on_line) {
   const int fd = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
@@ -137,11 +149,12 @@ Result<bool> send_command(const std::filesystem::path& run_dir, const std::strin
   const std::string text = line + "\n";
   for (std::size_t sent = 0; sent < text.size();) {
     const ssize_t n = ::send(fd, text.data() + sent, text.size() - sent, MSG_NOSIGNAL);
-    if (n <= 0) break;  // it says why below, or nothing
+    if (n <= 0) break;  // the server closed early: its answer, read below, gives the reason
     sent += static_cast<std::size_t>(n);
   }
   std::string input;
   std::string last;
+  // The answer may arrive in pieces of any length; each complete line is passed on at once.
   for (pollfd waiting{.fd = fd, .events = POLLIN, .revents = 0};
        ::poll(&waiting, 1, kAnswerTimeout_ms) > 0;) {
     std::array<char, 4096> buffer;

@@ -10,34 +10,41 @@
 
 #include "swarmflow/core/result.hpp"
 
-/// `swarm_launcher command` talks to the launcher of a run through a Unix socket in the run
-/// directory: the launcher is matched with every agent already, so a stop goes out at once.
-/// Line-based: the client sends one line, a word and its arguments; the server answers with lines
-/// of text; the last starts with "done" or "failed".
+/// `swarm_launcher command` sends commands to the launcher of a run through a Unix socket in the
+/// run directory. The launcher's DDS endpoints are matched with those of every agent already, so a
+/// stop goes out without discovery. The protocol is line-based: the client sends one line, a
+/// command and its arguments; the server answers with lines of text, the last of which starts with
+/// "done" or "failed".
 namespace swarm::shell {
 
+/// The launcher's end of the socket; single-threaded, polled by the launcher's loop. Only the user
+/// who runs the mission can connect.
 class ControlServer {
  public:
+  /// Makes the socket `control.sock` in a run directory. kEnvironment if that is not possible.
   static Result<ControlServer> listen(const std::filesystem::path& run_dir);
   ControlServer(ControlServer&& other) noexcept;
   ControlServer& operator=(ControlServer&&) = delete;
   ~ControlServer();
 
+  /// Number of a connection, in the order in which connections were accepted.
   using ClientId = std::uint32_t;
+  /// A line that a client sent, without its newline.
   struct Request {
     ClientId client = 0;
     std::string line{};
   };
 
-  /// What was asked since the last call; never blocks. Every request is to be answered. A line that
-  /// is too long is answered with "failed" and dropped.
+  /// The requests since the last call; never blocks. The caller must answer() each of them. A line
+  /// that is too long is answered with "failed" and dropped.
   std::vector<Request> poll();
 
-  /// Sends the last line, or lines, of an answer and lets the client go.
+  /// Sends the last line, or lines, of an answer and closes the connection.
   void answer(ClientId client, const std::string& text);
 
  private:
   ControlServer() = default;
+  /// A connection: what was received so far, and whether its request was returned by poll().
   struct Client {
     ClientId id = 0;
     int fd = -1;
@@ -50,8 +57,8 @@ class ControlServer {
   ClientId next_id_ = 0;
 };
 
-/// Sends a line and hands every line of the answer to `on_line`. True when the last one says
-/// "done".
+/// Sends a line and calls `on_line` for every line of the answer. True when the last one starts
+/// with "done".
 Result<bool> send_command(const std::filesystem::path& run_dir, const std::string& line,
                           const std::function<void(const std::string&)>& on_line);
 

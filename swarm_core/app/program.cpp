@@ -12,6 +12,8 @@
 
 namespace swarm::shell {
 
+// Domain code returns errors as values; what is thrown nevertheless (for example std::bad_alloc)
+// ends here with the exit code of a failing environment.
 int run_main(const std::string& name, const std::function<Result<ExitCode>()>& body) {
   try {
     const Result<ExitCode> code = body();
@@ -29,15 +31,18 @@ int run_main(const std::string& name, const std::function<Result<ExitCode>()>& b
 
 void add_common_options(CLI::App& app) {
   app.set_version_flag("--version", app.get_name() + " " + SWARM_VERSION);
-  app.add_option("--check", "Validate a mission file, say all that is wrong with it, and exit")
+  app.add_option("--check", "Validate a mission file, report every error in it, and exit")
       ->type_name("MISSION.yaml");
 }
 
 Result<std::optional<ExitCode>> parse(CLI::App& app, int argc, char** argv,
                                       const Catalogue& catalogue) {
-  // --check is a task of its own: what the program needs otherwise is not required beside it.
+  // --check replaces the program's normal task, so it is handled before the parser demands the
+  // options that the program otherwise requires.
   for (int i = 1; i < argc; ++i) {
     const std::string argument = argv[i];
+    // CLI11 accepts both `--check FILE` and `--check=FILE`; so does this search before its parser
+    // runs.
     const bool inline_value = argument.starts_with("--check=");
     if (!inline_value && argument != "--check") continue;
     if (!inline_value && i + 1 == argc) break;
@@ -50,6 +55,7 @@ Result<std::optional<ExitCode>> parse(CLI::App& app, int argc, char** argv,
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
+    // CLI11 reports --help and --version as exceptions with exit code 0.
     if (e.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) {
       app.exit(e);  // prints help or version
       return ExitCode::kOk;

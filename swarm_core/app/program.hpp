@@ -13,7 +13,7 @@ namespace CLI {
 class App;
 }
 
-/// What the main() of every program shares. Domain code never includes this.
+/// What the main() functions of all programs share. Domain code never includes this.
 namespace swarm::shell {
 
 /// Runs a program's body: prints an error to stderr as `name: message` (every line) and turns it
@@ -23,9 +23,9 @@ int run_main(const std::string& name, const std::function<Result<ExitCode>()>& b
 /// Adds `--version` and `--check MISSION.yaml` (validate and exit), which every program has.
 void add_common_options(CLI::App& app);
 
-/// Parses. Holds an exit code when there is nothing left to do (help, version, check); an error of
-/// kind kBadInput on wrong usage. `--check` knows the components of `catalogue`; a program that
-/// has only some leaves the sections of the others open.
+/// Parses the command line. Holds an exit code when there is nothing left to do (help, version,
+/// check); kBadInput on wrong usage. `--check` checks the components of `catalogue`; a program that
+/// has only some of them leaves the sections of the others open.
 Result<std::optional<ExitCode>> parse(CLI::App& app, int argc, char** argv,
                                       const Catalogue& catalogue = open_catalogue());
 

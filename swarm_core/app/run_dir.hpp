@@ -9,8 +9,8 @@
 
 namespace swarm::shell {
 
-/// Makes the directory of a run with its folders and says where it is, as an absolute path. `out`
-/// empty: runs/<mission>-<time>. Refuses a directory that holds a run already.
+/// Makes the directory of a run with its folders and returns its absolute path. An empty `out`
+/// stands for runs/<mission>-<time>. Refuses a directory that holds a run already.
 Result<std::filesystem::path> make_run_dir(const std::filesystem::path& out,
                                            const std::string& mission);
 

@@ -13,6 +13,8 @@
 
 namespace swarm::shell {
 
+// rename() within one directory is atomic, so a reader finds the old content or the new one. The
+// process id keeps two writers from sharing a temporary file.
 Result<void> write_file(const std::filesystem::path& file, std::string_view content) {
   const std::filesystem::path temporary = file.string() + fmt::format(".tmp{}", ::getpid());
   {
@@ -33,6 +35,7 @@ Result<void> write_file(const std::filesystem::path& file, std::string_view cont
   return {};
 }
 
+// The size is checked before memory is allocated: a run directory may come from another machine.
 Result<std::string> read_file(const std::filesystem::path& file, std::size_t max_bytes) {
   std::error_code error;
   const auto size = std::filesystem::file_size(file, error);
@@ -51,6 +54,7 @@ Result<std::string> read_file(const std::filesystem::path& file, std::size_t max
   return content;
 }
 
+// The key "hubs" is the file format's name of the relays.
 Result<void> write_run_info(const std::filesystem::path& run_dir, const RunInfo& info) {
   const nlohmann::json json = {{"domain", info.domain},
                                {"discovery_host", info.discovery_host},
@@ -67,6 +71,8 @@ Result<void> write_run_info(const std::filesystem::path& run_dir, const RunInfo&
   return write_file(run_dir / kRunFile, json.dump(2) + "\n");
 }
 
+// Every key is required: a file that lacks one was written by another version, and its run cannot
+// be joined. An unknown channel counts as topics.
 Result<RunInfo> read_run_info(const std::filesystem::path& run_dir) {
   const auto text = read_file(run_dir / kRunFile, 1U << 16U);
   if (!text) return tl::unexpected(text.error());

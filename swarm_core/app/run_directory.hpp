@@ -11,9 +11,11 @@
 #include "swarmflow/core/time.hpp"
 #include "swarm_core/mission/channel.hpp"
 
-/// A run's directory: where the launcher, the planner, the agents and the monitor meet.
+/// The directory of a run: the files by which launcher, planner, agents and monitor exchange what
+/// does not go over the bus.
 namespace swarm::shell {
 
+/// Names of the files and folders of a run directory, as they are on disk.
 inline constexpr std::string_view kMissionFile = "mission.resolved.yaml";
 inline constexpr std::string_view kPlanFile = "plan.json";
 inline constexpr std::string_view kPlanStatsFile = "plan_stats.json";
@@ -32,22 +34,26 @@ struct RunInfo {
   std::uint32_t domain = 0;
   std::string discovery_host = "127.0.0.1";
   std::uint16_t discovery_port = 0;
-  std::uint32_t agents = 0;       ///< processes
-  std::uint32_t relays = 0;         ///< of launcher and planner each; 0: everyone meets at the server
-  bool cyclone_launcher = false;  ///< whose DDS the launcher speaks
-  bool cyclone_planner = false;   ///< whose DDS the planner speaks
-  std::string host = "127.0.0.1";       ///< where launcher and planner are
-  std::string interface = "127.0.0.1";  ///< address of the interface robots here speak on
+  std::uint32_t agents = 0;  ///< number of agent processes
+  /// Relay participants of launcher and planner each; 0: all use the discovery server.
+  std::uint32_t relays = 0;
+  bool cyclone_launcher = false;        ///< whether the launcher uses Cyclone DDS
+  bool cyclone_planner = false;         ///< whether the planner uses Cyclone DDS
+  std::string host = "127.0.0.1";       ///< address of the host of launcher and planner
+  std::string interface = "127.0.0.1";  ///< address of the interface that robots of this host use
   Channel channel = Channel::kTopics;
   std::uint64_t seed = 0;
   UtcTime began{};
 };
 
+/// Writes `run.json`, atomically.
 Result<void> write_run_info(const std::filesystem::path& run_dir, const RunInfo& info);
+/// Reads `run.json`; kBadInput if it is missing or lacks a key.
 Result<RunInfo> read_run_info(const std::filesystem::path& run_dir);
 
 /// Writes a whole file under a temporary name and renames it, so that readers never see half of it.
 Result<void> write_file(const std::filesystem::path& file, std::string_view content);
+/// The content of a file of at most `max_bytes`; kBadInput if it is larger or cannot be read.
 Result<std::string> read_file(const std::filesystem::path& file, std::size_t max_bytes);
 
 }  // namespace swarm::shell

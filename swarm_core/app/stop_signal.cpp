@@ -11,17 +11,20 @@ namespace {
 std::atomic<int> requests{0};
 static_assert(std::atomic<int>::is_always_lock_free, "used in a signal handler");
 
+// A signal handler may only touch lock-free atomics; the loops of the program poll the count.
 void on_signal(int) { requests.fetch_add(1, std::memory_order_relaxed); }
 
 }  // namespace
 
+// SIGPIPE is ignored because every send already checks its result, and a peer that closed its
+// socket must not end the process.
 void catch_stop_signals() {
   struct sigaction action = {};
   action.sa_handler = on_signal;  // no SA_RESTART: a sleeping loop wakes up
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
   std::signal(SIGPIPE, SIG_IGN);
-  std::signal(SIGXFSZ, SIG_IGN);  // a limit of file sizes is a full disk like any other
+  std::signal(SIGXFSZ, SIG_IGN);  // a write over the limit of file sizes fails as on a full disk
 }
 
 int stop_requests() { return requests.load(std::memory_order_relaxed); }

@@ -4,11 +4,11 @@
 
 namespace swarm::shell {
 
-/// Installs handlers for SIGINT and SIGTERM that only count; SIGPIPE and SIGXFSZ are ignored.
-/// Sleeps return early.
+/// Installs handlers for SIGINT and SIGTERM that only count them, and ignores SIGPIPE and SIGXFSZ.
+/// A sleep during which a signal arrives returns early.
 void catch_stop_signals();
 
-/// How often the user asked to stop so far.
+/// Number of SIGINT and SIGTERM signals so far.
 int stop_requests();
 
 }  // namespace swarm::shell

@@ -5,7 +5,8 @@
 #include <cstdio>
 #include <cstdlib>
 
-/// Aborts on a bug of ours, in every build type. Never for input: that gets a Result.
+/// Aborts the program, in every build type, if a condition that the code guarantees does not hold.
+/// Never used for input, whose errors are returned as a Result.
 #define SWARM_ASSERT(condition)                                                              \
   do {                                                                                       \
     if (!(condition)) {                                                                      \

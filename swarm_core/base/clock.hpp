@@ -6,7 +6,9 @@
 
 namespace swarm {
 
-/// What the machine's clock says; for those by the input validation alone, everyone else is given the time.
+/// The time of the machine's clock. Only the outermost code of a program (its main loop and its
+/// input validation) reads it; all other code gets the time as a parameter, so that tests and the
+/// simulator control it.
 inline UtcTime utc_now() {
   return std::chrono::time_point_cast<Duration>(std::chrono::system_clock::now());
 }

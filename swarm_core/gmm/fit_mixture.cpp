@@ -14,20 +14,25 @@
 namespace swarm {
 namespace {
 
+// Of one mixture: a robot log stores the goal component in one byte, and 255 means none.
 constexpr std::uint32_t kMaxComponents = 255;
+// The search for the number of components ends after this many numbers without a better BIC.
 constexpr std::uint32_t kBicStepsWithoutGain = 3;
+// EM iterations that each start is given before the best start is chosen.
 constexpr std::uint32_t kFirstSteps = 10;
-// A component with less than this of the weight has no covariance worth a name.
+// A component with less than this share of the weight has no meaningful covariance.
 constexpr double kNothing = 1e-12;
 // A share below e⁻⁴⁰ is lost in the rounding of the others' sum.
 constexpr double kNoShare = -40.0;
 
+// One Gaussian of the fit, without the checks of swarm::Gaussian.
 struct Component {
   double weight = 0.0;
   Vec2 mean_m = Vec2::Zero();
   Mat2 covariance_m2 = Mat2::Zero();
 };
 
+// The result of one run of EM: its components and F after each iteration.
 struct Climb {
   std::vector<Component> components;
   std::vector<double> history;  // of F
@@ -44,6 +49,7 @@ struct LogDensity {
     constant =
         std::log(component.weight) - 0.5 * std::log(determinant) - std::log(2.0 * std::numbers::pi);
   }
+  // ln ω + ln g(c) − ½ tr(Σ⁻¹ S) of a patch with centre c and spread S.
   double of(const Patch& patch) const {
     const double dx = patch.center_m.x() - mean_m.x();
     const double dy = patch.center_m.y() - mean_m.y();
@@ -55,6 +61,8 @@ struct LogDensity {
   double xx, xy, yy, constant;
 };
 
+// Raises the eigenvalues below `floor_m2` to it and keeps the eigenvectors. A symmetric 2×2 matrix
+// has the eigenvalues middle ± radius, so no eigen-decomposition is needed.
 Mat2 raised_to_floor(const Mat2& s, double floor_m2) {
   const double middle = 0.5 * (s(0, 0) + s(1, 1));
   const double half_difference = 0.5 * (s(0, 0) - s(1, 1));
@@ -71,6 +79,7 @@ Mat2 raised_to_floor(const Mat2& s, double floor_m2) {
   return raised;
 }
 
+// Weighted moments of patches about a reference point, from which the M-step computes a component.
 struct Sums {
   double weight = 0.0;
   double x = 0.0, y = 0.0, xx = 0.0, xy = 0.0, yy = 0.0;
@@ -86,6 +95,8 @@ struct Sums {
     yy += mass * (dy * dy + patch.spread_m2(1, 1));
   }
 
+  // Mean and covariance by the shift of moments: Σ = E[dd'] − step·step', d the offset from
+  // `about_m`.
   Component component(const Vec2& about_m, double sigma_min_m) const {
     const Vec2 step(x / weight, y / weight);
     Mat2 covariance;
@@ -95,12 +106,14 @@ struct Sums {
   }
 };
 
+// Expectation-maximisation on one set of patches. `components_` and `shares_` are the state that
+// the two steps exchange; every step costs O(patches · components).
 class Fitter {
  public:
   Fitter(std::vector<Patch> patches, const FitOptions& options)
       : patches_(std::move(patches)), options_(options) {}
 
-  // A few steps from each start tell which is worth climbing on.
+  // Runs a few EM iterations from each start, then continues from the start with the largest F.
   Climb best_of_starts(std::uint32_t components, Rng& rng) {
     Climb best;
     for (std::uint32_t start = 0; start < options_.starts; ++start) {
@@ -113,7 +126,8 @@ class Fitter {
     return climb_from(std::move(best.components));
   }
 
-  // Leaves out what is too light to matter and climbs again without it.
+  // Removes components lighter than weight_min and runs EM again without them, until no component
+  // is too light. The heaviest component always stays.
   void drop_light(Climb& climb_so_far) {
     for (std::uint32_t round = 0; round < kMaxComponents; ++round) {
       std::vector<Component>& components = climb_so_far.components;
@@ -129,6 +143,9 @@ class Fitter {
     }
   }
 
+  // BIC = −2nF + (6K − 1) ln n. The patches are weighted, so n is their effective number (Σv)²/Σv²
+  // (Kish) with Σv = 1; a component has a weight, 2 coordinates and 3 covariances, less one for Σω
+  // = 1.
   double bic(const Climb& climbed) const {
     double squares = 0.0;
     for (const Patch& patch : patches_) squares += patch.weight * patch.weight;
@@ -157,6 +174,8 @@ class Fitter {
     return centres;
   }
 
+  // Inverse-transform sampling of an index in proportion to `chance`; empty if every chance is 0.
+  // `last` catches a rounding of the sum that leaves `left` above 0 after the last index.
   static std::optional<std::size_t> draw(const std::vector<double>& chance, Rng& rng) {
     double sum = 0.0;
     for (const double c : chance) sum += c;
@@ -172,6 +191,7 @@ class Fitter {
     return last;
   }
 
+  // The first expectation step of a start: each patch belongs to its nearest centre entirely.
   void share_by_nearest(const std::vector<Vec2>& centres) {
     components_.assign(centres.size(), {});
     for (std::size_t j = 0; j < centres.size(); ++j) components_[j].mean_m = centres[j];
@@ -186,14 +206,15 @@ class Fitter {
     }
   }
 
+  // Continues from given components: their shares come first, then full EM iterations.
   Climb climb_from(std::vector<Component> components) {
     components_ = std::move(components);
     expect();
     return climb(options_.iterations_max);
   }
 
-  // From the shares at hand. The first maximisation only starts it: F is known after the first
-  // expectation that follows.
+  // EM iterations from the current shares. F is known after the expectation step that follows a
+  // maximisation, so convergence is tested from the second iteration on.
   Climb climb(std::uint32_t iterations) {
     Climb climbed;
     for (std::uint32_t i = 0; i < iterations; ++i) {
@@ -216,6 +237,8 @@ class Fitter {
     double sum = 0.0;
     for (std::size_t i = 0; i < patches_.size(); ++i) {
       double* share = &shares_[i * k];
+      // Log-sum-exp: the largest term is subtracted before exp(), so far patches do not underflow
+      // to 0/0.
       double highest = -std::numeric_limits<double>::infinity();
       for (std::size_t j = 0; j < k; ++j) {
         share[j] = densities[j].of(patches_[i]);
@@ -233,8 +256,8 @@ class Fitter {
     return sum;
   }
 
-  // M-step, in one sweep: sums about the old means, so that far from the origin nothing cancels.
-  // Components that own nothing any more are forgotten.
+  // M-step, in one sweep. Moments are summed about the old means, because sums about the origin
+  // would cancel far away from it. Components without weight are removed.
   void maximise() {
     const std::size_t k = components_.size();
     std::vector<Sums> sums(k);
@@ -258,6 +281,8 @@ class Fitter {
   std::vector<double> shares_;  // row-major [patches × components]
 };
 
+// Tries K = 1, 2, … and keeps the fit with the smallest BIC. The BIC is not convex in K, so a few
+// numbers without gain are tolerated before the search ends.
 Climb chosen_by_bic(Fitter& fitter, const FitOptions& options, Rng& rng) {
   Climb best;
   double best_bic = std::numeric_limits<double>::infinity();
@@ -274,6 +299,7 @@ Climb chosen_by_bic(Fitter& fitter, const FitOptions& options, Rng& rng) {
   return best;
 }
 
+// Options may come from a mission file, so violations are errors of input and not assertions.
 Result<void> check(const FitOptions& o) {
   const auto refuse = [](std::string what) { return fail(ErrorCode::kBadInput, std::move(what)); };
   if (o.components > kMaxComponents || o.components_max < 1 || o.components_max > kMaxComponents) {
@@ -289,7 +315,7 @@ Result<void> check(const FitOptions& o) {
   return {};
 }
 
-// Those with weight, their weights scaled to sum 1.
+// The patches with positive weight, their weights scaled to sum 1.
 Result<std::vector<Patch>> normalised(std::span<const Patch> patches) {
   std::vector<Patch> good;
   double sum = 0.0;
@@ -322,6 +348,7 @@ Result<MixtureFit> fit_mixture(std::span<const Patch> patches, const FitOptions&
   Fitter fitter(*std::move(good), options);
   Climb climbed = options.components > 0 ? fitter.best_of_starts(options.components, rng)
                                          : chosen_by_bic(fitter, options, rng);
+  // Only the chosen fit drops light components; doing so inside the search would change its BIC.
   fitter.drop_light(climbed);
 
   std::vector<WeightedGaussian> components;

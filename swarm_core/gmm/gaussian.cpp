@@ -12,10 +12,12 @@
 namespace swarm {
 namespace {
 
+// Largest difference of the off-diagonal entries, relative to the larger variance.
 constexpr double kSymmetryTolerance = 1e-9;
 // Lets a covariance that sits exactly on a limit survive its own rounding.
 constexpr double kLimitSlack = 1.0 + 1e-9;
 
+// The larger eigenvalue of a symmetric 2×2 matrix: half the trace plus the radius of Mohr's circle.
 double max_variance_m2(const Mat2& s) {
   const double half_difference = 0.5 * (s(0, 0) - s(1, 1));
   return 0.5 * (s(0, 0) + s(1, 1)) +
@@ -24,6 +26,8 @@ double max_variance_m2(const Mat2& s) {
 
 }  // namespace
 
+// The checked constructor for input. Bounds on both standard deviations keep every later division
+// and square root well-conditioned.
 Result<Gaussian> Gaussian::make(const Vec2& mean_m, const Mat2& covariance_m2) {
   if (!mean_m.allFinite() || !covariance_m2.allFinite()) {
     return fail(ErrorCode::kBadInput, "Gaussian: mean and covariance must be finite numbers");
@@ -54,6 +58,7 @@ Result<Gaussian> Gaussian::make(const Vec2& mean_m, const Mat2& covariance_m2) {
   return g;
 }
 
+// [SwarmPRM, eq. 8]: Σ = [[σ₁², ρσ₁σ₂], [ρσ₁σ₂, σ₂²]].
 Gaussian Gaussian::from_parameters(const Vec2& mean_m, double sigma1_m, double sigma2_m,
                                    double rho) {
   SWARM_ASSERT(mean_m.allFinite());
@@ -66,6 +71,8 @@ Gaussian Gaussian::from_parameters(const Vec2& mean_m, double sigma1_m, double s
   return from_valid(mean_m, covariance);
 }
 
+// For covariances that are positive definite by construction, such as those on a W₂ geodesic: the
+// cheap part of make() without its error messages.
 Gaussian Gaussian::from_valid(const Vec2& mean_m, const Mat2& covariance_m2) {
   Gaussian g(mean_m, covariance_m2);
   // Rounding of a product like AΣA may leave the last bit of the two off-diagonals different.
@@ -82,6 +89,7 @@ double Gaussian::min_sigma_m() const {
 
 double Gaussian::max_sigma_m() const { return std::sqrt(max_variance_m2(covariance_m2_)); }
 
+// d'Σ⁻¹d with the inverse written out as adjugate over determinant.
 double Gaussian::mahalanobis_squared(const Vec2& point_m) const {
   const Vec2 d = point_m - mean_m_;
   return (covariance_m2_(1, 1) * d.x() * d.x() - 2.0 * covariance_m2_(0, 1) * d.x() * d.y() +
@@ -94,6 +102,7 @@ double Gaussian::density(const Vec2& point_m) const {
          (2.0 * std::numbers::pi * std::sqrt(determinant()));
 }
 
+// LL' = Σ; maps standard normal vectors to samples of the Gaussian.
 Mat2 cholesky_lower(const Mat2& covariance_m2) {
   Mat2 lower = Mat2::Zero();
   lower(0, 0) = std::sqrt(covariance_m2(0, 0));

@@ -17,11 +17,16 @@ struct Run {
   std::size_t bottom = 0;
 };
 
+// A picture in square blocks of `side` pixels, each of which belongs to the shape or does not;
+// blocks at the right and lower border may be smaller.
 class Blocks {
  public:
   Blocks(const GreyImage& image, bool dark, std::size_t side)
       : image_(image), dark_(dark), side_(side) {}
 
+  // A sweep over the rows of blocks. An open run that the next row repeats with the same left and
+  // right ends grows by that row; any other open run is complete. O(pixels + rows · runs²) in the
+  // worst case, linear for drawings with few runs in a row.
   std::vector<Run> runs() const {
     std::vector<Run> done;
     std::vector<Run> open;
@@ -46,6 +51,7 @@ class Blocks {
   }
 
  private:
+  // Maximal sequences of shape blocks in one row.
   std::vector<Run> runs_of_row(std::size_t top) const {
     std::vector<Run> runs;
     const std::size_t bottom = std::min(top + side_, image_.height);
@@ -61,6 +67,7 @@ class Blocks {
     return runs;
   }
 
+  // Whether the mean level of a block is at least half of full darkness (or brightness).
   bool is_shape(std::size_t left, std::size_t top) const {
     std::size_t sum = 0;
     std::size_t pixels = 0;
@@ -85,11 +92,14 @@ std::vector<Box> image_boxes(const GreyImage& image, const ImageFrame& frame,
                              std::size_t boxes_max) {
   SWARM_ASSERT(boxes_max > 0 && image.levels.size() == image.width * image.height);
   std::vector<Run> runs = Blocks(image, frame.dark, 1).runs();
+  // Blocks grow by one pixel until the boxes are few enough; a single block is one box, so this
+  // ends.
   for (std::size_t side = 2; runs.size() > boxes_max; ++side) {
     runs = Blocks(image, frame.dark, side).runs();
   }
   std::vector<Box> boxes;
   boxes.reserve(runs.size());
+  // Rows count from the top of the picture, the world's y axis points up.
   const auto corner = [&](std::size_t x, std::size_t y) -> Vec2 {
     return frame.origin_m +
            frame.pixel_m * Vec2(static_cast<double>(x), static_cast<double>(image.height - y));

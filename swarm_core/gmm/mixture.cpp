@@ -11,6 +11,8 @@
 
 namespace swarm {
 
+// Weights within the tolerance are scaled to sum 1, so that later sums need no tolerance of their
+// own.
 Result<Mixture> Mixture::make(std::vector<WeightedGaussian> components) {
   if (components.empty()) return fail(ErrorCode::kBadInput, "mixture: needs a component");
   double sum = 0.0;
@@ -37,6 +39,8 @@ double Mixture::density(const Vec2& point_m) const {
   return density;
 }
 
+// Inverse of the cumulated weights. The last component also takes what rounding leaves above the
+// sum.
 std::size_t Mixture::component_at(double u) const {
   SWARM_ASSERT(!components_.empty());
   double cumulated = 0.0;

@@ -11,7 +11,7 @@
 namespace swarm {
 namespace {
 
-// Sums about a reference point near by: far from the origin nothing cancels.
+// Moments about a reference point nearby, because sums about the origin would cancel far from it.
 struct Moments {
   double weight = 0.0;
   Vec2 first = Vec2::Zero();
@@ -47,7 +47,8 @@ void add_convex(std::span<const Vec2> vertices_m, const Vec2& reference_m, Momen
   }
 }
 
-// What of a convex polygon has coordinate `axis` in [low, high].
+// The part of a convex polygon whose coordinate `axis` is in [low, high], by clipping it at two
+// half-planes (Sutherland–Hodgman).
 void clip(const std::vector<Vec2>& vertices_m, Eigen::Index axis, double low, double high,
           std::vector<Vec2>& scratch_m, std::vector<Vec2>& clipped_m) {
   const auto keep_side = [axis](const std::vector<Vec2>& in, double limit, double sign,
@@ -68,6 +69,7 @@ void clip(const std::vector<Vec2>& vertices_m, Eigen::Index axis, double low, do
   keep_side(scratch_m, low, -1.0, clipped_m);
 }
 
+// Square cells over the bounding box of a polygon.
 struct Grid {
   Vec2 min_m;
   double cell_m;
@@ -96,6 +98,7 @@ struct Grid {
   }
 };
 
+// The cell side gives about `cells_max` cells of equal area over the bounding box.
 Grid grid_over(const std::vector<Vec2>& vertices_m, std::size_t cells_max) {
   Vec2 low = vertices_m[0];
   Vec2 high = low;
@@ -116,6 +119,8 @@ Grid grid_over(const std::vector<Vec2>& vertices_m, std::size_t cells_max) {
 
 }  // namespace
 
+// Each convex part is cut into rows of cells and each row into cells, so a part only costs the
+// cells that it touches. Moments of parts in the same cell are added: they do not overlap.
 std::vector<Patch> polygon_patches(const Polygon& polygon, std::size_t cells_max) {
   SWARM_ASSERT(cells_max > 0);
   const Grid grid = grid_over(polygon.vertices_m(), cells_max);
@@ -127,6 +132,7 @@ std::vector<Patch> polygon_patches(const Polygon& polygon, std::size_t cells_max
     const auto [first_row, end_row] = grid.span_of(part_m, 1, grid.rows);
     for (std::size_t row = first_row; row < end_row; ++row) {
       clip(part_m, 1, grid.edge_m(1, row), grid.edge_m(1, row + 1), scratch_m, row_part_m);
+      // Clipping leaves a point or a line where the part only touches the row; its area is 0.
       if (row_part_m.size() < 3) continue;
       const auto [first_column, end_column] = grid.span_of(row_part_m, 0, grid.columns);
       for (std::size_t column = first_column; column < end_column; ++column) {
@@ -145,9 +151,12 @@ std::vector<Patch> polygon_patches(const Polygon& polygon, std::size_t cells_max
   return patches;
 }
 
+// Blocks grow by one pixel until there are few enough of them. The moments of a block count pixels
+// as points; `pixel_m2` then adds the variance of a uniform square, p²/12, for each pixel.
 std::vector<Patch> image_patches(const GreyImage& image, const ImageFrame& frame,
                                  std::size_t blocks_max) {
   SWARM_ASSERT(blocks_max > 0 && image.levels.size() == image.width * image.height);
+  // Number of blocks along a side, the last of which may be cut.
   const auto blocks = [](std::size_t pixels, std::size_t side) {
     return (pixels + side - 1) / side;
   };

@@ -11,7 +11,7 @@
 
 namespace swarm {
 
-/// Enough to fit a mixture by, few enough to fit it in a fraction of a second.
+/// Number of patches that is enough for a good fit and keeps the fit below a second.
 inline constexpr std::size_t kShapePatches = 1024;
 
 /// Cuts a polygon along a square grid of about `cells_max` cells over its box. A patch is the
@@ -20,21 +20,21 @@ inline constexpr std::size_t kShapePatches = 1024;
 /// is. O(convex parts · (rows + cells touched)).
 std::vector<Patch> polygon_patches(const Polygon& polygon, std::size_t cells_max = kShapePatches);
 
-/// A grey picture, 0 = black; rows from the top down.
+/// A grey picture: 0 is black, 255 is white; rows from the top down.
 struct GreyImage {
   std::size_t width = 0;
   std::size_t height = 0;
   std::vector<std::uint8_t> levels;  ///< row-major [height × width]
 };
 
-/// Where a picture lies in the world, which has y up.
+/// Where a picture lies in the world, whose y axis points up.
 struct ImageFrame {
   Vec2 origin_m = Vec2::Zero();  ///< lower left corner of the lower left pixel
   double pixel_m = 1.0;          ///< side of a pixel
-  bool dark = true;              ///< the shape is what is dark; false: what is bright
+  bool dark = true;              ///< the dark pixels are the shape; false: the bright ones
 };
 
-/// Patches of a picture, in blocks of as many pixels as it takes to need at most `blocks_max`:
+/// Patches of a picture, in square blocks of pixels just large enough to need at most `blocks_max`:
 /// weight = darkness (or brightness) summed over the block, in pixels; centre and spread exact with
 /// every pixel a uniform square. Empty for a picture without shape.
 std::vector<Patch> image_patches(const GreyImage& image, const ImageFrame& frame,

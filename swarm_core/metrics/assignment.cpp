@@ -19,12 +19,14 @@
 namespace swarm {
 namespace {
 
+/// Costs are rounded to 1e-6 and bounded by 1e9: sums of 1e15 units per pair fit 64-bit integers.
 constexpr double kUnitsPerCost = 1e6;
 constexpr double kMaxCost = 1e9;
 
-/// Shortest augmenting paths with two cheap rounds before them (Jonker and Volgenant, 1987), on
-/// whole costs: every step is exact. Column potentials v keep c(i, j) − v(j) smallest at i's
-/// column.
+/// Shortest augmenting paths after two reductions that assign most rows cheaply (Jonker and
+/// Volgenant, 1987), on integer costs, so every step is exact. Invariant: with the column
+/// potentials v, the reduced cost c(i, j) − v(j) of each assigned row i is least at its own column.
+/// O(n³).
 class Assignment {
  public:
   Assignment(const std::vector<std::int64_t>& costs, std::size_t n)
@@ -51,8 +53,8 @@ class Assignment {
     column_of_[i] = j;
   }
 
-  /// Each column to its cheapest row, if that row is still free; then the potential of each such
-  /// column is lowered as far as its row allows.
+  /// Column reduction: assigns each column to its cheapest row if that row is still free. Then the
+  /// potential of the only column of a row is lowered until another column is as good for the row.
   void reduce_columns() {
     std::vector<std::size_t> cheapest(n_, 0);
     for (std::size_t j = 0; j < n_; ++j) potential_[j] = costs_[j];
@@ -78,8 +80,9 @@ class Assignment {
     }
   }
 
-  /// Each free row takes its cheapest column, at the price at which the second one is as cheap; who
-  /// had it is free in turn. At most a few tries a row: what is left costs an augmentation each.
+  /// Augmenting row reduction: each free row takes its column of least reduced cost and lowers that
+  /// column's potential until its second-best column is as good; the row that owned the column
+  /// becomes free. The number of tries is bounded; rows that stay free are assigned by augment().
   void reduce_rows() {
     std::vector<std::size_t> left;
     std::size_t tries = 4 * n_;
@@ -104,6 +107,8 @@ class Assignment {
           at_second = j;
         }
       }
+      // With a strict gap the row keeps its first choice even if another row owned that column;
+      // with a tie it avoids the owned column, or two rows would displace each other for ever.
       const bool outbids = first < second;
       std::size_t j = at_first;
       potential_[j] -= second - first;
@@ -117,12 +122,15 @@ class Assignment {
     free_ = std::move(left);
   }
 
-  /// The cheapest path from a free row to a free column (Dijkstra), along which rows move on.
+  /// Finds the cheapest alternating path from a free row to a free column (Dijkstra on reduced
+  /// costs) and reassigns the rows along it. O(n²).
   void augment(std::size_t free_row) {
     distance_.resize(n_);
     from_.assign(n_, free_row);
     open_.resize(n_);
     std::iota(open_.begin(), open_.end(), 0);
+    // Distances are reduced costs c(i, j) − v(j) along the path; `from_` stores the row before a
+    // column.
     std::size_t nearest = 0;  // index into open_
     for (std::size_t j = 0; j < n_; ++j) {
       distance_[j] = row(free_row)[j] - potential_[j];
@@ -135,6 +143,9 @@ class Assignment {
       open_.pop_back();
       closed_.push_back(j);
       const std::size_t i = row_of_[j];
+      // Reaches the open columns through the row that owns column j. `offset` turns its reduced
+      // costs into distances from the free row. Among equal distances a free column is preferred:
+      // it ends the search.
       const std::int64_t offset = row(i)[j] - potential_[j] - distance_[j];
       std::int64_t least = kFar;
       for (std::size_t o = 0; o < open_.size(); ++o) {
@@ -152,7 +163,9 @@ class Assignment {
     }
     const std::size_t end = open_[nearest];
     const std::int64_t reached = distance_[end];
+    // The update of the potentials keeps every assigned pair a cheapest one of its row.
     for (const std::size_t j : closed_) potential_[j] += distance_[j] - reached;
+    // Walks back to the free row; every row on the path moves to the column after it.
     for (std::size_t j = end;;) {
       const std::size_t i = from_[j];
       const std::size_t next = column_of_[i];
@@ -172,6 +185,8 @@ class Assignment {
 
 }  // namespace
 
+/// The transport as a minimum-cost flow on the complete bipartite graph. Integer costs make the
+/// network simplex exact; arcs are added row by row, so the id of an arc is its index in `costs`.
 double transport_cost(std::span<const double> costs, std::span<const std::int64_t> supplies,
                       std::span<const std::int64_t> demands) {
   SWARM_ASSERT(costs.size() == supplies.size() * demands.size());

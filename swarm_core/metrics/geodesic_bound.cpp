@@ -15,10 +15,10 @@
 namespace swarm {
 namespace {
 
-/// Cost of a pair without a way: more than all ways together in any world robots drive in.
+/// Cost of a pair without a path: more than the sum of all path lengths in any realistic world.
 constexpr double kNoPath_m = 1e8;
 
-/// Points gathered at one of them each.
+/// Groups of points, each of which has one of its points as its centre.
 struct Groups {
   std::vector<Vec2> centers_m;
   std::vector<std::int64_t> sizes;
@@ -55,6 +55,8 @@ void gather(std::span<const Vec2> points, Indices indices, std::size_t most,
   groups.sizes.push_back(static_cast<std::int64_t>(indices.size()));
 }
 
+/// Groups of one point each while there are at most kExactBoundRobots points: the bound is then the
+/// exact assignment.
 Groups groups_of(std::span<const Vec2> points, const ShortestPaths& paths) {
   const std::size_t most = (points.size() + kExactBoundRobots - 1) / kExactBoundRobots;
   Groups groups;
@@ -65,13 +67,16 @@ Groups groups_of(std::span<const Vec2> points, const ShortestPaths& paths) {
   }
   std::vector<std::size_t> indices(points.size());
   std::iota(indices.begin(), indices.end(), 0);
-  // Halving ends between most and 2·most: aim so that the number of groups stays near the limit.
+  // Halving ends with groups between half of the limit and the limit: a limit of 2·most − 1 keeps
+  // the number of groups near kExactBoundRobots.
   gather(points, indices, 2 * most - 1, paths, groups);
   return groups;
 }
 
 }  // namespace
 
+/// W₁ with geodesic costs. Moving points to their centres changes the total by at most the sum of
+/// the moved distances, which is subtracted: the result stays a lower bound.
 double geodesic_bound_m(const World& world, double robot_radius_m, std::span<const Vec2> starts,
                         std::span<const Vec2> ends) {
   SWARM_ASSERT(starts.size() == ends.size());
@@ -80,6 +85,8 @@ double geodesic_bound_m(const World& world, double robot_radius_m, std::span<con
   const Groups from = groups_of(starts, paths);
   const Groups to = groups_of(ends, paths);
   std::vector<double> costs = paths.distances_m(from.centers_m, to.centers_m);
+  // An infinite cost would break the integer simplex; a large finite one shows in the total
+  // instead.
   bool all_paths_exist = true;
   for (double& cost : costs) {
     all_paths_exist = all_paths_exist && cost <= kNoPath_m;

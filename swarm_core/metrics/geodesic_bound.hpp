@@ -9,7 +9,7 @@
 
 namespace swarm {
 
-/// Up to here the bound is the optimal assignment itself.
+/// Largest number of robots for which the bound is the optimal assignment itself.
 inline constexpr std::size_t kExactBoundRobots = 2000;
 
 /// Mean over the robots of the optimal assignment between `starts` and `ends` with shortest

@@ -11,11 +11,13 @@
 namespace swarm {
 namespace {
 
-/// Bins per power of two, and the exponent below which every value has a bin of its own.
+/// Bins per power of two, and its logarithm: every value below 2⁴ has a bin of its own.
 constexpr std::size_t kPerOctave = 16;
 constexpr int kLinearBits = 4;
 constexpr std::int64_t kLargest_us = (std::int64_t{1} << 32) - 1;
 
+/// The leading one of a value selects the octave and the 4 bits after it the bin, as in a
+/// floating-point number with a 4-bit mantissa.
 std::size_t bin_of(std::int64_t value_us) {
   const auto value = static_cast<std::uint64_t>(std::clamp<std::int64_t>(value_us, 0, kLargest_us));
   if (value < kPerOctave) return static_cast<std::size_t>(value);
@@ -25,6 +27,7 @@ std::size_t bin_of(std::int64_t value_us) {
 
 }  // namespace
 
+/// The inverse of bin_of(): the largest value that it maps to `bin`.
 std::int64_t Histogram::top_us(std::size_t bin) {
   SWARM_ASSERT(bin < kBins);
   if (bin < kPerOctave) return static_cast<std::int64_t>(bin);
@@ -52,6 +55,8 @@ void Histogram::add_bin(std::size_t bin, std::uint64_t count) {
   count_ += count;
 }
 
+/// Reports the top of a bin and never the middle, so a quantile is not understated. The exact
+/// maximum limits it, or the last bin would overstate it.
 std::int64_t Histogram::quantile_us(double q) const {
   if (count_ == 0) return 0;
   const double wanted = std::clamp(q, 0.0, 1.0) * static_cast<double>(count_);

@@ -16,7 +16,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// Largest distance between an arc and its chord; coarser only in worlds with very many corners.
 constexpr double kSagitta_m = 1e-3;
 
-/// Obstacles are entered when a path is deeper inside than this: walking along a wall is allowed.
+/// A path enters an obstacle if it is deeper inside than this, so paths along a wall are allowed.
 constexpr double kSkin_m = 1e-7;
 
 double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
@@ -33,6 +33,9 @@ void add_arc(std::vector<Vec2>& out, const Vec2& center, double radius, double f
   }
 }
 
+/// The outline of a convex obstacle grown by `by` (its Minkowski sum with a disc): edges move
+/// outwards and every corner becomes an arc. The chords lie inside the arcs, so the outline is
+/// never too large.
 std::vector<Vec2> grown(const ConvexObstacle& obstacle, double by, double sagitta) {
   std::vector<Vec2> out;
   const std::vector<Vec2>& corners = obstacle.vertices_m;
@@ -69,6 +72,7 @@ double outside(const Vec2& p, const Vec2& a, const Vec2& b) {
   return cross(p - a, edge) / edge.norm();
 }
 
+/// Deeper inside than the skin: a point on the outline counts as outside.
 bool strictly_inside(const Vec2& p, std::span<const Vec2> outline) {
   for (std::size_t i = 0; i < outline.size(); ++i) {
     if (outside(p, outline[i], outline[(i + 1) % outline.size()]) > -kSkin_m) return false;
@@ -107,10 +111,14 @@ bool touches(const Vec2& p, const Vec2& at, const Vec2& before, const Vec2& afte
 
 }  // namespace
 
+/// Builds the visibility graph: vertices are the corners of the grown obstacles, edges join corners
+/// that see each other and at both of which a shortest path may turn. O(V² · parts) time.
 ShortestPaths::ShortestPaths(const World& world, double robot_radius_m)
     : bounds_m_(world.bounds_m()) {
   std::vector<const ConvexObstacle*> obstacles;
   for (const ConvexObstacle& obstacle : world.convex_obstacles()) obstacles.push_back(&obstacle);
+  // Large obstacles come first, so that the small ones are left out where there are too many
+  // corners.
   const auto size = [](const ConvexObstacle* o) { return (o->box.max_m - o->box.min_m).norm(); };
   std::stable_sort(obstacles.begin(), obstacles.end(),
                    [&](const auto* a, const auto* b) { return size(a) > size(b); });
@@ -137,6 +145,7 @@ ShortestPaths::ShortestPaths(const World& world, double robot_radius_m)
       vertices_.push_back({at, part.vertices_m[(i + n - 1) % n], part.vertices_m[(i + 1) % n]});
     }
   }
+  // edges_from() checks tangency at the far end of an edge only; the near end is checked here.
   for (const Vertex& vertex : vertices_) {
     std::vector<Edge> edges = edges_from(vertex.at_m, {});
     std::erase_if(edges, [&](const Edge& edge) {
@@ -147,6 +156,7 @@ ShortestPaths::ShortestPaths(const World& world, double robot_radius_m)
   }
 }
 
+/// The grown obstacles around a point; more than one where they overlap.
 std::vector<std::uint32_t> ShortestPaths::parts_around(const Vec2& p) const {
   std::vector<std::uint32_t> around;
   for (std::uint32_t i = 0; i < parts_.size(); ++i) {
@@ -155,6 +165,7 @@ std::vector<std::uint32_t> ShortestPaths::parts_around(const Vec2& p) const {
   return around;
 }
 
+/// `ignored` are the parts that contain an end of the path: the robot may leave them freely.
 bool ShortestPaths::blocks(std::uint32_t part, const Vec2& a, const Vec2& b,
                            std::span<const std::uint32_t> ignored) const {
   const Box& box = parts_[part].box;
@@ -178,6 +189,7 @@ bool ShortestPaths::visible(const Vec2& a, const Vec2& b, std::span<const std::u
   return true;
 }
 
+/// All graph vertices to which a shortest path may lead from p in a straight line.
 std::vector<ShortestPaths::Edge> ShortestPaths::edges_from(
     const Vec2& p, std::span<const std::uint32_t> ignored) const {
   std::vector<Edge> edges;
@@ -191,6 +203,8 @@ std::vector<ShortestPaths::Edge> ShortestPaths::edges_from(
   return edges;
 }
 
+/// Dijkstra from a point whose first edges are given. Outdated queue entries are skipped when they
+/// are popped instead of being decreased in place.
 std::vector<double> ShortestPaths::distances_to_vertices(std::span<const Edge> first) const {
   std::vector<double> distances(vertices_.size(), kInfinity);
   using Entry = std::pair<double, std::uint32_t>;
@@ -211,6 +225,8 @@ std::vector<double> ShortestPaths::distances_to_vertices(std::span<const Edge> f
   return distances;
 }
 
+/// One Dijkstra search for each start. Targets are not vertices of the graph: their edges are added
+/// afterwards. A target that the start sees is at the straight distance.
 std::vector<double> ShortestPaths::distances_m(std::span<const Vec2> from,
                                                std::span<const Vec2> to) const {
   std::vector<std::vector<std::uint32_t>> around_to;

@@ -18,23 +18,28 @@ namespace swarm {
 /// and the smallest obstacles are left out: the bound stays a bound.
 class ShortestPaths {
  public:
+  /// Bound of the graph's vertices: its time grows with their square.
   static constexpr std::size_t kMaxVertices = 2000;
 
+  /// Builds the visibility graph of the world. O(vertices² · parts).
   ShortestPaths(const World& world, double robot_radius_m);
 
-  /// Matrix [from.size() × to.size()], row-major [m]; +∞ where no way exists. A point inside a
-  /// grown obstacle may leave it freely (the bound stays a bound).
+  /// Matrix [from.size() × to.size()], row-major [m]; +∞ where no path exists. A point inside a
+  /// grown obstacle may leave it freely, which keeps the result a lower bound.
   std::vector<double> distances_m(std::span<const Vec2> from, std::span<const Vec2> to) const;
 
  private:
+  /// The outline of a grown convex obstacle.
   struct Part {
     std::vector<Vec2> vertices_m;  // convex, counter-clockwise
     Box box;
   };
+  /// A corner of an outline at which a path may turn.
   struct Vertex {
     Vec2 at_m;
     Vec2 before_m, after_m;  // its neighbours on the part's outline
   };
+  /// A straight piece of a path to a vertex.
   struct Edge {
     std::uint32_t to;
     double length_m;

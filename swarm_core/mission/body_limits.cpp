@@ -13,12 +13,15 @@ namespace {
 
 // A unicycle (λ = 1.02 s, 1.5 m/s) follows plans of 0.8 robots/m² and not of 1.5: d = 1.03 m.
 constexpr double kRoomPerLag = 0.25;
+// Shares measured in runs; SwarmLimits documents what each of them bounds.
 constexpr double kCapShare = 0.75;
 constexpr double kPlanSpeedShare = 0.9;
 constexpr double kPlanSpeedLostPerLag_hz = 0.4;
+// A longer lag costs no more speed: the plan must keep moving.
 constexpr double kLagMost_s = 0.5;
 constexpr double kRobotSpeedShare = 0.93;
 
+// Hexagonal packing of discs at centre distance d: one disc for each area of √3/2 d².
 double packing_per_m2(double distance_m) {
   return 2.0 / (std::numbers::sqrt3 * distance_m * distance_m);
 }
@@ -38,6 +41,7 @@ SwarmLimits swarm_limits(const RobotsSpec& robots, const SafetySpec& safety,
                          const ControlSpec& control) {
   constexpr double kNone = std::numeric_limits<double>::infinity();
   SwarmLimits limits{kNone, kNone, kNone, kNone};
+  // Every limit is the minimum over the bodies, as one plan serves the whole swarm.
   const auto restrict_to = [&](const BodySpec& body) {
     const double lag_s = body_lag_s(body);
     const double speed_mps = std::min(body.speed_max_mps, control.cruise_mps);
@@ -53,6 +57,7 @@ SwarmLimits swarm_limits(const RobotsSpec& robots, const SafetySpec& safety,
     restrict_to(group);
     grouped += group.count;
   }
+  // The body given for all robots counts only if some robots are in no group.
   if (grouped < robots.count) restrict_to(robots);
   limits.cap_per_m2 = kCapShare * limits.packing_per_m2;
   return limits;

@@ -19,6 +19,7 @@ constexpr std::array<std::pair<OptionSpec::Kind, std::string_view>, 3> kKinds{
      {OptionSpec::Kind::kCount, "count"},
      {OptionSpec::Kind::kChoice, "choice"}}};
 
+// A choice has no range and a number no values, so only the keys that apply are written.
 Json option_json(const OptionSpec& option) {
   const auto kind = std::find_if(kKinds.begin(), kKinds.end(),
                                  [&](const auto& k) { return k.first == option.kind; });
@@ -37,6 +38,7 @@ Json option_json(const OptionSpec& option) {
   return json;
 }
 
+// The default lag is left out to keep descriptions of components without a body short.
 Json components_json(const Components& components) {
   Json list = Json::array();
   for (const ComponentSpec& component : components) {
@@ -53,8 +55,9 @@ Json components_json(const Components& components) {
   return list;
 }
 
-// Throws nlohmann's exceptions on what is missing or of another type; catalogue_from_json() ends
-// them.
+// Throws nlohmann's exceptions for keys that are missing or of another type; catalogue_from_json()
+// catches them.
+// An unknown kind is read as a number, the default of OptionSpec.
 OptionSpec option_from(const Json& json) {
   OptionSpec option{.key = json.at("key").get<std::string>(),
                     .fallback = json.at("default").get<std::string>(),
@@ -74,6 +77,7 @@ OptionSpec option_from(const Json& json) {
   return option;
 }
 
+// Reads what components_json() writes; throws in the same way as option_from().
 Components components_from(const Json& list) {
   Components components;
   for (const Json& json : list) {
@@ -113,6 +117,7 @@ std::string to_json(const Catalogue& catalogue) {
       .dump(2);
 }
 
+// The text is the output of another program, possibly of another version: unknown keys are ignored.
 Result<Catalogue> catalogue_from_json(std::string_view text, const std::string& name) {
   try {
     const Json json = Json::parse(text);

@@ -6,8 +6,8 @@
 
 namespace swarm {
 
-/// What carries the robots' states: DDS topics per cell, or multicast groups per cell; see
-/// docs/design.md.
+/// The transport of the robots' state updates: DDS topics per cell, or multicast groups per cell;
+/// see docs/design.md.
 enum class Channel { kTopics, kGroups };
 
 constexpr std::string_view to_string(Channel channel) {

@@ -13,6 +13,7 @@
 namespace swarm {
 namespace {
 
+// Bounds that keep the conversion to nanoseconds far from overflow.
 constexpr double kMaxDelay_ms = 60'000.0;
 constexpr double kMaxTime_s = 1e6;
 
@@ -26,6 +27,8 @@ tl::unexpected<Error> refuse(std::string_view pair, std::string_view why) {
 
 }  // namespace
 
+// Parses pair by pair without copies. from_chars() is used because it does not depend on the
+// locale.
 Result<LinkFaults> parse_link_faults(std::string_view text) {
   LinkFaults faults;
   while (!text.empty()) {
@@ -63,10 +66,14 @@ Result<LinkFaults> parse_link_faults(std::string_view text) {
   return faults;
 }
 
+// A hash in place of a random generator: the fate of a message depends neither on the order of the
+// messages nor on the number of receivers. The low 32 bits decide on loss and the high 32 bits on
+// jitter, so the two are independent.
 std::optional<Duration> fate(const LinkFaults& faults, std::uint64_t seed, std::uint64_t message) {
   constexpr double kScale = 0x1.0p-32;
   const std::uint64_t drawn = mix_seed(seed, message);
   if (static_cast<double>(drawn & 0xFFFFFFFFU) * kScale < faults.loss) return std::nullopt;
+  // Uniform in [−1, 1).
   const double turn = 2.0 * (static_cast<double>(drawn >> 32U) * kScale) - 1.0;
   const Duration jitter(std::llround(turn * static_cast<double>(faults.jitter.count())));
   return std::max(Duration::zero(), faults.delay + jitter);

@@ -12,24 +12,26 @@
 
 namespace swarm {
 
-/// A bad network: what it does to each message of each receiver independently.
+/// Faults injected into the network, for each message and receiver independently.
 struct LinkFaults {
   double loss = 0.0;  ///< share that never arrives
-  Duration delay{};
+  Duration delay{};   ///< mean transit time added to each message
   Duration jitter{};  ///< each message comes up to this much earlier or later than `delay`
   Duration from{};    ///< since the run began
   Duration until = Duration::max();
 
+  /// Whether any message can be lost or delayed.
   bool any() const { return loss > 0.0 || delay > Duration::zero() || jitter > Duration::zero(); }
+  /// Whether the faults are in force at a time since the run began.
   bool at(Duration since_begin) const { return since_begin >= from && since_begin < until; }
 };
 
 /// Reads `loss=0.2,delay-ms=150,jitter-ms=50,from=10,to=60`: every key may be left out, times since
-/// the run began are in seconds. Fails (kBadInput) with what is allowed.
+/// the run began are in seconds. kBadInput names what is allowed.
 Result<LinkFaults> parse_link_faults(std::string_view text);
 
-/// What becomes of a message: how much later than it was sent it arrives, or nothing if it is lost.
-/// A function of the two numbers alone.
+/// The delay with which a message arrives, or nothing if it is lost. A function of the faults, the
+/// seed and the number of the message alone, so a run can be repeated.
 std::optional<Duration> fate(const LinkFaults& faults, std::uint64_t seed, std::uint64_t message);
 
 }  // namespace swarm

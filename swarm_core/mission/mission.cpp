@@ -8,6 +8,7 @@
 
 namespace swarm {
 
+// Groups take the ids from 0 in order; the robots after the last group have the common body.
 const BodySpec& body_of(const RobotsSpec& robots, RobotId robot) {
   SWARM_ASSERT(robot.value() < robots.count);
   std::uint32_t first = 0;
@@ -18,6 +19,7 @@ const BodySpec& body_of(const RobotsSpec& robots, RobotId robot) {
   return robots;
 }
 
+// The common body counts only if some robots are in no group.
 double largest_radius_m(const RobotsSpec& robots) {
   double largest_m = 0.0;
   std::uint32_t grouped = 0;
@@ -28,6 +30,7 @@ double largest_radius_m(const RobotsSpec& robots) {
   return grouped < robots.count ? std::max(largest_m, robots.radius_m) : largest_m;
 }
 
+// A radius of 0 stands for the mission's own radius, so taking the maximum needs no special case.
 double largest_communication_radius_m(const Mission& mission) {
   double largest_m = mission.robots.communication_radius_m;
   for (const RobotGroupSpec& group : mission.robots.groups) {

@@ -10,6 +10,7 @@
 namespace swarm {
 namespace {
 
+/// One side of an inequality: the path of a key and its value.
 struct Side {
   std::string key;
   double value = 0.0;
@@ -34,16 +35,19 @@ class Rules {
   std::vector<BrokenRule> broken;
 };
 
-constexpr double kGroupCellsMax = 4.0;  // per hear radius: at most 100 cells a robot
+constexpr double kGroupCellsMax = 4.0;  // per communication radius: at most 100 cells per robot
 
 }  // namespace
 
+/// Surface gap m + 2 v_max (dt/γ + send_interval_max_s) plus two radii; the factor 2 covers two
+/// robots that drive towards each other at full speed.
 double least_communication_radius_m(const Mission& mission) {
   const double braking_s = 1.0 / (mission.control.rate_hz * mission.safety.gap_share);
   return 2.0 * mission.robots.radius_m + mission.safety.neighbour_margin_m +
          2.0 * mission.robots.speed_max_mps * (braking_s + mission.link.send_interval_max_s);
 }
 
+/// The rules that the option tables declare by OptionSpec::at_most.
 std::vector<BrokenRule> broken_rules(const std::string& section, const Components& components,
                                      const OptionValues& values) {
   Rules rules;
@@ -66,6 +70,8 @@ std::vector<BrokenRule> broken_rules(const std::string& section, const Component
   return std::move(rules.broken);
 }
 
+/// The structured binding names every member, so that a new section of Mission does not compile
+/// until someone has looked at its rules.
 std::vector<BrokenRule> broken_rules(const Mission& mission) {
   const auto& [name, world, robots, start, goal, goal_shape, planner, control, safety, link, timing,
                plan_clock, launcher, criteria, script] = mission;
@@ -74,14 +80,20 @@ std::vector<BrokenRule> broken_rules(const Mission& mission) {
                 {"robots.speed_max_mps", robots.speed_max_mps});
   rules.at_most({"control.cruise_mps", control.cruise_mps},
                 {"robots.speed_max_mps", robots.speed_max_mps});
+  // Robots placed closer than the safety margins would start in violation of the filter's
+  // constraints.
   rules.at_most({"safety.neighbour_margin_m", safety.neighbour_margin_m},
                 {"robots.placement_gap_m", robots.placement_gap_m});
   rules.at_most({"safety.obstacle_margin_m", safety.obstacle_margin_m},
                 {"robots.placement_gap_m", robots.placement_gap_m});
+  // A neighbour that is at rest must not be forgotten between two of its state updates.
   rules.below({"link.send_interval_max_s", link.send_interval_max_s},
               {"timing.neighbour_forget_s", timing.neighbour_forget_s});
+  // The gap between the margins is a hysteresis: a robot on a border must not join and leave at
+  // every step.
   rules.below({"link.join_margin_m", link.join_margin_m},
               {"link.leave_margin_m", link.leave_margin_m});
+  // With cells at least as wide as the radius, the area within it touches at most 3 × 3 cells.
   rules.at_most({"link.communication_radius_m", link.communication_radius_m}, {"link.cell_size_m", link.cell_size_m});
   if (link.communication_radius_m > kGroupCellsMax * link.group_cell_size_m) {
     rules.add({"link.group_cell_size_m", "link.communication_radius_m"},
@@ -95,7 +107,7 @@ std::vector<BrokenRule> broken_rules(const Mission& mission) {
               {"plan_clock.lag_stop_s", plan_clock.lag_stop_s});
   rules.at_most({"plan_clock.lag_stop_s", plan_clock.lag_stop_s},
                 {"plan_clock.hopeless_lag_s", plan_clock.hopeless_lag_s});
-  // One lost heartbeat must not stop the swarm.
+  // The loss of one heartbeat must not stop the swarm.
   if (timing.planner_silence_s * timing.heartbeat_hz < 2.0) {
     rules.add({"timing.planner_silence_s", "timing.heartbeat_hz"},
               fmt::format("timing.planner_silence_s is {}; must be >= {}, two heartbeats",

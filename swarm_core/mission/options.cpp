@@ -29,6 +29,7 @@ const std::string* OptionValues::find(std::string_view key) const {
   return found == values_.end() ? nullptr : &found->second;
 }
 
+// from_chars() does not accept the leading '+' that YAML allows, so it is removed first.
 std::optional<double> OptionValues::number(std::string_view key) const {
   const std::string* text = find(key);
   if (text == nullptr) return std::nullopt;

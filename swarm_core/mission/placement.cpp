@@ -12,14 +12,15 @@
 namespace swarm {
 namespace {
 
-/// Tries per robot before its component counts as full: a free share of 0.2 % of the ellipse is
-/// still found with 1 − e⁻²⁰.
+/// Tries per robot before its component counts as full: free space of 0.2 % of the probability is
+/// still found with probability 1 − e⁻²⁰.
 constexpr int kMaxTries = 10'000;
-/// Of placing all: robots placed at random leave gaps that are too small, a lucky draw fewer.
+/// Attempts to place all robots: in a dense component, random placement leaves gaps that are too
+/// small for another robot, and how many depends on the draw.
 constexpr std::uint64_t kAttempts = 10;
 
-/// Robots placed so far, in square cells as wide as the least distance: whoever is too near stands
-/// in one of nine cells.
+/// Robots placed so far, in square cells as wide as the least distance: a robot that is too near to
+/// a point is in one of the nine cells around it.
 class PlacedRobots {
  public:
   explicit PlacedRobots(double least_distance_m) : cell_m_(least_distance_m) {}
@@ -48,6 +49,8 @@ class PlacedRobots {
     return {static_cast<std::int64_t>(std::floor(p.x() / cell_m_)),
             static_cast<std::int64_t>(std::floor(p.y() / cell_m_))};
   }
+  // A hash of both indices. Cells that collide share a bucket, which costs distance checks and
+  // changes no result.
   static std::uint64_t key(std::int64_t x, std::int64_t y) {
     return mix_seed(static_cast<std::uint64_t>(x), static_cast<std::uint64_t>(y));
   }
@@ -56,13 +59,17 @@ class PlacedRobots {
   std::unordered_map<std::uint64_t, std::vector<Vec2>> cells_;
 };
 
+/// Rejection sampling, robot after robot (random sequential addition). Each robot has its own
+/// generator, so its samples do not depend on how many tries the robots before it needed.
 Result<std::vector<Vec2>> place_once(const Mission& mission, std::uint64_t seed) {
   const RobotsSpec& spec = mission.robots;
   const double radius_m = largest_radius_m(spec);
-  // Off the walls as far as the safety filter keeps robots.
+  // As far from the walls as the safety filter keeps robots.
   const Vec2 wall_m = Vec2::Constant(radius_m + mission.safety.obstacle_margin_m);
   const Box free_m{mission.world.bounds_m().min_m + wall_m,
                    mission.world.bounds_m().max_m - wall_m};
+  // All robots keep the distances of the largest one: a robot's position then does not depend on
+  // its group.
   const double obstacle_clearance_m = radius_m + spec.placement_gap_m;
   PlacedRobots placed(2.0 * radius_m + spec.placement_gap_m);
   std::vector<Vec2> positions;
@@ -104,6 +111,8 @@ double stratified_share(std::uint32_t robot, std::uint32_t robots) {
   return (static_cast<double>(robot) + 0.5) / static_cast<double>(robots);
 }
 
+/// The first attempt uses the seed itself; later ones use seeds derived from it, so the result
+/// stays a function of mission and seed.
 Result<std::vector<Vec2>> place_robots(const Mission& mission, std::uint64_t seed) {
   Result<std::vector<Vec2>> placed = place_once(mission, seed);
   for (std::uint64_t again = 1; again < kAttempts && !placed; ++again) {

@@ -15,11 +15,11 @@ namespace swarm {
 /// \pre robot < robots; asserted
 double stratified_share(std::uint32_t robot, std::uint32_t robots);
 
-/// Where the simulated robots stand at the start [m]: robot i in the start component its stratified
-/// share falls into, a sample of that Gaussian inside the 99 % ellipse, off the bounds by
-/// safety.obstacle_margin_m and clear of obstacles and earlier robots by robots.placement_gap_m.
-/// Deterministic in (mission, seed).
-/// Fails when a component is too crowded to place its robots.
+/// Positions of the simulated robots at the start [m]. Robot i belongs to the start component that
+/// its stratified share falls into; its position is a sample of that Gaussian inside the 99 %
+/// ellipse, safety.obstacle_margin_m away from the bounds and robots.placement_gap_m away from
+/// obstacles and earlier robots. A function of (mission, seed).
+/// Fails when a component is too dense to place its robots.
 Result<std::vector<Vec2>> place_robots(const Mission& mission, std::uint64_t seed);
 
 }  // namespace swarm

@@ -25,6 +25,7 @@ std::size_t vertices_of(const Obstacle& obstacle) {
   return polygon == nullptr ? 0 : polygon->vertices_m().size();
 }
 
+/// Obstacles are sorted by id: the first one that is not below `id`.
 auto find_obstacle(std::vector<SceneObstacle>& obstacles, std::uint32_t id) {
   return std::lower_bound(
       obstacles.begin(), obstacles.end(), id,
@@ -47,11 +48,13 @@ Result<SceneObstacle*> find(Scene& scene, std::uint32_t id, const World& mission
 }
 
 Result<void> make(Scene& scene, const AddObstacle& add, const World&, UtcTime) {
-  const auto at = find_obstacle(scene.obstacles, scene.next_id);  // bodies stay behind it
+  const auto at = find_obstacle(scene.obstacles, scene.next_id);  // bodies have larger ids
   scene.obstacles.insert(at, {.id = scene.next_id++, .shape = add.shape});
   return {};
 }
 
+/// A move starts from the present position, which also ends a move under way. Speed is constant
+/// over the whole move.
 Result<void> make(Scene& scene, const MoveObstacle& move, const World& mission_world, UtcTime now) {
   const auto found = find(scene, move.obstacle, mission_world);
   if (!found) return tl::unexpected(found.error());
@@ -68,6 +71,8 @@ Result<void> make(Scene& scene, const MoveObstacle& move, const World& mission_w
   return {};
 }
 
+/// Only obstacles of the mission file are remembered as removed; for an added one its absence is
+/// enough.
 Result<void> make(Scene& scene, const RemoveObstacle& remove, const World& mission_world, UtcTime) {
   const auto found = find(scene, remove.obstacle, mission_world);
   if (!found) return tl::unexpected(found.error());
@@ -86,6 +91,7 @@ Result<void> make(Scene& scene, const SetRisk& risk, const World&, UtcTime) {
   return {};
 }
 
+/// A robot that falls again replaces its body in place.
 Result<void> make(Scene& scene, const AddBody& add, const World&, UtcTime) {
   const std::uint32_t id = body_id(add.robot);
   const auto at = find_obstacle(scene.obstacles, id);
@@ -110,12 +116,14 @@ Result<void> make(Scene& scene, const ClearBody& clear, const World&, UtcTime) {
 
 }  // namespace
 
+/// In the order of the alternatives of SceneChange.
 std::string_view name_of(const SceneChange& change) {
   constexpr std::string_view kNames[] = {
       "add_obstacle", "move_obstacle", "remove_obstacle", "goto", "risk", "add_body", "clear"};
   return kNames[change.index()];
 }
 
+/// Clamping the time gives the shift before, during and after the move in one formula.
 Vec2 SceneObstacle::shift_m(UtcTime now) const {
   const Duration moved = std::clamp(now, moving_from, moving_until) - moving_from;
   return to_seconds(moved) * velocity_mps;
@@ -134,6 +142,8 @@ Scene first_scene(std::size_t mission_obstacles) {
   return scene;
 }
 
+/// Works on a copy, so that a refused change leaves the scene as it was. The bounds are those of
+/// the scene message on the wire.
 Result<Scene> after(const Scene& scene, const SceneChange& change, const World& mission_world,
                     UtcTime now) {
   Scene next = scene;
@@ -150,11 +160,14 @@ Result<Scene> after(const Scene& scene, const SceneChange& change, const World& 
                     "robots included, and {} removed",
                     Scene::kMaxObstacles, Scene::kMaxVertices, Scene::kMaxRemoved));
   }
+  // The clock may step back; versions must ascend nevertheless.
   next.version =
       std::max(scene.version + 1, static_cast<std::uint64_t>(now.time_since_epoch().count()));
   return next;
 }
 
+/// Merges two lists sorted by number: obstacles of the mission file and changed ones. Bodies have
+/// the largest numbers, so they end up last, as World::make() requires.
 World world_at(const World& mission_world, const Scene& scene, UtcTime now) {
   std::vector<Obstacle> obstacles;
   std::vector<Vec2> velocities_mps;
@@ -180,6 +193,8 @@ World world_at(const World& mission_world, const Scene& scene, UtcTime now) {
   return *std::move(world);
 }
 
+/// A moving obstacle is represented by three copies, at the begin, the middle and the end of the
+/// period. What it covers between them is not represented.
 World world_during(const World& mission_world, const Scene& scene, UtcTime begin, Duration span) {
   const World now = world_at(mission_world, scene, begin);
   std::vector<Obstacle> obstacles = now.obstacles();
@@ -193,6 +208,7 @@ World world_during(const World& mission_world, const Scene& scene, UtcTime begin
   return *std::move(world);
 }
 
+/// A phase begins at each scene and at the end of each move, unless the next scene comes first.
 std::vector<WorldPhase> world_phases(const World& mission_world, const std::vector<Scene>& scenes) {
   std::vector<WorldPhase> phases;
   for (std::size_t i = 0; i < scenes.size(); ++i) {
@@ -214,6 +230,8 @@ std::vector<WorldPhase> world_phases(const World& mission_world, const std::vect
   return phases;
 }
 
+/// A scene in which everything that ever changed is removed; numbers of added obstacles among them
+/// have no effect.
 World lasting_world(const World& mission_world, const std::vector<Scene>& scenes) {
   Scene without = first_scene(mission_world.obstacles().size());
   for (const Scene& scene : scenes) {

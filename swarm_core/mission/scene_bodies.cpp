@@ -7,7 +7,7 @@
 namespace swarm {
 
 bool has_body(const Scene& scene, RobotId robot) {
-  // Bodies come last, and are few: most robots are looked for in a scene without any.
+  // From the end, where the few bodies are.
   return std::any_of(scene.obstacles.rbegin(), scene.obstacles.rend(),
                      [&](const SceneObstacle& o) { return o.owner == robot; });
 }
@@ -17,6 +17,8 @@ Scene without_bodies(Scene scene) {
   return scene;
 }
 
+// One unsigned comparison tests first ≤ id < first + robots: smaller ids wrap around to large
+// numbers.
 Scene without_bodies_of(Scene scene, RobotId first, std::uint32_t robots) {
   std::erase_if(scene.obstacles, [&](const SceneObstacle& o) {
     return o.owner && o.owner->value() - first.value() < robots;
@@ -24,6 +26,9 @@ Scene without_bodies_of(Scene scene, RobotId first, std::uint32_t robots) {
   return scene;
 }
 
+// Follows the scenes in order of time. A body that is missing from a scene was cleared at that
+// scene; one that is present and not open yet begins there. A later shape of an open body replaces
+// the earlier one.
 std::vector<FallenBody> bodies_of(const std::vector<Scene>& scenes) {
   std::vector<FallenBody> bodies;
   for (const Scene& scene : scenes) {

@@ -8,7 +8,7 @@
 
 #include "swarmflow/mission/scene.hpp"
 
-/// The bodies of robots that are not received any more: obstacles with an owner.
+/// The bodies of robots whose state updates are no longer received: obstacles with an owner.
 namespace swarm {
 
 /// Whether a robot's body is an obstacle.
@@ -17,7 +17,7 @@ bool has_body(const Scene& scene, RobotId robot);
 /// The scene without the bodies of all robots.
 Scene without_bodies(Scene scene);
 
-/// The scene without the bodies of these robots: a robot does not keep off its own body.
+/// The scene without the bodies of these robots: a robot does not avoid its own body.
 Scene without_bodies_of(Scene scene, RobotId first, std::uint32_t robots);
 
 /// A body that was an obstacle for a while.
@@ -28,8 +28,8 @@ struct FallenBody {
   std::optional<UtcTime> cleared{};  ///< until then; empty: to the end of the run
 };
 
-/// All bodies of a run that went through these scenes, by the time they became obstacles. A robot
-/// that falls again has another one.
+/// All bodies of a run that went through these scenes, by the time at which they became obstacles.
+/// A robot that falls twice appears twice.
 std::vector<FallenBody> bodies_of(const std::vector<Scene>& scenes);
 
 }  // namespace swarm

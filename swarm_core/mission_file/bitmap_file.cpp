@@ -22,6 +22,7 @@ tl::unexpected<std::string> refuse(std::string what) {
   return tl::unexpected<std::string>(std::move(what));
 }
 
+/// Sizes are checked before pixels are allocated: a header of a few bytes can announce any size.
 std::optional<std::string> wrong_size(std::size_t width, std::size_t height) {
   if (width >= 1 && height >= 1 && width <= kMaxBitmapSide && height <= kMaxBitmapSide) {
     return std::nullopt;
@@ -30,6 +31,8 @@ std::optional<std::string> wrong_size(std::size_t width, std::size_t height) {
                      kMaxBitmapSide, kMaxBitmapSide);
 }
 
+/// Uses libpng's simplified interface, which reports errors in `message` instead of by longjmp, and
+/// lets it convert every kind of PNG to 8-bit grey.
 Parsed parse_png(const std::string& bytes, std::uint8_t background) {
   png_image image;
   std::memset(&image, 0, sizeof image);
@@ -47,6 +50,7 @@ Parsed parse_png(const std::string& bytes, std::uint8_t background) {
   image.format = PNG_FORMAT_GRAY;
   GreyImage grey{image.width, image.height, {}};
   grey.levels.resize(grey.width * grey.height);
+  // Transparent pixels are composed with this colour.
   const png_color behind{background, background, background};
   if (png_image_finish_read(&image, &behind, grey.levels.data(), 0, nullptr) == 0) {
     return complaint();
@@ -60,6 +64,7 @@ class PnmReader {
  public:
   explicit PnmReader(std::string_view bytes) : bytes_(bytes) {}
 
+  // The digit after 'P' selects the kind: 1 and 4 are bits, 2 and 5 are greys; 1 and 2 are text.
   Parsed read() {
     const char kind = bytes_[1];
     at_ = 2;
@@ -83,6 +88,7 @@ class PnmReader {
   }
 
  private:
+  // The blanks of the specification, whatever the locale.
   static bool is_space(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
 
   void skip_blanks() {
@@ -98,6 +104,7 @@ class PnmReader {
     }
   }
 
+  // Nine digits at most: the product of two such numbers still fits 64 bits.
   std::optional<std::size_t> number() {
     skip_blanks();
     std::size_t value = 0;
@@ -114,6 +121,7 @@ class PnmReader {
     return static_cast<std::uint8_t>(255 * value / most);
   }
 
+  // In bitmaps 1 is black, in greys 0 is black.
   bool text_bits(GreyImage& image) {
     for (std::size_t i = 0; i < image.width * image.height; ++i) {
       skip_blanks();
@@ -132,6 +140,7 @@ class PnmReader {
     return true;
   }
 
+  // Rows are padded to whole bytes; the leftmost pixel is the highest bit.
   bool packed_bits(GreyImage& image) {
     ++at_;  // the one blank after the header
     const std::size_t row_bytes = (image.width + 7) / 8;
@@ -160,6 +169,7 @@ class PnmReader {
   std::size_t at_ = 0;
 };
 
+/// Reads in pieces up to the limit: the size that the file system reports may be wrong by then.
 tl::expected<std::string, std::string> read_bytes(const std::filesystem::path& file) {
   // A pipe or a device could keep the reader waiting for ever.
   std::error_code error;
@@ -181,6 +191,7 @@ tl::expected<std::string, std::string> read_bytes(const std::filesystem::path& f
   return bytes;
 }
 
+/// By magic number; the file's name does not matter.
 Parsed parse(const std::string& bytes, std::uint8_t background) {
   if (bytes.starts_with("\x89PNG")) return parse_png(bytes, background);
   for (const char* magic : {"P1", "P2", "P4", "P5"}) {

@@ -15,8 +15,8 @@ inline constexpr std::size_t kMaxBitmapSide = 4096;
 inline constexpr std::size_t kMaxBitmapBytes = 64U << 20U;
 
 /// Reads a picture as greys: PNG of any kind, PBM and PGM (P1, P2, P4, P5; at most 255 levels).
-/// Where a PNG is transparent, `background` shows. kBadInput names the file and says what to do;
-/// a file that is no regular one, too large or cut short is refused. Never throws.
+/// Where a PNG is transparent, `background` shows. The message of kBadInput names the file and the
+/// remedy. Refuses files that are not regular, too large or truncated. Never throws.
 Result<GreyImage> load_bitmap(const std::filesystem::path& file, std::uint8_t background = 255);
 
 }  // namespace swarm

@@ -21,12 +21,13 @@ using mission_fields::kCoordinate_m;
 using yaml::MapReader;
 using yaml::Node;
 
-// A goal is read before any seed is known, and must be the same in every run.
+// A goal is read before the seed of the run is known, and must be the same in every run.
 constexpr std::uint64_t kFitSeed = 20240216;
 // The fit's time grows with both.
 constexpr std::size_t kMaxShapeVertices = 1'000;
 constexpr double kMaxChosenComponents = 64;
 
+// Reads all points before it gives up, so that every wrong one is reported.
 std::optional<Polygon> read_vertices(const Node& node, const std::string& path,
                                      yaml::Violations& violations) {
   const auto* items = yaml::read_list(node, path, 3, kMaxShapeVertices, violations);
@@ -44,11 +45,13 @@ std::optional<Polygon> read_vertices(const Node& node, const std::string& path,
   return std::nullopt;
 }
 
+// Reads one drawn goal: its outline or picture, how to fit it, then fits the mixture.
 class GoalShapeReader {
  public:
   GoalShapeReader(std::filesystem::path directory, yaml::Violations& violations)
       : directory_(std::move(directory)), violations_(violations) {}
 
+  // All keys are read before the first return: a file with several mistakes is reported in full.
   std::optional<DrawnGoal> read(const Node& node, const std::string& path) {
     MapReader keys(node, path, violations_);
     const Node* polygon = keys.take("polygon_m");
@@ -71,6 +74,8 @@ class GoalShapeReader {
   }
 
  private:
+  // The number of components that the user sets may be larger than the one that the BIC may choose,
+  // because the search fits every number up to its bound.
   std::optional<FitOptions> read_options(MapReader& keys) {
     FitOptions options;
     bool good = true;
@@ -103,6 +108,7 @@ class GoalShapeReader {
     return patches;
   }
 
+  // A drawing that cannot become a field leaves `shape_` null: the mixture alone is still a goal.
   void keep_shape(std::vector<Polygon> polygons, std::vector<Box> boxes_m) {
     auto shape = ShapeField::make(std::move(polygons), std::move(boxes_m));
     if (shape) shape_ = std::make_shared<const ShapeField>(*std::move(shape));
@@ -116,7 +122,7 @@ class GoalShapeReader {
     const auto frame = read_frame(keys);
     keys.finish();
     if (!file || !frame) return std::nullopt;
-    // What is transparent is no part of the shape.
+    // Transparent pixels do not belong to the shape: the background is the colour outside of it.
     const auto image = load_bitmap(directory_ / *file, frame->dark ? 255 : 0);
     if (!image) {
       violations_.add(file_node->at, fmt::format("{}.file: {}", path, image.error().message));
@@ -133,6 +139,7 @@ class GoalShapeReader {
     return std::nullopt;
   }
 
+  // Where the picture lies in the world; `dark` selects which pixels are the shape.
   std::optional<ImageFrame> read_frame(MapReader& keys) {
     ImageFrame frame;
     const Node* origin_node = keys.take("origin_m", true);
@@ -173,6 +180,7 @@ std::optional<DrawnGoal> read_goal_shape(const Node& node, const std::string& pa
   return GoalShapeReader(directory, violations).read(node, path);
 }
 
+// The inverse of the writer in mission_yaml.cpp.
 std::shared_ptr<const ShapeField> read_shape_field(const Node& node, const std::string& path,
                                                    yaml::Violations& violations) {
   MapReader keys(node, path, violations);

@@ -13,7 +13,7 @@
 
 namespace swarm {
 
-/// A goal that was drawn.
+/// A goal given as a shape.
 struct DrawnGoal {
   Mixture mixture;                          ///< fitted to it
   std::shared_ptr<const ShapeField> shape;  ///< null where no pixel is at least half dark

@@ -15,7 +15,8 @@
 /// their own option tables, beside their code.
 namespace swarm::mission_fields {
 
-/// A number that may be left out is written back only where it is set.
+/// One key of a section: the member it sets, the numbers it accepts, and what it means. An optional
+/// number is written back only where it is set.
 template <class Section>
 struct Field {
   std::string_view key;
@@ -28,32 +29,35 @@ struct Field {
 using swarm::between;
 using swarm::positive;
 
-/// Coordinates and sizes: beyond this it is no place robots of this size drive in.
+/// Bound of coordinates and sizes: a larger world is a mistake of units.
 inline constexpr double kMaxExtent_m = 1e6;
-inline constexpr yaml::Range kCoordinate_m = between(-kMaxExtent_m, kMaxExtent_m);
-inline constexpr double kMaxRobots = 200'000;
-inline constexpr std::size_t kMaxRobotGroups = 64;
+inline constexpr yaml::Range kCoordinate_m = between(-kMaxExtent_m, kMaxExtent_m);  ///< x or y
+inline constexpr double kMaxRobots = 200'000;                                       ///< of the swarm
+inline constexpr std::size_t kMaxRobotGroups = 64;  ///< with bodies of their own
 inline constexpr std::size_t kMaxComponents = 255;  ///< a robot log names goals by one byte
-inline constexpr std::size_t kMaxObstacles = 10'000;
+inline constexpr std::size_t kMaxObstacles = 10'000;  ///< of the world
 inline constexpr std::size_t kMaxVertices = 100'000;  ///< of all polygons together
-inline constexpr std::size_t kMaxScriptEvents = 1'000;
-inline constexpr std::size_t kMaxNameLength = 64;
+inline constexpr std::size_t kMaxScriptEvents = 1'000;  ///< of the mission's script
+inline constexpr std::size_t kMaxNameLength = 64;       ///< of the mission, in bytes
+/// Values of `action` in a script: commands first, then changes of the scene.
 inline constexpr std::array<std::string_view, 9> kScriptActions{
     "pause",           "resume", "stop", "add_obstacle", "move_obstacle",
     "remove_obstacle", "goto",   "risk", "clear"};
 inline constexpr yaml::Range kDensityCap_per_m2 = between(0, 1e6);  ///< or kAutomatic
 inline constexpr yaml::Range kLag_s = between(0, 60);               ///< or kAutomatic
-inline constexpr std::string_view kAutomatic = "auto";
+inline constexpr std::string_view kAutomatic = "auto";              ///< chosen by the program
+/// Ranges that several readers share.
 inline constexpr yaml::Range kRiskAlpha = between(1e-6, 1 - 1e-6);
 inline constexpr yaml::Range kScriptTime_s = between(0.0, 1e6);
 
+/// Of the swarm as a whole.
 inline constexpr std::array<Field<RobotsSpec>, 2> kRobots{{
     {"count", &RobotsSpec::count, between(1, kMaxRobots), "robots of the swarm"},
     {"placement_gap_m", &RobotsSpec::placement_gap_m, between(0, 100),
      "least surface gap to robots and obstacles at the start"},
 }};
 
-/// Of robots and of each of its groups.
+/// Of the body of all robots and of each group of robots.
 inline constexpr std::array<Field<BodySpec>, 7> kBody{{
     {"radius_m", &BodySpec::radius_m, positive(100), "of the body"},
     {"speed_max_mps", &BodySpec::speed_max_mps, positive(100), "largest speed of the body"},
@@ -82,6 +86,7 @@ inline constexpr std::array<Field<ControlSpec>, 2> kControl{{
     {"cruise_mps", &ControlSpec::cruise_mps, positive(100), "largest desired speed along the path"},
 }};
 
+/// Of the safety filter, which limits every commanded velocity.
 inline constexpr std::array<Field<SafetySpec>, 5> kSafety{{
     {"gap_share", &SafetySpec::gap_share, positive(1),
      "share of the gap that a robot may close by one command"},
@@ -95,6 +100,7 @@ inline constexpr std::array<Field<SafetySpec>, 5> kSafety{{
      "how much of a neighbour's retreat may be used"},
 }};
 
+/// Of the exchange of state updates between robots.
 inline constexpr std::array<Field<LinkSpec>, 9> kLink{{
     {"cell_size_m", &LinkSpec::cell_size_m, between(1, 10'000), "cells of the topics channel"},
     {"communication_radius_m", &LinkSpec::communication_radius_m, positive(10'000),
@@ -112,6 +118,7 @@ inline constexpr std::array<Field<LinkSpec>, 9> kLink{{
     {"status_hz", &LinkSpec::status_hz, between(0.01, 100), "status messages per second"},
 }};
 
+/// Timeouts, and the clock differences that are accepted between hosts.
 inline constexpr std::array<Field<TimingSpec>, 5> kTiming{{
     {"heartbeat_hz", &TimingSpec::heartbeat_hz, between(2, 1000),
      "the planner's heartbeats per second"},
@@ -125,6 +132,7 @@ inline constexpr std::array<Field<TimingSpec>, 5> kTiming{{
      "messages of clocks that differ by more are refused"},
 }};
 
+/// Of the plan's clock, which slows down while the swarm lags behind the plan.
 inline constexpr std::array<Field<PlanClockSpec>, 5> kPlanClock{{
     {"lag_quantile", &PlanClockSpec::lag_quantile, between(0.5, 1),
      "of the robots' lags; the plan's clock looks at this one"},
@@ -138,6 +146,7 @@ inline constexpr std::array<Field<PlanClockSpec>, 5> kPlanClock{{
      "robots later than this do not slow it down; they are named"},
 }};
 
+/// Of the start and the supervision of processes.
 inline constexpr std::array<Field<LauncherSpec>, 7> kLauncher{{
     {"starts_per_s", &LauncherSpec::starts_per_s, positive(10'000),
      "processes started per second at most"},
@@ -154,6 +163,7 @@ inline constexpr std::array<Field<LauncherSpec>, 7> kLauncher{{
      "times that a robot's process which ended is started again"},
 }};
 
+/// Limits by which the audit judges a run; all of them may be left out.
 inline constexpr std::array<Field<CriteriaSpec>, 18> kCriteria{{
     {"w2_ratio_max", &CriteriaSpec::w2_ratio_max, positive(1000),
      "mean W2 of swarm and plan over the mean floor of sampling"},

@@ -38,6 +38,8 @@ class MissionReader {
                 yaml::Violations& violations)
       : violations_(violations), shapes_(violations, directory), sections_(catalogue, violations) {}
 
+  // The order matters: robots come before the mixtures, whose means must clear obstacles by a
+  // robot's radius, and the world comes before mixtures and script. Rules between keys come last.
   Mission read(const Node& root) {
     MapReader top(root, "", violations_);
     read_version(top);
@@ -66,6 +68,7 @@ class MissionReader {
   }
 
  private:
+  // Version 1 is the only one.
   void read_version(MapReader& top) {
     const Node* node = top.take("version", true);
     if (node == nullptr) return;
@@ -90,6 +93,8 @@ class MissionReader {
     sections_.read(top.take(name), name, section, fields);
   }
 
+  // Without a valid world the checks of positions against it are skipped instead of failing at
+  // every mean.
   void read_world(const Node& node) {
     MapReader keys(node, "world", violations_);
     std::optional<Box> bounds;
@@ -123,7 +128,7 @@ class MissionReader {
     return obstacles;
   }
 
-  /// Of a resolved mission, whose goal is the mixture fitted to it.
+  /// The drawing of a resolved mission, whose goal is the mixture that was fitted to it.
   void read_drawing(const Node& node) {
     if (mission_.goal_shape != nullptr) {
       violations_.add(node.at,
@@ -134,6 +139,7 @@ class MissionReader {
     mission_.goal_shape = read_shape_field(node, "goal_shape", violations_);
   }
 
+  // An empty mixture stands for a violation, which is reported; the mission is then not returned.
   Mixture read_mixture(MapReader& top, const std::string& key,
                        std::shared_ptr<const ShapeField>* drawing = nullptr) {
     const Node* node = top.take(key, true);
@@ -155,6 +161,8 @@ class MissionReader {
 
 }  // namespace
 
+/// Syntax errors end the reading at once, as the tree behind them is unknown; all other violations
+/// are collected and returned together, in order of the file.
 Result<Mission> parse_mission(std::string_view text, const std::string& name,
                               const std::filesystem::path& directory, const Catalogue& catalogue) {
   if (text.size() > kMaxMissionBytes) {
@@ -179,8 +187,8 @@ Result<Mission> load_mission(const std::filesystem::path& file, const Catalogue&
     return fail(ErrorCode::kBadInput,
                 fmt::format("{}: cannot be opened; is the path right?", file.string()));
   }
-  // In pieces: making room for the largest mission allowed took half of an agent's start-up. One
-  // byte more than allowed tells a file that is too large, without trusting its size.
+  // In pieces: allocating room for the largest mission took half of an agent's start-up time. A
+  // file that is too large shows by more bytes than allowed; its reported size is not trusted.
   std::string text;
   std::array<char, 16'384> piece;
   while (text.size() <= kMaxMissionBytes) {

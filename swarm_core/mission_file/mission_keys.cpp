@@ -16,6 +16,7 @@
 namespace swarm {
 namespace {
 
+/// One key in the table of the documentation.
 struct Row {
   std::string_view key;
   std::string_view kind;
@@ -24,19 +25,21 @@ struct Row {
   std::string_view doc;
 };
 
-/// What the values of a key must be, without the verb of the messages.
+/// The accepted values of a key, without the "must be" of error messages.
 std::string range_text(const Range& range) {
   constexpr std::string_view kVerb = "must be ";
   return to_string(range).substr(kVerb.size());
 }
 
-/// A bar would end the cell.
+/// Escapes bars, which would end the cell of a Markdown table.
 std::string cell(std::string_view text) {
   std::string escaped;
   for (const char c : text) escaped += c == '|' ? std::string("\\|") : std::string(1, c);
   return escaped;
 }
 
+/// Builds the Markdown text. A table starts with the first row after a heading, so that a component
+/// without options has a heading only.
 class Page {
  public:
   void heading(std::string_view level, std::string_view name, std::string_view doc) {
@@ -59,6 +62,8 @@ class Page {
     const Section defaults{};
     for (const auto& field : fields) {
       Row row{field.key, "number", range_text(field.range), {}, field.doc};
+      // Kind and default follow from the type of the member, so tables and documentation cannot
+      // differ.
       std::visit(
           [&](auto member) {
             using Value = std::remove_cvref_t<decltype(defaults.*member)>;
@@ -112,11 +117,13 @@ std::string names_of(const Components& components) {
   return names;
 }
 
+/// The row of a key that names a component.
 Row named(std::string_view key, const Components& components, const std::string& fallback,
           std::string_view doc) {
   return {key, "choice", names_of(components), fallback, doc};
 }
 
+/// The row of a key that is a number or `auto`.
 Row automatic(std::string_view key, const Range& range, std::string_view doc) {
   return {key, "number or auto", range_text(range), std::string(mission_fields::kAutomatic), doc};
 }
@@ -153,6 +160,7 @@ void add_control(Page& page, const Components& methods) {
 
 }  // namespace
 
+/// Sections in the order in which a mission file has them.
 std::string mission_keys_markdown(const Catalogue& catalogue) {
   Page page;
   add_robots(page, catalogue.drivers);

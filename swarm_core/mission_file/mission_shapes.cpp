@@ -19,11 +19,13 @@ using yaml::Range;
 namespace {
 
 using mission_fields::kCoordinate_m;
+// A wide bound on each entry; Gaussian::make() then checks the matrix as a whole.
 constexpr Range kVariance_m2 = mission_fields::between(-1e12, 1e12);
 constexpr Range kWeight = mission_fields::positive(1);
 
 }  // namespace
 
+// Corners in the order of the file: lower left, then upper right.
 std::optional<Box> ShapeReader::read_bounds(const Node& node) {
   const auto b = yaml::read_numbers(node, "world.bounds_m", 4, kCoordinate_m, violations_);
   if (!b) return std::nullopt;
@@ -35,6 +37,7 @@ std::optional<Box> ShapeReader::read_bounds(const Node& node) {
   return Box{.min_m = {(*b)[0], (*b)[1]}, .max_m = {(*b)[2], (*b)[3]}};
 }
 
+// Exactly one of the two shapes must be given.
 std::optional<Obstacle> ShapeReader::read_obstacle(MapReader& keys, const std::string& path,
                                                    Position at) {
   const Node* polygon = keys.take("polygon_m");
@@ -52,6 +55,7 @@ std::optional<Obstacle> ShapeReader::read_obstacle(MapReader& keys, const std::s
 std::optional<Obstacle> ShapeReader::read_polygon(const Node& node, const std::string& path) {
   const auto* items = yaml::read_list(node, path, 3, Polygon::kMaxVertices, violations_);
   if (items == nullptr) return std::nullopt;
+  // The total is bounded over all polygons of a file, since each alone may be within its own bound.
   vertices_ += items->size();
   if (vertices_ > mission_fields::kMaxVertices) {
     violations_.add(node.at, fmt::format("{}: {} vertices so far; must be <= {} in all polygons "
@@ -88,6 +92,7 @@ std::optional<Obstacle> ShapeReader::read_circle(const Node& node, const std::st
   return Circle{.center_m = {(*center)[0], (*center)[1]}, .radius_m = *radius};
 }
 
+// A mapping is a drawn shape, a list holds the components themselves.
 std::optional<Mixture> ShapeReader::read_mixture(const Node& node, const std::string& path,
                                                  const MeanRule& rule,
                                                  std::shared_ptr<const ShapeField>* drawing) {
@@ -106,6 +111,8 @@ std::optional<Mixture> ShapeReader::read_mixture(const Node& node, const std::st
   return std::nullopt;
 }
 
+// The fitted means must satisfy the same rule as written ones: a shape over an obstacle is a
+// violation.
 std::optional<Mixture> ShapeReader::read_shape(const Node& node, const std::string& path,
                                                const MeanRule& rule,
                                                std::shared_ptr<const ShapeField>* drawing) {
@@ -120,6 +127,8 @@ std::optional<Mixture> ShapeReader::read_shape(const Node& node, const std::stri
   return std::move(drawn->mixture);
 }
 
+// The covariance is checked as a matrix only when all three keys could be read, so that one mistake
+// gives one message.
 std::optional<WeightedGaussian> ShapeReader::read_component(const Node& node,
                                                             const std::string& path,
                                                             const MeanRule& rule) {
@@ -161,6 +170,8 @@ std::optional<Mat2> ShapeReader::read_covariance(const Node& node, const std::st
   return covariance;
 }
 
+// Only means are checked; how far the spread of a Gaussian may reach towards an obstacle is the
+// planner's risk limit.
 void ShapeReader::check_mean(Position at, const std::string& path, const Vec2& mean_m,
                              const MeanRule& rule) {
   if (rule.world == nullptr) return;

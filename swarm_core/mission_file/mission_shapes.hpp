@@ -23,19 +23,20 @@ struct MeanRule {
   double radius_m = 0.0;
 };
 
-/// Reads obstacles and mixtures of mission files and of what is published to a running mission. What is
-/// wrong with them goes to `violations`, which must outlive the reader.
+/// Reads obstacles and mixtures from mission files and from commands to a running mission. It
+/// reports mistakes to `violations`, which must outlive the reader.
 class ShapeReader {
  public:
-  /// Files that are named are relative to `directory`.
+  /// Names of bitmap files are relative to `directory`.
   explicit ShapeReader(yaml::Violations& violations, std::filesystem::path directory = {})
       : violations_(violations), directory_(std::move(directory)) {}
 
-  /// The shape that one of the keys polygon_m and circle_m gives. `path` is that of the mapping, at
-  /// `at`; its other keys are left to the caller.
+  /// The shape given by one of the keys polygon_m and circle_m. `path` and `at` are path and
+  /// position of the mapping; the caller reads its other keys.
   std::optional<Obstacle> read_obstacle(yaml::MapReader& keys, const std::string& path,
                                         yaml::Position at);
 
+  /// The rectangle of the world, [x0, y0, x1, y1].
   std::optional<Box> read_bounds(const yaml::Node& node);
 
   /// A list of components with mean_m, covariance_m2 and weight, or a shape to fit them to

@@ -17,6 +17,7 @@ using Out = std::back_insert_iterator<std::string>;
 
 // fmt's `{}` writes the shortest decimal that reads back to the same double.
 
+/// Two levels of indentation: the obstacle is an item of the list in the section `world`.
 void write_obstacle(Out out, const Obstacle& obstacle) {
   if (const auto* circle = std::get_if<Circle>(&obstacle)) {
     fmt::format_to(out, "    - circle_m: {{center: {}, radius: {}}}\n", yaml_point(circle->center_m),
@@ -38,6 +39,7 @@ void write_world(Out out, const World& world) {
   for (const Obstacle& obstacle : world.obstacles()) write_obstacle(out, obstacle);
 }
 
+/// Covariances are written as full matrices, as the reader requires.
 void write_mixture(Out out, std::string_view key, const Mixture& mixture) {
   fmt::format_to(out, "{}:\n", key);
   for (const auto& [weight, gaussian] : mixture.components()) {
@@ -64,6 +66,8 @@ void write_shape(Out out, const ShapeField& shape) {
   }
 }
 
+/// Writes the members by the same tables that the reader uses, so no key can be forgotten on one
+/// side. An optional number is written only where it is set.
 template <class Section, std::size_t N>
 void write_fields(Out out, const Section& section,
                   const std::array<mission_fields::Field<Section>, N>& fields) {
@@ -92,13 +96,15 @@ void write_options(Out out, const OptionValues& options) {
   for (const auto& [key, text] : options.all()) fmt::format_to(out, "  {}: {}\n", key, text);
 }
 
-/// A section must not be empty, and none of its keys need be set.
+/// None of its keys need be set, but a section must not be empty: then it is left out.
 void write_criteria(Out out, const CriteriaSpec& criteria) {
   std::string keys;
   write_fields(Out(keys), criteria, mission_fields::kCriteria);
   if (!keys.empty()) fmt::format_to(out, "criteria:\n{}", keys);
 }
 
+/// A group is written with all keys of its body, including those that it inherits: the resolved
+/// file does not depend on the order of the keys.
 void write_robots(Out out, const RobotsSpec& robots) {
   fmt::format_to(out, "robots:\n  model: {}\n  lag_s: {}\n", robots.model,
                  or_automatic(robots.lag_s));
@@ -138,6 +144,8 @@ void write_script(Out out, const std::vector<ScriptEvent>& script) {
 
 }  // namespace
 
+/// Every key is written, defaults included: a resolved mission means the same to a later version
+/// with other defaults.
 std::string to_yaml(const Mission& mission) {
   std::string text;
   const Out out(text);

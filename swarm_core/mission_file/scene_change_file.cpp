@@ -14,6 +14,7 @@ using yaml::Node;
 
 namespace {
 
+// Reads the keys of one change from a mapping; one function for each kind of change.
 class ChangeReader {
  public:
   ChangeReader(MapReader& keys, const World& mission_world, yaml::Violations& violations)
@@ -46,13 +47,14 @@ class ChangeReader {
   std::optional<SceneChange> go_to(ShapeReader& shapes) {
     const Node* node = keys_.take("goal", true);
     if (node == nullptr) return std::nullopt;
-    // Obstacles come and go: whether the goal is free then is the planner's to say.
+    // Obstacles may be added and removed until then: the planner checks whether the goal is free.
     auto goal = shapes.read_mixture(*node, keys_.path_of("goal"),
                                     {.world = &mission_world_, .clear_of_obstacles = false});
     if (!goal) return std::nullopt;
     return GoTo{std::move(*goal)};
   }
 
+  // The launcher writes this change to the scene log; scripts cannot use it.
   std::optional<SceneChange> add_body(const std::string& path, yaml::Position at,
                                       ShapeReader& shapes) {
     const auto robot = read_robot();
@@ -92,6 +94,7 @@ class ChangeReader {
     return RobotId(*number);
   }
 
+  // Whether the obstacle exists depends on the scene at that time and is checked by after().
   std::optional<std::uint32_t> read_obstacle_number() {
     const Node* node = keys_.take("obstacle", true);
     if (node == nullptr) return std::nullopt;
@@ -116,6 +119,7 @@ std::string keys_of_shape(const Obstacle& shape) {
   return fmt::format("polygon_m: [{}]", text);
 }
 
+// Flow style, since the change must fit on one line.
 std::string keys_of_goal(const Mixture& goal) {
   std::string text;
   for (const auto& [weight, gaussian] : goal.components()) {
@@ -127,6 +131,7 @@ std::string keys_of_goal(const Mixture& goal) {
   return fmt::format("goal: [{}]", text);
 }
 
+// The usual helper that lets std::visit() take one lambda for each alternative.
 template <class... F>
 struct Overloaded : F... {
   using F::operator()...;
@@ -134,6 +139,8 @@ struct Overloaded : F... {
 
 }  // namespace
 
+// An unknown action gives an empty result without a violation: the caller has checked the name or
+// reports it.
 std::optional<SceneChange> read_scene_change(std::string_view action, MapReader& keys,
                                              const std::string& path, yaml::Position at,
                                              ShapeReader& shapes, const World& mission_world,
@@ -153,6 +160,8 @@ std::optional<SceneChange> read_scene_change(std::string_view action, MapReader&
   return std::nullopt;
 }
 
+// Completes the abbreviations of the command line to a YAML mapping, then uses the reader of
+// scripts.
 Result<SceneChange> parse_scene_change(const std::string& action, const std::string& keys,
                                        const World& mission_world) {
   yaml::Violations violations;

@@ -18,18 +18,18 @@ namespace swarm {
 ///   remove_obstacle   obstacle
 ///   goto              goal, a mixture
 ///   risk              alpha
-///   add_body          robot, circle_m; the launcher's own, for its log
+///   add_body          robot, circle_m; by the launcher alone, for its scene log
 ///   clear             robot
 ///
-/// Empty after a violation, and when `action` is none of these words. `at` is where the mapping is.
+/// Empty after a violation, and when `action` is none of these. `at` is where the mapping is.
 std::optional<SceneChange> read_scene_change(std::string_view action, yaml::MapReader& keys,
                                              const std::string& path, yaml::Position at,
                                              ShapeReader& shapes, const World& mission_world,
                                              yaml::Violations& violations);
 
-/// The change that the words of a command line say: `action` and its keys as a YAML mapping, as in
-/// a script: `circle_m: {center: [60, 40], radius: 3}`. Braces around it may be left out, and
-/// `clear 7` is short for `clear robot: 7`.
+/// Reads a change from a command line: `action` and its keys as a YAML mapping, as in a script:
+/// `circle_m: {center: [60, 40], radius: 3}`. Braces around it may be left out, and `clear 7` is
+/// short for `clear robot: 7`.
 Result<SceneChange> parse_scene_change(const std::string& action, const std::string& keys,
                                        const World& mission_world);
 

@@ -10,12 +10,15 @@
 
 namespace swarm {
 
+// The scene's version is the time of the change in nanoseconds.
 std::string scene_log_line(std::uint64_t version, const SceneChange& change) {
   const nlohmann::ordered_json line = {
       {"utc_ns", version}, {"action", name_of(change)}, {"keys", keys_of(change)}};
   return line.dump() + "\n";
 }
 
+// Applies the changes one by one. The last line may be cut if the launcher was killed: only lines
+// that end with a newline are read.
 std::vector<Scene> replay_scene_log(std::string_view text, const World& mission_world) {
   std::vector<Scene> scenes{first_scene(mission_world.obstacles().size())};
   for (std::size_t end = 0; (end = text.find('\n')) != std::string_view::npos;

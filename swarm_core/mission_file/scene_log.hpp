@@ -8,15 +8,15 @@
 
 #include "swarmflow/mission/scene.hpp"
 
-/// The changes of a run's scene, one line of JSON each: {"utc_ns", "action", "keys"}, the words of
-/// a script. Audits replay them.
+/// The changes of a run's scene, one line of JSON each: {"utc_ns", "action", "keys"}, with actions
+/// and keys as in a script. Audits replay them.
 namespace swarm {
 
-/// A line, with its end.
+/// One change as a line, with the newline.
 std::string scene_log_line(std::uint64_t version, const SceneChange& change);
 
-/// The scenes a mission went through, the first as in the mission file. A line that is no change,
-/// or none that was possible, ends them: what follows would be read wrongly.
+/// The scenes of a mission, the first one as in the mission file. A line that is not a change, or a
+/// change that was not possible, ends the list, because the lines after it refer to its result.
 std::vector<Scene> replay_scene_log(std::string_view text, const World& mission_world);
 
 }  // namespace swarm

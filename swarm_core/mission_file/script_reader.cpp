@@ -18,6 +18,8 @@ using yaml::MapReader;
 using yaml::Node;
 using yaml::Position;
 
+// Reads events in order and applies their changes to a scene, which shows whether each of them is
+// possible at its time.
 class ScriptReader {
  public:
   ScriptReader(const ScriptContext& context, ShapeReader& shapes, yaml::Violations& violations)
@@ -36,7 +38,7 @@ class ScriptReader {
                           ? std::nullopt
                           : yaml::read_choice(*node, keys.path_of("action"),
                                               mission_fields::kScriptActions, violations_);
-    if (!name) return std::nullopt;  // which other keys belong here is not known
+    if (!name) return std::nullopt;  // the other keys depend on the action
     const auto action = read_action(*name, keys, path, item.at);
     keys.finish();
     if (!at_s || !action) return std::nullopt;
@@ -45,6 +47,8 @@ class ScriptReader {
   }
 
  private:
+  // A time out of order still becomes the previous one, so that one misplaced event gives one
+  // message.
   std::optional<double> read_time(MapReader& keys) {
     const Node* node = keys.take("at_s", true);
     if (node == nullptr) return std::nullopt;
@@ -58,6 +62,7 @@ class ScriptReader {
     return at_s;
   }
 
+  // A command has no keys but its name; every other action is a change of the scene.
   std::optional<MissionAction> read_action(const std::string& name, MapReader& keys,
                                            const std::string& path, Position at) {
     for (const CommandKind kind : {CommandKind::kPause, CommandKind::kResume, CommandKind::kStop}) {
@@ -68,8 +73,8 @@ class ScriptReader {
     return *std::move(change);
   }
 
-  /// Obstacles that a script moves or removes must be there by then. Which robots fall is not
-  /// known: a script may clear any.
+  /// Obstacles that a script moves or removes must exist at that time. Which robots will fall is
+  /// not known, so a script may clear the body of any robot.
   void follow_scene(const MissionAction& action, double at_s, Position at,
                     const std::string& path) {
     const auto* change = std::get_if<SceneChange>(&action);

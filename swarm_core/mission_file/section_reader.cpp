@@ -18,6 +18,7 @@ using yaml::Position;
 
 namespace {
 
+/// Options that no key set get the default of the first component that declares them.
 void set_defaults(const Components& components, OptionValues& values) {
   for (const ComponentSpec& component : components) {
     for (const OptionSpec& option : component.options) {
@@ -28,6 +29,7 @@ void set_defaults(const Components& components, OptionValues& values) {
 
 }  // namespace
 
+/// Remembers where a key was read, or that its value was wrong.
 void SectionReader::keep_slot(const std::string& path, const Node& value, bool good) {
   if (good) {
     places_[path] = value.at;
@@ -60,6 +62,7 @@ void SectionReader::read_control(const Node* node, ControlSpec& control_spec) {
   set_defaults(catalogue_.control_methods, control_spec.options);
 }
 
+/// The order matters: the common body and its defaults are complete before the groups copy it.
 void SectionReader::read_robots(const Node* node, RobotsSpec& robots) {
   if (node != nullptr) {
     MapReader keys(*node, "robots", violations_);
@@ -70,6 +73,7 @@ void SectionReader::read_robots(const Node* node, RobotsSpec& robots) {
     set_defaults(catalogue_.drivers, robots.options);
     if (groups != nullptr) read_groups(*groups, robots);
   }
+  // Without the key `robots` in the file this call alone sets the defaults.
   set_defaults(catalogue_.drivers, robots.options);
   set_lag(robots);
 }
@@ -80,7 +84,7 @@ void SectionReader::read_groups(const Node& node, RobotsSpec& robots) {
   if (items == nullptr) return;
   std::uint64_t grouped = 0;
   for (std::size_t i = 0; i < items->size(); ++i) {
-    RobotGroupSpec group{robots, 0};  // what it does not set is as for the others
+    RobotGroupSpec group{robots, 0};  // keys that the group does not set are those of all robots
     MapReader keys((*items)[i], fmt::format("robots.groups[{}]", i), violations_);
     if (const Node* value = keys.take("count", true)) {
       group.count = yaml::read_count(*value, keys.path_of("count"),
@@ -107,8 +111,8 @@ void SectionReader::read_body(MapReader& keys, BodySpec& body) {
   read_options(keys, drivers(), body.options);
 }
 
-/// What the mission leaves to the driver. Written out with the mission it is then known to programs
-/// that do not have the driver.
+/// Fills in the lag that the driver declares. As a part of the resolved mission it is then known to
+/// programs that do not have the driver.
 void SectionReader::set_lag(BodySpec& body) const {
   const ComponentSpec* driver = find_component(catalogue_.drivers, body.model);
   if (driver != nullptr && !body.lag_s) body.lag_s = declared_lag_s(body, driver->lag);
@@ -126,6 +130,8 @@ void SectionReader::read_automatic(MapReader& keys, std::string_view key, const 
   }
 }
 
+/// In an open section any name is accepted, since the program does not know the components of
+/// others.
 void SectionReader::read_name(MapReader& keys, std::string_view key,
                               const ComponentSection& section, std::string& name) {
   const Node* node = keys.take(key);
@@ -151,6 +157,7 @@ void SectionReader::read_options(MapReader& keys, const ComponentSection& sectio
   for (const auto& [key, node] : keys.take_scalars()) values.set(key, node->text);
 }
 
+/// Numbers are stored as text, like choices, in the form that reads back to the same double.
 void SectionReader::read_option(const Node& node, const MapReader& keys, const OptionSpec& option,
                                 OptionValues& values) {
   const std::string path = keys.path_of(option.key);
@@ -172,6 +179,7 @@ void SectionReader::read_option(const Node& node, const MapReader& keys, const O
   keep_slot(path, node, good);
 }
 
+/// Rules between keys are checked after all sections are read: they tie keys of different sections.
 void SectionReader::check_rules(const Mission& mission) {
   add(broken_rules(mission));
   add(broken_rules("planner", catalogue_.planning_methods, mission.planner.options));
@@ -179,6 +187,8 @@ void SectionReader::check_rules(const Mission& mission) {
   add(broken_rules("robots", catalogue_.drivers, mission.robots.options));
 }
 
+/// A rule with a key that is itself wrong is skipped, because its value was replaced by a default.
+/// The message is placed at the first of its keys that the file sets.
 void SectionReader::add(const std::vector<BrokenRule>& rules) {
   for (const BrokenRule& rule : rules) {
     const auto is_bad = [&](const std::string& key) { return bad_.contains(key); };

@@ -19,8 +19,8 @@
 namespace swarm {
 
 /// Reads the sections of a mission file that are scalar keys: those of the mission's own tables
-/// (mission_fields.hpp), and the names and keys of components, which the catalogue has. It keeps
-/// where each key stands, for rules between keys.
+/// (mission_fields.hpp), and the names and keys of components, from the catalogue. It remembers the
+/// position of each key in the file, for the messages of rules between keys.
 class SectionReader {
  public:
   /// Both outlive it.
@@ -42,8 +42,8 @@ class SectionReader {
   void read_control(const yaml::Node* node, ControlSpec& control);
   void read_robots(const yaml::Node* node, RobotsSpec& robots);
 
-  /// Adds the rules that the mission breaks to the violations. A rule is shown where one of its
-  /// keys is given; a rule whose key is broken by itself waits.
+  /// Adds the rules that the mission violates. A violation is placed at a key of the rule that the
+  /// file sets; a rule is skipped while one of its keys has a wrong value of its own.
   void check_rules(const Mission& mission);
 
  private:
@@ -60,6 +60,7 @@ class SectionReader {
   }
   ComponentSection drivers() const { return {catalogue_.drivers, catalogue_.robots_are_open}; }
 
+  /// Reads the keys of a table that the file sets; the others keep their defaults.
   template <class Section, std::size_t N>
   void read_fields(yaml::MapReader& keys, Section& section,
                    const std::array<mission_fields::Field<Section>, N>& fields) {
@@ -68,6 +69,7 @@ class SectionReader {
     }
   }
 
+  /// Reads one key by the type of its member and remembers where it stands.
   template <class Section>
   void read_field(const yaml::Node& value, const yaml::MapReader& keys,
                   const mission_fields::Field<Section>& field, Section& section) {

@@ -14,13 +14,14 @@
 namespace swarm::yaml {
 namespace {
 
-/// Enough to repair a file by; a hostile one must not fill the terminal.
+/// Violations that are reported at most: a hostile file must not fill the terminal.
 constexpr std::size_t kMaxReported = 1000;
 
 /// A key of missions of version 0.1 whose name the nearest spelling would not lead to.
 constexpr std::string_view kFormerKey = "hear_radius_m";
 constexpr std::string_view kRenamedKey = "communication_radius_m";
 
+/// Levenshtein distance with one row of the dynamic programme; O(|a| · |b|).
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), 0);
@@ -35,7 +36,7 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return row.back();
 }
 
-/// YAML's spellings of what from_chars would read as a number or not at all.
+/// Whether a text is one of YAML's spellings of NaN and infinity, some of which from_chars accepts.
 bool is_not_finite(std::string_view text) {
   if (!text.empty() && (text[0] == '-' || text[0] == '+')) text.remove_prefix(1);
   if (!text.empty() && text[0] == '.') text.remove_prefix(1);
@@ -49,13 +50,14 @@ bool is_not_finite(std::string_view text) {
 }  // namespace
 
 void Violations::add(Position at, std::string what_and_what_instead) {
-  // Quoted pieces of the file must not break the line or steer the terminal.
+  // Quoted parts of the file must not break the line or send control characters to the terminal.
   for (char& c : what_and_what_instead) {
     if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) c = ' ';
   }
   all_.emplace_back(at, std::move(what_and_what_instead));
 }
 
+/// Sorted by position, since sections are read in an order of their own.
 Error Violations::to_error(const std::string& file) const {
   std::vector<std::pair<Position, std::string>> sorted = all_;
   std::stable_sort(sorted.begin(), sorted.end(),
@@ -70,6 +72,7 @@ Error Violations::to_error(const std::string& file) const {
   return {ErrorCode::kBadInput, std::move(message)};
 }
 
+/// Of a key given twice the first value counts, and the second is the violation.
 MapReader::MapReader(const Node& node, std::string path, Violations& violations)
     : path_(std::move(path)), at_(node.at), violations_(violations) {
   is_map_ = node.kind == Node::Kind::kMap;
@@ -90,6 +93,8 @@ std::string MapReader::path_of(std::string_view key) const {
   return path_.empty() ? std::string(key) : fmt::format("{}.{}", path_, key);
 }
 
+/// A taken key is removed, so that finish() finds the unknown ones. Every key asked for is
+/// remembered for "did you mean".
 const Node* MapReader::take(std::string_view key, bool required) {
   known_.emplace_back(key);
   const auto it = entries_.find(key);
@@ -115,6 +120,7 @@ std::vector<std::pair<std::string, const Node*>> MapReader::take_scalars() {
   return scalars;
 }
 
+/// A key that is far from every known one gets the list of known keys instead of a suggestion.
 void MapReader::finish() {
   for (const auto& [key, entry] : entries_) {
     const bool was_renamed =
@@ -130,6 +136,7 @@ void MapReader::finish() {
   entries_.clear();
 }
 
+/// Strict: no quotes, no hexadecimal, no units, no trailing characters, nothing that is not finite.
 std::optional<double> read_number(const Node& node, const std::string& path, const Range& range,
                                   Violations& violations) {
   const auto refuse = [&](std::string_view what) {
@@ -168,7 +175,7 @@ std::optional<std::uint32_t> read_count(const Node& node, const std::string& pat
 std::optional<std::string> read_text(const Node& node, const std::string& path,
                                      Violations& violations) {
   if (node.kind == Node::Kind::kScalar) return node.text;
-  violations.add(node.at, fmt::format("{} is {}; must be a word", path, describe(node)));
+  violations.add(node.at, fmt::format("{} is {}; must be text", path, describe(node)));
   return std::nullopt;
 }
 
@@ -182,6 +189,7 @@ std::optional<std::string> read_choice(const Node& node, const std::string& path
   return std::nullopt;
 }
 
+/// Every wrong number of the list is reported, with its index in the path.
 std::optional<std::vector<double>> read_numbers(const Node& node, const std::string& path,
                                                 std::size_t size, const Range& range,
                                                 Violations& violations) {
@@ -220,7 +228,7 @@ std::optional<std::string> nearest_word(std::string_view word,
                                         const std::vector<std::string>& candidates) {
   if (word.size() > 80) return std::nullopt;
   std::optional<std::string> best;
-  // A third of the letters wrong is still a slip, more is another word.
+  // Up to a third of the letters may be mistyped; with more the key is probably not meant.
   std::size_t best_distance = std::max<std::size_t>(2, word.size() / 3) + 1;
   for (const std::string& candidate : candidates) {
     const std::size_t distance = edit_distance(word, candidate);

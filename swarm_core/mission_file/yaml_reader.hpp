@@ -15,9 +15,10 @@
 
 namespace swarm::yaml {
 
-/// Collects everything that is wrong with a file.
+/// Collects all mistakes of a file.
 class Violations {
  public:
+  /// Adds a violation; control characters in the text become spaces.
   void add(Position at, std::string what_and_what_instead);
   bool empty() const { return all_.empty(); }
 
@@ -30,11 +31,13 @@ class Violations {
 
 using swarm::Range;
 
-/// Reads the keys of one mapping strictly: each known key at most once, unknown ones are violations
-/// that name the nearest known key. Paths such as `link.communication_radius_m` name values in messages.
+/// Reads the keys of one mapping strictly: each known key may be given at most once, and an unknown
+/// key is a violation that names the nearest known one. Messages name values by their paths, such
+/// as `link.communication_radius_m`.
 class MapReader {
  public:
-  /// A `node` that is no mapping is a violation, and the reader then behaves like an empty one.
+  /// A `node` that is not a mapping is a violation; the reader then behaves as for an empty
+  /// mapping.
   MapReader(const Node& node, std::string path, Violations& violations);
 
   /// The value of a key, or null if it is absent (a violation if `required`).
@@ -46,7 +49,9 @@ class MapReader {
   /// Reports the keys that were not taken.
   void finish();
 
+  /// Whether the node is a mapping.
   bool is_map() const { return is_map_; }
+  /// The path of a key for messages: that of the mapping, a dot, the key.
   std::string path_of(std::string_view key) const;
 
  private:
@@ -65,7 +70,7 @@ std::optional<std::uint32_t> read_count(const Node& node, const std::string& pat
                                         const Range& range, Violations& violations);
 std::optional<std::string> read_text(const Node& node, const std::string& path,
                                      Violations& violations);
-/// One of the known words.
+/// One of the known values.
 std::optional<std::string> read_choice(const Node& node, const std::string& path,
                                        std::span<const std::string_view> known,
                                        Violations& violations);
@@ -79,7 +84,7 @@ std::optional<std::vector<double>> read_numbers(const Node& node, const std::str
 const std::vector<Node>* read_list(const Node& node, const std::string& path, std::size_t min_size,
                                    std::size_t max_size, Violations& violations);
 
-/// The candidate most like `word`, if any is like it at all (for "did you mean").
+/// The candidate with the smallest edit distance, if any is similar (for "did you mean").
 std::optional<std::string> nearest_word(std::string_view word,
                                         const std::vector<std::string>& candidates);
 

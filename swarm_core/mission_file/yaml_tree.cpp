@@ -34,6 +34,7 @@ class TreeBuilder final : public YAML::EventHandler {
  public:
   Node root;
 
+  // yaml-cpp calls these functions in the order of the file; refuse() leaves the parser at once.
   void OnDocumentStart(const YAML::Mark& mark) override {
     if (documents_++ > 0) refuse(mark, "a second document; a mission file holds one");
   }
@@ -86,17 +87,19 @@ class TreeBuilder final : public YAML::EventHandler {
     }
   }
 
+  // Enters a sequence or mapping. The depth is bounded because the tree is destroyed recursively.
   void open(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
             Node::Kind kind) {
     check(mark, tag, anchor);
     if (!levels_.empty() && is_key_next())
-      refuse(mark, "a key that is no word; keys are plain text");
+      refuse(mark, "a key that is not text; keys are plain text");
     if (levels_.size() >= static_cast<std::size_t>(kMaxDepth)) {
       refuse(mark, fmt::format("nested deeper than {} levels", kMaxDepth));
     }
     levels_.push_back({.node = Node{.kind = kind, .at = position_of(mark)}});
   }
 
+  // A complete sequence or mapping becomes a value of the level around it.
   void close() {
     Node done = std::move(levels_.back().node);
     levels_.pop_back();
@@ -107,6 +110,7 @@ class TreeBuilder final : public YAML::EventHandler {
     return levels_.back().node.kind == Node::Kind::kMap && !levels_.back().has_key;
   }
 
+  // A scalar is a key or a value, depending on what its mapping expects next.
   void place(const YAML::Mark& mark, Node node) {
     if (!levels_.empty() && is_key_next()) {
       if (node.kind != Node::Kind::kScalar) refuse(mark, "an empty key; keys are plain text");
@@ -117,6 +121,7 @@ class TreeBuilder final : public YAML::EventHandler {
     add(std::move(node));
   }
 
+  // Adds a value to the innermost open level; without one it is the document itself.
   void add(Node node) {
     if (levels_.empty()) {
       root = std::move(node);
@@ -127,7 +132,7 @@ class TreeBuilder final : public YAML::EventHandler {
       level.node.items.push_back(std::move(node));
       return;
     }
-    // yaml-cpp places an empty value at whatever comes after it.
+    // yaml-cpp gives an empty value the position of the text after it.
     if (node.kind == Node::Kind::kNull) node.at = level.entry.at;
     level.entry.value = std::move(node);
     level.node.entries.push_back(std::move(level.entry));
@@ -143,7 +148,7 @@ class TreeBuilder final : public YAML::EventHandler {
 class ViewBuffer final : public std::streambuf {
  public:
   explicit ViewBuffer(std::string_view text) {
-    // streambuf wants char*, but nothing here writes.
+    // std::streambuf requires char*, but this buffer never writes.
     char* begin = const_cast<char*>(text.data());
     setg(begin, begin, begin + text.size());
   }
@@ -151,6 +156,7 @@ class ViewBuffer final : public std::streambuf {
 
 }  // namespace
 
+/// Long texts are cut: a message must fit a line.
 std::string describe(const Node& node) {
   switch (node.kind) {
     case Node::Kind::kNull:
@@ -167,6 +173,7 @@ std::string describe(const Node& node) {
   return fmt::format("\"{}{}\"", node.text.substr(0, kShown), cut ? "..." : "");
 }
 
+/// The only place where exceptions of yaml-cpp end.
 tl::expected<Node, ParseError> parse(std::string_view text) {
   // A NUL ends yaml-cpp's stream silently: what follows would be ignored.
   if (const std::size_t nul = text.find('\0'); nul != std::string_view::npos) {

@@ -9,10 +9,10 @@
 
 #include "swarmflow/core/result.hpp"
 
-/// YAML as far as a mission file needs it: a tree in which every node knows where it stands.
+/// The part of YAML that a mission file needs: a tree in which every node has its position.
 namespace swarm::yaml {
 
-/// Place in a file, both counted from 1. The default sorts before every real one.
+/// Position in a file; line and column count from 1. The default is the begin of the file.
 struct Position {
   int line = 1;
   int column = 1;
@@ -21,6 +21,7 @@ struct Position {
 
 struct Entry;
 
+/// A value: empty, a scalar, a sequence or a mapping.
 struct Node {
   enum class Kind { kNull, kScalar, kSequence, kMap };
   Kind kind = Kind::kNull;
@@ -31,6 +32,7 @@ struct Node {
   std::vector<Entry> entries{};  ///< of a map, in order of the file; keys may repeat
 };
 
+/// A key of a mapping with its value.
 struct Entry {
   std::string key;
   Position at;
@@ -40,18 +42,19 @@ struct Entry {
 /// `a mapping`, `a list`, `the text "abc"`, `100`, `empty`: what a node is, for messages.
 std::string describe(const Node& node);
 
+/// Bounds of a document, which protect memory and stack.
 inline constexpr int kMaxDepth = 16;
 inline constexpr std::size_t kMaxNodes = 1'000'000;
 
-/// What stops the reader, with its place.
+/// The mistake at which the parser stopped, and its position.
 struct ParseError {
   Position at;
   std::string what;
 };
 
-/// Parses one document. Refuses what a mission has no use for and an attacker has: anchors and
-/// aliases, tags, several documents, keys that are no scalars, nesting beyond kMaxDepth and more
-/// than kMaxNodes nodes. Never throws.
+/// Parses one document. Refuses features that a mission does not need and an attacker could use:
+/// anchors and aliases, tags, several documents, keys that are not scalars, nesting beyond
+/// kMaxDepth and more than kMaxNodes nodes. Never throws.
 tl::expected<Node, ParseError> parse(std::string_view text);
 
 }  // namespace swarm::yaml

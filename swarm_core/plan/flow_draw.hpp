@@ -12,9 +12,9 @@
 
 namespace swarm {
 
-/// The draw at a split: the index whose stretch of the cumulated masses holds `share` ∈ [0, 1),
-/// which is then rescaled to that stretch. Robots and planner draw alike. \pre count > 0, masses
-/// positive
+/// The draw at a split: the index whose interval of the cumulated masses contains `share` ∈ [0, 1),
+/// which is then rescaled to that interval, ready for the next split. Robots and planner use the
+/// same draw, so the planner knows the leg of every robot. \pre count > 0, masses positive
 template <class MassOf>
 std::size_t draw_by_share(std::size_t count, MassOf mass_of, double& share) {
   double total = 0.0;
@@ -41,11 +41,12 @@ inline std::uint32_t draw_leg(const FlowPlan& plan, std::uint32_t node, double& 
       out.size(), [&](std::size_t i) { return plan.legs()[out[i]].mass; }, share)];
 }
 
-/// Where a share of a source's mass is in a flow at a time, and where it ends.
+/// Where a share of the mass of a source is in a flow at a time, and the sink at which it arrives.
 struct FlowPosition {
+  /// Value of `leg` when the mass has arrived.
   static constexpr std::uint32_t kAtSink = 0xFFFFFFFF;
-  std::uint32_t leg = kAtSink;  ///< the one alive then, the first one before the source's time
-  std::uint32_t sink = 0;       ///< node
+  std::uint32_t leg = kAtSink;  ///< the leg it is on; before the source's time the first leg
+  std::uint32_t sink = 0;       ///< index of the node
 };
 
 /// \pre `source` is an index into plan.sources()

@@ -16,7 +16,7 @@ namespace swarm {
 namespace {
 
 bool is_mass(double mass) {
-  // The tolerance lets a lone source carry 1 with the rounding of a sum.
+  // The tolerance allows a single source whose mass is 1 plus the rounding of a sum.
   return std::isfinite(mass) && mass > 0.0 && mass <= 1.0 + FlowPlan::kMassTolerance;
 }
 
@@ -37,6 +37,8 @@ class Digest {
   std::uint64_t hash_ = 0xCBF29CE484222325ULL;
 };
 
+// Sizes are hashed too, so that a node cannot be taken for a leg. Of the symmetric covariance three
+// entries suffice.
 std::uint64_t digest_of(const std::vector<PlanNode>& nodes, const std::vector<PlanLeg>& legs) {
   Digest digest;
   digest.add(std::uint64_t{nodes.size()});
@@ -56,6 +58,8 @@ std::uint64_t digest_of(const std::vector<PlanNode>& nodes, const std::vector<Pl
   return digest.value();
 }
 
+// What can be checked for each node and leg by itself. Legs that run forward in time exclude
+// cycles, so no graph search is needed.
 Result<void> check_parts(const std::vector<PlanNode>& nodes, const std::vector<PlanLeg>& legs) {
   if (nodes.empty()) return fail(ErrorCode::kBadInput, "plan: has no nodes");
   if (nodes.size() > FlowPlan::kMaxNodes || legs.size() > FlowPlan::kMaxLegs) {
@@ -94,6 +98,8 @@ Result<void> check_parts(const std::vector<PlanNode>& nodes, const std::vector<P
 
 }  // namespace
 
+// Conservation of mass is checked per node, within kMassTolerance; then the legs are grouped by
+// their first node in a counting sort (CSR), O(nodes + legs).
 Result<FlowPlan> FlowPlan::make(std::vector<PlanNode> nodes, std::vector<PlanLeg> legs) {
   if (auto checked = check_parts(nodes, legs); !checked) return tl::unexpected(checked.error());
 
@@ -134,6 +140,7 @@ Result<FlowPlan> FlowPlan::make(std::vector<PlanNode> nodes, std::vector<PlanLeg
   }
 
   for (std::size_t i = 0; i < nodes.size(); ++i) plan.out_offset_[i + 1] += plan.out_offset_[i];
+  // `out_offset_[i]` is where the legs of node i begin; `fill` advances as they are entered.
   plan.out_legs_.resize(legs.size());
   std::vector<std::uint32_t> fill(plan.out_offset_.begin(), plan.out_offset_.end() - 1);
   for (std::uint32_t i = 0; i < legs.size(); ++i) plan.out_legs_[fill[legs[i].from]++] = i;
@@ -149,6 +156,8 @@ std::span<const std::uint32_t> FlowPlan::legs_out(std::uint32_t node) const {
   return std::span(out_legs_).subspan(out_offset_[node], out_offset_[node + 1] - out_offset_[node]);
 }
 
+// [SwarmPRM, eq. 1]. Half-open intervals count each mass once at the time of a node: it is on the
+// outgoing leg from then on.
 Mixture FlowPlan::mixture_at(MissionTime t) const {
   SWARM_ASSERT(!empty());
   std::vector<WeightedGaussian> components;

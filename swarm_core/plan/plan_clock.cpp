@@ -18,6 +18,7 @@ std::string plan_clock_line(const PlanClock& clock) {
   return json.dump() + "\n";
 }
 
+// Types are checked before values are read, as the JSON library would throw otherwise.
 std::vector<PlanClock> read_plan_clock(std::string_view lines) {
   std::vector<PlanClock> readings;
   while (!lines.empty()) {
@@ -38,12 +39,14 @@ std::vector<PlanClock> read_plan_clock(std::string_view lines) {
                             .plan_time_s = plan_time->get<double>(),
                             .rate = rate->get<double>()};
     if (!(reading.rate >= 0.0 && reading.rate <= 1.0)) continue;
+    // Stamps must ascend for the binary search in clock_at().
     if (!readings.empty() && reading.stamp < readings.back().stamp) continue;
     readings.push_back(reading);
   }
   return readings;
 }
 
+// The last reading whose stamp is not after t.
 const PlanClock* clock_at(std::span<const PlanClock> readings, UtcTime t) {
   const auto after =
       std::upper_bound(readings.begin(), readings.end(), t,

@@ -15,12 +15,14 @@ namespace {
 
 using Json = nlohmann::json;
 
+// The only optional key: present when the plan breaks its own constraints.
 constexpr const char* kExcess = "excess_m";
 
 tl::unexpected<Error> refuse(const std::string& place, std::string_view what) {
   return fail(ErrorCode::kBadInput, fmt::format("plan: {} {}", place, what));
 }
 
+// Unknown keys are refused: a misspelt key would otherwise be ignored in silence.
 Result<void> check_keys(const Json& object, std::initializer_list<const char*> keys,
                         const std::string& place) {
   if (!object.is_object()) return refuse(place, "must be an object");
@@ -47,6 +49,7 @@ Result<std::uint32_t> node_index(const Json& value, const std::string& place) {
   return static_cast<std::uint32_t>(index);
 }
 
+// A list of a known length; errors name the entry.
 template <std::size_t n>
 Result<std::array<double, n>> numbers(const Json& value, const std::string& place) {
   if (!value.is_array() || value.size() != n) {
@@ -61,6 +64,7 @@ Result<std::array<double, n>> numbers(const Json& value, const std::string& plac
   return out;
 }
 
+// The covariance is stored as [xx, xy, yy].
 Result<PlanNode> read_node(const Json& value, const std::string& place) {
   if (auto keys = check_keys(value, {"mean_m", "covariance_m2", "time_s", "mass"}, place); !keys) {
     return tl::unexpected(keys.error());
@@ -93,6 +97,7 @@ Result<PlanLeg> read_leg(const Json& value, const std::string& place) {
   return PlanLeg{*from, *to, *mass};
 }
 
+// The size is checked before memory is reserved: files may come from anywhere.
 template <class T>
 Result<std::vector<T>> read_array(const Json& value, const std::string& place, std::size_t max_size,
                                   Result<T> (*read)(const Json&, const std::string&)) {
@@ -132,8 +137,9 @@ std::string to_json(const FlowPlan& plan, double excess_m) {
   return document.dump(1);
 }
 
+// Each part is checked on its own first; FlowPlan::make() then checks the flow as a whole.
 Result<FlowPlan> plan_from_json(std::string_view text) {
-  // Without exceptions the parser says only that it failed.
+  // Parsing without exceptions reports that it failed, but not where.
   Json document = Json::parse(text, nullptr, false);
   if (document.is_object() && document.contains(kExcess) && document[kExcess].is_number()) {
     document.erase(kExcess);

@@ -15,8 +15,8 @@ namespace swarm {
 ///   {"nodes": [{"mean_m": [x, y], "covariance_m2": [xx, xy, yy], "time_s": t, "mass": w}, …],
 ///    "legs":  [{"from": 0, "to": 1, "mass": π}, …]}
 ///
-/// A plan that breaks its own constraints says by how much, first: "excess_m". Numbers are written
-/// so that they read back bit by bit: the digest survives the round trip.
+/// For a plan that breaks its own constraints the key "excess_m" holds by how much. Numbers are
+/// written so that they read back to the same bits: the digest survives the round trip.
 std::string to_json(const FlowPlan& plan, double excess_m = 0.0);
 
 /// Reads such a document; refuses wrong syntax, missing, unknown or mistyped keys (named by their

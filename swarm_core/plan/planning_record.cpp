@@ -14,6 +14,7 @@ std::string to_json(const PlanningRecord& record) {
   return json.dump(2) + "\n";
 }
 
+// A cap that is absent, null or not positive counts as no cap.
 std::optional<PlanningRecord> planning_record_from_json(std::string_view text) {
   const nlohmann::json json = nlohmann::json::parse(text, nullptr, false);
   if (!json.is_object()) return std::nullopt;

@@ -43,6 +43,7 @@ bool box_rules_out(const ConvexObstacle& obstacle, const Vec2& mean_m, double sp
 
 }  // namespace
 
+// Φ⁻¹(p), used for VaR and CVaR of Gaussians.
 double standard_normal_quantile(double p) {
   SWARM_ASSERT(p > 0.0 && p < 1.0);
   // The lower tail keeps its relative precision, so the upper half is mirrored (1 − p is exact
@@ -50,15 +51,21 @@ double standard_normal_quantile(double p) {
   return p <= 0.5 ? lower_quantile(p) : -lower_quantile(1.0 - p);
 }
 
+// k(α) = φ(Φ⁻¹(1−α))/α [SwarmPRM, eq. 7]. φ is even, so Φ⁻¹(α) serves as well and keeps its digits
+// for small α.
 double cvar_coefficient(double alpha) {
   SWARM_ASSERT(alpha > 0.0 && alpha < 1.0);
   return normal_pdf(standard_normal_quantile(alpha)) / alpha;
 }
 
+// [SwarmPRM, eqs. 10–11]: the signed distance is linearised at the mean, so −s is Gaussian with
+// mean −s(μ) and variance n'Σn.
 double obstacle_cvar_m(const Gaussian& g, const SignedDistance& at_mean, double k) {
   return -at_mean.distance_m + k * std::sqrt(g.variance_along_m2(at_mean.gradient));
 }
 
+// Branch and bound. A few obstacles near the mean give a lower bound of the maximum; an obstacle
+// whose box is farther than `spread_m - bound_m` has a smaller CVaR and is never visited.
 double max_cvar_m(const Gaussian& g, const World& world, double k) {
   const Vec2& mean_m = g.mean_m();
   const std::vector<ConvexObstacle>& obstacles = world.convex_obstacles();
@@ -78,6 +85,8 @@ double max_cvar_m(const Gaussian& g, const World& world, double k) {
   return worst_m;
 }
 
+// INFREE of [SwarmPRM, Alg. 1]. Unlike max_cvar_m() it stops at the first obstacle over the
+// threshold.
 bool in_free(const Gaussian& g, const World& world, double k, double delta_m) {
   const Vec2& mean_m = g.mean_m();
   const std::vector<ConvexObstacle>& obstacles = world.convex_obstacles();

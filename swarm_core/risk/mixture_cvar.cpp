@@ -13,7 +13,7 @@
 namespace swarm {
 namespace {
 
-// Bisection alone would need 60.
+// Most rounds of the root search; bisection alone needs 60 for double precision.
 constexpr int kRounds = 100;
 
 double density(double z) { return std::exp(-0.5 * z * z) / std::sqrt(2.0 * std::numbers::pi); }
@@ -28,6 +28,8 @@ double excess_m(const LineComponent& c, double level_m) {
 
 }  // namespace
 
+// VARSEARCH: solves Σ ωⱼ P(Yʲ > z) = α for z by Newton's method, safeguarded by bisection in the
+// bracket [low_m, high_m]. CVaR then follows in closed form.
 TailRisk mixture_tail_risk(std::span<const LineComponent> components, double alpha) {
   double total = 0.0;
   for (const LineComponent& c : components) {
@@ -54,9 +56,11 @@ TailRisk mixture_tail_risk(std::span<const LineComponent> components, double alp
       above += c.weight * tail(z);
       slope -= c.weight * density(z) / c.sigma_m;
     }
+    // The tail probability falls with z: above α, `var_m` is below the root.
     (above > 0.0 ? low_m : high_m) = var_m;
     if (above == 0.0) break;
-    // Beside a narrow component Newton leaps or creeps: it must stay inside and halve its steps.
+    // Near a narrow component Newton's steps are too long or too short: a step must stay inside the
+    // bracket and be at most half as long as the one before, or it is replaced by a bisection.
     double next_m = var_m - above / slope;
     const bool good = next_m > low_m && next_m < high_m &&
                       2.0 * std::abs(next_m - var_m) <= std::abs(last_step_m);
@@ -71,6 +75,7 @@ TailRisk mixture_tail_risk(std::span<const LineComponent> components, double alp
   return {var_m, cvar_m};
 }
 
+// [ROVER, eq. 18]. The derivative of VaR drops out, because VaR minimises eq. 25.
 void mixture_cvar_gradient(std::span<const LineComponent> components, double alpha, double var_m,
                            std::span<double> gradient_m) {
   SWARM_ASSERT(gradient_m.size() == components.size());
@@ -79,6 +84,7 @@ void mixture_cvar_gradient(std::span<const LineComponent> components, double alp
   }
 }
 
+// As in obstacle_cvar_m(), each component is linearised at its own mean.
 std::vector<LineComponent> negated_distance(const Mixture& mixture,
                                             const ConvexObstacle& obstacle) {
   std::vector<LineComponent> line;
@@ -91,6 +97,8 @@ std::vector<LineComponent> negated_distance(const Mixture& mixture,
   return line;
 }
 
+// All obstacles are visited: a heavy tail may come from any component. O(obstacles · components ·
+// rounds).
 double max_mixture_cvar_m(const Mixture& mixture, const World& world, double alpha) {
   double worst_m = -std::numeric_limits<double>::infinity();
   for (const ConvexObstacle& obstacle : world.convex_obstacles()) {

@@ -16,6 +16,7 @@ void ChunkContent::clear() {
   messages = 0;
 }
 
+// Keeps the earliest and latest log time: messages of several robots may arrive out of order.
 void ChunkContent::add(const Message& message) {
   begin_ns = messages == 0 ? message.log_time_ns : std::min(begin_ns, message.log_time_ns);
   end_ns = messages == 0 ? message.log_time_ns : std::max(end_ns, message.log_time_ns);
@@ -23,6 +24,7 @@ void ChunkContent::add(const Message& message) {
   append_message(records, message);
 }
 
+// CRC-32 as zlib computes it, which the MCAP specification demands.
 std::uint32_t crc_of(std::span<const unsigned char> bytes) {
   return static_cast<std::uint32_t>(::crc32_z(0UL, bytes.data(), bytes.size()));
 }
@@ -36,6 +38,7 @@ void Put::bytes(std::span<const unsigned char> bytes) {
   out_.insert(out_.end(), bytes.begin(), bytes.end());
 }
 
+// A map is preceded by its length in bytes, not by its number of entries.
 void Put::map(const std::map<std::string, std::string>& map) {
   const std::size_t begin = begin_length<std::uint32_t>();
   for (const auto& [key, value] : map) {
@@ -45,6 +48,8 @@ void Put::map(const std::map<std::string, std::string>& map) {
   end_length<std::uint32_t>(begin);
 }
 
+// The first text is the profile, which is empty: the recording follows no convention of a
+// framework.
 void append_header(Bytes& out, std::string_view library) {
   Put put(out);
   const std::size_t record = put.begin_record(Op::kHeader);
@@ -85,6 +90,8 @@ void append_message(Bytes& out, const Message& message) {
   put.end_record(record);
 }
 
+// The checksum covers the uncompressed records. They are compressed straight into `out`, whose size
+// is corrected afterwards.
 void append_chunk(Bytes& out, const ChunkContent& chunk, Compression compression) {
   Put put(out);
   const std::size_t record = put.begin_record(Op::kChunk);
@@ -95,6 +102,7 @@ void append_chunk(Bytes& out, const ChunkContent& chunk, Compression compression
   put.text(compression == Compression::kZstd ? "zstd" : "");
   const std::size_t content = put.begin_length<std::uint64_t>();
   if (compression == Compression::kZstd) {
+    // The fastest level: recordings are written while a mission runs.
     constexpr int kLevel = 1;
     const std::size_t bound = ::ZSTD_compressBound(chunk.records.size());
     out.resize(content + bound);
@@ -109,6 +117,7 @@ void append_chunk(Bytes& out, const ChunkContent& chunk, Compression compression
   put.end_record(record);
 }
 
+// Log time and creation time are the same.
 void append_attachment(Bytes& out, const Attachment& attachment) {
   Put put(out);
   const std::size_t record = put.begin_record(Op::kAttachment);
@@ -131,6 +140,8 @@ void append_metadata(Bytes& out, const Metadata& metadata) {
   put.end_record(record);
 }
 
+// Data end, an empty footer and the magic number: a complete MCAP file without index. Made once,
+// and compared with the end of existing files.
 const Bytes& plain_end() {
   static const Bytes kEnd = [] {
     Bytes end;

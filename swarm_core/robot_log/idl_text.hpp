@@ -6,13 +6,14 @@
 #include <string_view>
 #include <vector>
 
-/// The files of idl/, for recordings to carry: readers need nothing else to make sense of them.
+/// The text of the files of idl/, which recordings contain: readers need nothing else to decode
+/// them.
 namespace swarm::mcap {
 
-/// Of idl/swarm.idl the constants and these structs alone, in the order given, without comments.
+/// The constants and the named structs of idl/swarm.idl, in the order given, without comments.
 std::string wire_idl(const std::vector<std::string_view>& structs);
 
-/// The same of idl/blackbox.idl: every robot's file carries them.
+/// The same from idl/blackbox.idl, for robot logs.
 std::string blackbox_idl(const std::vector<std::string_view>& structs);
 
 }  // namespace swarm::mcap

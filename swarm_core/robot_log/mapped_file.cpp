@@ -13,6 +13,8 @@
 
 namespace swarm::mcap {
 
+// Maps instead of reading, so that a recording larger than memory can be searched. An empty file
+// cannot be mapped and has no bytes. The mapping outlives the descriptor.
 Result<MappedFile> MappedFile::open(const std::filesystem::path& file) {
   const auto error = [&](const char* what) {
     return fail(ErrorCode::kEnvironment,
@@ -29,6 +31,7 @@ Result<MappedFile> MappedFile::open(const std::filesystem::path& file) {
   void* const mapped = size == 0 ? nullptr : ::mmap(nullptr, size, PROT_READ, MAP_PRIVATE, fd, 0);
   ::close(fd);
   if (mapped == MAP_FAILED) return error("cannot be mapped");
+  // Readers make one pass: the kernel may read ahead and drop pages behind.
   if (mapped != nullptr) ::madvise(mapped, size, MADV_SEQUENTIAL);
   return MappedFile({static_cast<const unsigned char*>(mapped), size});
 }

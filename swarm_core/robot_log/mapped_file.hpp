@@ -13,6 +13,7 @@ namespace swarm::mcap {
 /// A file's bytes, as they were when it was opened.
 class MappedFile {
  public:
+  /// Maps a regular file for reading; kEnvironment if it cannot be opened or is no regular file.
   static Result<MappedFile> open(const std::filesystem::path& file);
   MappedFile(MappedFile&& other) noexcept : bytes_(std::exchange(other.bytes_, {})) {}
   MappedFile& operator=(MappedFile&& other) noexcept {
@@ -21,6 +22,7 @@ class MappedFile {
   }
   ~MappedFile();
 
+  /// All bytes; valid as long as this object.
   std::span<const unsigned char> bytes() const { return bytes_; }
 
  private:

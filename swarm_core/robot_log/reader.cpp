@@ -16,6 +16,7 @@
 namespace swarm::mcap {
 namespace {
 
+/// Opcode (1 byte) and length (8 bytes).
 constexpr std::size_t kRecordHead = 9;
 /// Beyond this a chunk is not unpacked: a few damaged bytes must not exhaust memory.
 constexpr std::uint64_t kMaxChunkBytes = 1ULL << 30U;
@@ -65,6 +66,7 @@ class Get {
   bool good_ = true;
 };
 
+/// A record inside the mapped file; `content` refers to its bytes.
 struct Record {
   Op op = Op::kHeader;
   View content{};
@@ -77,6 +79,8 @@ struct Front {
   bool cut = false;  // plausible, but its end is not there
 };
 
+/// Opcode 0 is invalid in MCAP. A length beyond the end of the bytes is taken for a truncated file
+/// only if opcode and length are plausible, else for damage.
 Front front_of(View bytes) {
   if (bytes.size() < kRecordHead) return {.cut = true};
   Get get(bytes);
@@ -89,6 +93,8 @@ Front front_of(View bytes) {
                            .size = kRecordHead + length}};
 }
 
+/// One pass over the records of a file. After a damaged record it searches for the next chunk with
+/// a correct checksum.
 class FileReader {
  public:
   explicit FileReader(const Handlers& handlers) : handlers_(handlers) {}
@@ -99,7 +105,7 @@ class FileReader {
     while (!rest.empty()) {
       if (damage_.ended) break;
       const Front front = front_of(rest);
-      // After damage only a chunk, which has a checksum, tells where records begin again.
+      // After damage reading resumes at a chunk only, whose checksum proves that it is a record.
       const bool trusted = front.record && (!in_damage || front.record->op == Op::kChunk);
       if (trusted && take(*front.record)) {
         rest = rest.subspan(front.record->size);
@@ -111,18 +117,20 @@ class FileReader {
         ++damage_.damaged;
         in_damage = true;
       }
-      // The length of a damaged record is not to be believed: look for a whole one byte by byte.
+      // The length of a damaged record may be wrong: search for the next chunk byte by byte.
       const auto* next = static_cast<const unsigned char*>(
           std::memchr(rest.data() + 1, static_cast<int>(Op::kChunk), rest.size() - 1));
       rest = next == nullptr ? View() : rest.subspan(static_cast<std::size_t>(next - rest.data()));
     }
+    // A truncated last record is reported as such and not as damage; if whole records followed
+    // after all, it was damage.
     if (damage_.truncated && in_damage) --damage_.damaged;
     if (!in_damage) damage_.truncated = false;
     return damage_;
   }
 
  private:
-  /// False if it is not what its opcode says.
+  /// False if the content does not match the opcode.
   bool take(const Record& record) {
     switch (record.op) {
       case Op::kSchema:
@@ -138,7 +146,7 @@ class FileReader {
       case Op::kMetadata:
         return take_metadata(record.content);
       case Op::kDataEnd:
-        damage_.ended = true;  // what follows repeats what was published
+        damage_.ended = true;  // the summary that follows repeats data that was read already
         return true;
       case Op::kHeader:
         return true;
@@ -148,13 +156,15 @@ class FileReader {
         return get.number<std::uint32_t>() == get.rest().size() && get.good();
       }
       default:
-        // Others' own records begin at 0x80; or it was a chunk once. The rest follows the end.
+        // Opcodes from 0x80 on are private records of other programs, or a chunk whose opcode was
+        // damaged; both are skipped and counted. All other opcodes occur only after the data end.
         if (static_cast<std::uint8_t>(record.op) < 0x80) return false;
         ++damage_.damaged;
         return true;
     }
   }
 
+  // Schemas and channels may be repeated in a file; the last one counts.
   bool take_schema(View content) {
     Get get(content);
     Schema schema;
@@ -178,6 +188,7 @@ class FileReader {
     return get.good();
   }
 
+  // A message of an unknown channel cannot be decoded and counts as damage.
   bool take_message(View content) {
     Get get(content);
     Message message;
@@ -194,6 +205,8 @@ class FileReader {
     return true;
   }
 
+  // Checks size, checksum and times of a chunk before it passes on the first message: handlers
+  // receive no message of a chunk whose checksum is wrong.
   bool take_chunk(View content) {
     Get get(content);
     const auto begin_ns = get.number<std::int64_t>();
@@ -203,7 +216,7 @@ class FileReader {
     const std::string compression = get.text();
     View records = get.long_bytes();
     if (!get.good() || !get.rest().empty() || size > kMaxChunkBytes) return false;
-    // Until channels are known, chunks may be where they are told.
+    // A chunk may declare channels, so none is skipped before the first channel is known.
     if (end_ns < handlers_.from_ns && !channels_.empty()) return true;
     if (compression == "zstd") {
       unpacked_.resize(size);
@@ -227,8 +240,8 @@ class FileReader {
     return true;
   }
 
-  /// Whether it is made of whole records, and what it says of their times, which the checksum
-  /// leaves out, is true.
+  /// Whether a chunk consists of whole records and its begin and end time, which the checksum does
+  /// not cover, are those of its messages.
   static bool times_are(View records, std::int64_t begin_ns, std::int64_t end_ns) {
     std::int64_t first = std::numeric_limits<std::int64_t>::max();
     std::int64_t last = std::numeric_limits<std::int64_t>::min();
@@ -256,6 +269,7 @@ class FileReader {
     attachment.name = get.text();
     attachment.media_type = get.text();
     const View data = get.long_bytes();
+    // The checksum covers the record's content up to itself.
     const View signed_part = content.first(content.size() - get.rest().size());
     const auto crc = get.number<std::uint32_t>();
     if (!get.good() || (crc != 0 && crc_of(signed_part) != crc)) return false;
@@ -282,6 +296,7 @@ class FileReader {
 
 }  // namespace
 
+/// An empty file is not an error: a writer that was killed before its first write leaves one.
 Result<Damage> read(const std::filesystem::path& file, const Handlers& handlers) {
   const auto mapped = MappedFile::open(file);
   if (!mapped) return tl::unexpected(mapped.error());

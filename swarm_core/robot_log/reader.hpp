@@ -12,13 +12,15 @@
 
 namespace swarm::mcap {
 
+/// What was wrong with a file that was read.
 struct Damage {
-  std::uint64_t damaged = 0;  ///< stretches of bytes that are no record; reading goes on after them
+  std::uint64_t damaged = 0;  ///< number of damaged places; reading continues after each of them
   bool truncated = false;     ///< the file ends inside a record: its writer was killed
-  bool ended = false;         ///< its writer came to an end and said so
+  bool ended = false;         ///< the file has an end record: its writer finished
 };
 
-/// Who wants to have what of a file. A message comes with its channel and schema.
+/// The functions that read() calls with the content of a file; each may be empty. A message is
+/// passed with its channel and schema.
 struct Handlers {
   std::function<void(const Message&, const Channel&, const Schema&)> message{};
   std::function<void(const Attachment&)> attachment{};
@@ -27,9 +29,10 @@ struct Handlers {
   std::int64_t from_ns = std::numeric_limits<std::int64_t>::min();
 };
 
-/// Hands over what a file holds, in its order. A killed writer's file, or one with bytes flipped,
-/// is read as far as its chunks' checksums are right. Fails only if the file cannot be read or is
-/// no MCAP at all; an empty file is a truncated one. Cost: one pass; memory: a chunk.
+/// Passes the content of a file to the handlers, in the order of the file. Of a file that is
+/// damaged, or whose writer was killed, it reads all chunks with a correct checksum. Fails only if
+/// the file cannot be read or is not MCAP at all; an empty file counts as truncated. Takes one pass
+/// over the file and the memory of one chunk.
 Result<Damage> read(const std::filesystem::path& file, const Handlers& handlers);
 
 }  // namespace swarm::mcap

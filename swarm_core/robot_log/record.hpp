@@ -13,17 +13,17 @@
 #include "swarmflow/core/time.hpp"
 #include "swarm_core/metrics/histogram.hpp"
 
-/// The robot log of one robot: a file of its own that it alone appends to, at control rate. Audits
-/// and reports are computed from these files and nothing else.
+/// The robot log: each robot appends to its own file, at control rate. Audits and reports are
+/// computed from these files alone.
 namespace swarm::robot_log {
 
-/// Start of a life of this robot's process (a respawned robot has several in one file).
+/// Start of an incarnation of this robot's process (a respawned robot has several in one file).
 struct Header {
   RobotId robot;
-  std::uint32_t robots = 0;
-  std::uint32_t process_id = 0;
-  double radius_m = 0.0;
-  UtcTime stamp{};
+  std::uint32_t robots = 0;      ///< number of robots of the swarm
+  std::uint32_t process_id = 0;  ///< of the operating system
+  double radius_m = 0.0;         ///< of the robot's body
+  UtcTime stamp{};               ///< when the process started
 };
 
 /// One control step: where the robot was at `stamp` and what it commanded from then on.
@@ -34,7 +34,7 @@ struct Step {
   std::int32_t lateness_us = 0;      ///< actual minus scheduled start of the tick
   std::uint8_t mode = 0;             ///< link::RobotMode
   std::uint8_t goal = kNoGoal;       ///< sink of the plan this robot goes to
-  std::uint16_t neighbours = 0;      ///< robots it believed near
+  std::uint16_t neighbours = 0;      ///< robots it estimated to be near
   std::uint32_t plan_version = 0;    ///< of the plan followed in time; 0: it follows none in time
   float plan_time_s = 0.0F;          ///< τ, that plan's clock, as the robot has it
   float reference_x_m = 0.0F;        ///< x_ref(τ): where the plan has this robot at τ
@@ -42,14 +42,15 @@ struct Step {
   static constexpr std::uint8_t kNoGoal = 255;
 };
 
-/// Where it took a neighbour to be at `stamp`: one of those near it, in turn.
+/// The robot's estimate of a neighbour's position at `stamp`; the neighbours near it are recorded
+/// in turn.
 struct Estimate {
   UtcTime stamp{};
   RobotId neighbour;
   Vec2 position_m = Vec2::Zero();
 };
 
-/// Counters since the process started, once a second and at the end.
+/// Counters since the process started, recorded once a second and at the end.
 struct LinkStats {
   UtcTime stamp{};
   std::uint32_t states_sent = 0;
@@ -66,6 +67,7 @@ struct Note {
   std::string text{};
 };
 
+/// Any record; the order of the alternatives is the order of the log's channels.
 using Record = std::variant<Header, Step, Estimate, LinkStats, Note>;
 
 }  // namespace swarm::robot_log

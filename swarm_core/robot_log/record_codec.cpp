@@ -14,8 +14,8 @@ namespace {
 constexpr std::size_t kEncapsulationBytes = 4;
 constexpr std::array<unsigned char, kEncapsulationBytes> kPlainLittleEndian = {0, 1, 0, 0};
 
-/// Puts values where CDR has them: each at a multiple of its size, counted behind the
-/// encapsulation.
+/// Writes values as CDR: each at a multiple of its size, counted from the end of the encapsulation
+/// header.
 class Encoder {
  public:
   explicit Encoder(std::vector<unsigned char>& out) : out_(out) {
@@ -29,7 +29,8 @@ class Encoder {
       out_.push_back(static_cast<unsigned char>(value >> (8U * i)));
     }
   }
-  /// RTPS carries multiples of four bytes: so is what is recorded, or a replay would change it.
+  /// Pads the message to a multiple of four bytes, as RTPS does: a message that is published again
+  /// in a replay then has the same bytes as the recorded one.
   void finish() { out_.resize((out_.size() + 3) / 4 * 4); }
   void put(float value) { put(std::bit_cast<std::uint32_t>(value)); }
   void put(double value) { put(std::bit_cast<std::uint64_t>(value)); }
@@ -68,6 +69,7 @@ class Decoder {
     }
     return value;
   }
+  // Numbers that are not finite are refused: no record has any.
   double get_double() {
     const double value = std::bit_cast<double>(get<std::uint64_t>());
     good_ = good_ && std::isfinite(value);
@@ -83,6 +85,7 @@ class Decoder {
     return {x, get_double()};
   }
   UtcTime get_time() { return UtcTime(Duration(static_cast<std::int64_t>(get<std::uint64_t>()))); }
+  // CDR counts the terminating 0 in the length of a string.
   std::string get_text() {
     const auto bytes = take(get<std::uint32_t>());
     good_ = good_ && !bytes.empty() && bytes.back() == 0 && bytes.size() <= kMaxNoteText + 1;
@@ -90,7 +93,7 @@ class Decoder {
   }
   void refuse() { good_ = false; }
 
-  /// Whether everything read was there and well-formed, and nothing but padding is left over.
+  /// Whether all values read were present and well-formed and only padding is left.
   bool finished() const { return good_ && in_.size() < 4; }
   bool good() const { return good_; }
 
@@ -108,6 +111,7 @@ class Decoder {
   bool good_ = true;
 };
 
+/// The fields in the order of idl/blackbox.idl, as in all functions put() and get() below.
 void put(Encoder& out, RobotId robot, const Header& header) {
   out.put(header.stamp);
   out.put(robot.value());
@@ -138,6 +142,7 @@ void put(Encoder& out, RobotId robot, const Estimate& estimate) {
   out.put(estimate.position_m);
 }
 
+/// Histograms are mostly empty, so only the bins with samples are written, each with its index.
 void put(Encoder& out, RobotId robot, const LinkStats& stats) {
   out.put(stats.stamp);
   out.put(robot.value());
@@ -199,6 +204,8 @@ RobotId get(Decoder& in, Estimate& estimate) {
   return robot;
 }
 
+/// Counts come from a file and are checked before they are used: a loop ends at the first missing
+/// value.
 RobotId get(Decoder& in, LinkStats& stats) {
   stats.stamp = in.get_time();
   const RobotId robot(in.get<std::uint32_t>());
@@ -231,6 +238,7 @@ RobotId get(Decoder& in, Note& note) {
   return robot;
 }
 
+/// Returned by value and only when the whole message was valid.
 template <class R>
 std::optional<RobotRecord> decode_as(std::span<const unsigned char> message) {
   Decoder in(message);
@@ -242,6 +250,8 @@ std::optional<RobotRecord> decode_as(std::span<const unsigned char> message) {
 
 }  // namespace
 
+/// In the order of the alternatives of Record: the index is also the channel's number in robot
+/// logs.
 const std::array<Kind, std::variant_size_v<Record>>& kinds() {
   static const std::array<Kind, std::variant_size_v<Record>> kKinds = {
       {{"blackbox/header", "swarm::blackbox::Header", {"Header"}},
@@ -252,6 +262,7 @@ const std::array<Kind, std::variant_size_v<Record>>& kinds() {
   return kKinds;
 }
 
+/// The robot's id is a parameter because most records of a log do not hold it.
 void encode(RobotId robot, const Record& record, std::vector<unsigned char>& out) {
   Encoder encoder(out);
   std::visit([&](const auto& r) { put(encoder, robot, r); }, record);

@@ -21,7 +21,8 @@
 namespace swarm::robot_log {
 namespace {
 
-/// What a box begins with: its kinds of records.
+/// The first bytes of every robot log: magic, header, and schema and channel of each kind of
+/// record.
 const mcap::Bytes& preamble() {
   static const mcap::Bytes kPreamble = [] {
     mcap::Bytes out(mcap::kMagic.begin(), mcap::kMagic.end());
@@ -42,7 +43,8 @@ const mcap::Bytes& preamble() {
   return kPreamble;
 }
 
-/// A life that came to its end has closed the file: the next one opens it again.
+/// Removes the end that an earlier incarnation of the robot's process wrote when it finished, so
+/// that this one can append to the file.
 bool remove_end(int fd) {
   const mcap::Bytes& end = mcap::plain_end();
   struct stat status {};
@@ -58,6 +60,7 @@ bool remove_end(int fd) {
   return ::ftruncate(fd, begin) == 0;
 }
 
+/// By topic and not by channel number, which differs in recordings of several robots.
 std::optional<std::size_t> kind_of(const std::string& topic) {
   for (std::size_t i = 0; i < kinds().size(); ++i) {
     if (kinds()[i].topic == topic) return i;
@@ -73,6 +76,7 @@ std::filesystem::path file_of(const std::filesystem::path& run_dir, RobotId robo
 
 RecordEncoder::RecordEncoder() = default;
 
+/// The header is the first record; the records after it are encoded with its robot id.
 void RecordEncoder::add(const Record& record) {
   if (const auto* header = std::get_if<Header>(&record)) robot_ = header->robot;
   encode(robot_, record, message_);
@@ -89,6 +93,8 @@ void RecordEncoder::move_chunk(mcap::Bytes& out, mcap::Compression compression) 
   chunk_.clear();
 }
 
+/// O_APPEND makes every write go to the end of the file, also after another process has appended to
+/// it.
 Result<Writer> Writer::open(const std::filesystem::path& file, std::uint32_t at_once,
                             std::uint32_t turn) {
   SWARM_ASSERT(turn < at_once);
@@ -104,6 +110,7 @@ Result<Writer> Writer::open(const std::filesystem::path& file, std::uint32_t at_
 
 Writer::Writer(Writer&& other) noexcept { *this = std::move(other); }
 
+/// Swapping leaves the old file to the other writer, whose destructor ends and closes it.
 Writer& Writer::operator=(Writer&& other) noexcept {
   if (this == &other) return *this;
   std::swap(fd_, other.fd_);
@@ -115,6 +122,8 @@ Writer& Writer::operator=(Writer&& other) noexcept {
   return *this;
 }
 
+/// Writes the waiting records and the end. An empty file gets no end: without a beginning it could
+/// not be read.
 Writer::~Writer() {
   if (fd_ < 0) return;
   write();
@@ -126,6 +135,8 @@ Writer::~Writer() {
   ::close(fd_);
 }
 
+/// A counter, so that many robots of one process can spread their writes over the control steps
+/// (`turn`).
 void Writer::append(const Record& record) {
   encoder_.add(record);
   if (--until_written_ > 0) return;
@@ -133,13 +144,14 @@ void Writer::append(const Record& record) {
   write();
 }
 
+/// One write(2) for each chunk: a killed process leaves whole chunks, apart from the last one.
 void Writer::write() {
   const std::uint32_t records = encoder_.waiting();
   if (records == 0) return;
   struct stat before {};
   bool written = ::fstat(fd_, &before) == 0;
   buffer_.clear();
-  // How the file begins goes with the first record that the disk takes, in the same write.
+  // An empty file gets the preamble in the same write as its first records.
   if (before.st_size == 0) buffer_ = preamble();
   encoder_.move_chunk(buffer_, mcap::Compression::kNone);
   if (written) {
@@ -148,8 +160,8 @@ void Writer::write() {
       bytes = ::write(fd_, buffer_.data(), buffer_.size());
     } while (bytes < 0 && errno == EINTR);
     written = bytes == static_cast<ssize_t>(buffer_.size());
-    // Half a record would hide the next one from a simple reader. If this fails too, readers
-    // resync.
+    // A partial record would hide the next one from a simple reader, so it is removed. If that
+    // fails too, readers resume at the next chunk.
     if (!written && bytes > 0) [[maybe_unused]]
       const int ignored = ::ftruncate(fd_, before.st_size);
   }
@@ -158,12 +170,14 @@ void Writer::write() {
 
 Batch::Batch() : bytes_(preamble()) {}
 
+/// Large compressed chunks, since the whole log is in memory and nothing is lost between them.
 void Batch::append(const Record& record) {
   constexpr std::uint32_t kRecordsAChunk = 10'000;
   encoder_.add(record);
   if (encoder_.waiting() >= kRecordsAChunk) encoder_.move_chunk(bytes_, mcap::Compression::kZstd);
 }
 
+/// Replaces the file, unlike Writer, which appends to it.
 Result<void> Batch::write(const std::filesystem::path& file) {
   encoder_.move_chunk(bytes_, mcap::Compression::kZstd);
   const mcap::Bytes& end = mcap::plain_end();
@@ -183,6 +197,7 @@ std::optional<RobotRecord> decode(const mcap::Message& message, const mcap::Chan
   return kind ? decode(*kind, message.data) : std::nullopt;
 }
 
+/// Messages that are not valid records count as damage.
 Result<Damage> read_records(const std::filesystem::path& file,
                             const std::function<void(const Record&)>& take) {
   std::uint64_t malformed = 0;
@@ -199,6 +214,8 @@ Result<Damage> read_records(const std::filesystem::path& file,
   return damage;
 }
 
+/// A robot that is started again takes its position from here. A file that does not exist is no
+/// error: the robot had not recorded a step.
 Result<std::vector<Step>> last_steps(const std::filesystem::path& file) {
   std::vector<Step> last;
   if (!std::filesystem::exists(file)) return last;

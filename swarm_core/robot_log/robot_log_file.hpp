@@ -16,16 +16,19 @@
 
 namespace swarm::robot_log {
 
-/// `robot_log/robot-00042.mcap` inside a run directory.
+/// The log of a robot inside a run directory: `blackbox/robot-00042.mcap`.
 std::filesystem::path file_of(const std::filesystem::path& run_dir, RobotId robot);
 
-/// Makes messages of records and chunks of messages. A robot's first record is its Header.
+/// Encodes records as messages and collects the messages in chunks. A robot's first record is its
+/// Header.
 class RecordEncoder {
  public:
   RecordEncoder();
+  /// Encodes a record into the current chunk. \pre the first one is the robot's Header
   void add(const Record& record);
+  /// Number of records in the current chunk.
   std::uint32_t waiting() const { return chunk_.messages; }
-  /// Appends what waits, as one chunk.
+  /// Appends the current chunk to `out` and begins the next one.
   void move_chunk(mcap::Bytes& out, mcap::Compression compression);
 
  private:
@@ -36,21 +39,24 @@ class RecordEncoder {
 };
 
 /// Appends records to one robot's file, of which it is the only writer: an MCAP file, whose
-/// messages idl/blackbox.idl describes, every chunk with a checksum and one write(2). So a killed
-/// process loses at most the record it was writing, and its file lacks an end, which readers take.
-/// A failing disk never stops the robot: the record is dropped and counted. A respawned robot's
-/// process appends to the same file.
+/// messages idl/blackbox.idl describes, every chunk with a checksum and in one write(2). A killed
+/// process therefore loses at most the records it was writing, and its file lacks an end, which
+/// readers accept. A failing disk never stops the robot: the record is dropped and counted. A
+/// respawned robot's process appends to the same file.
 class Writer {
  public:
-  /// Creates the file and its folder if need be. Writes `at_once` records at a time, the first time
-  /// `turn` records earlier: what is not written yet is lost when the process is killed.
+  /// Creates the file and its folder if they do not exist. Writes `at_once` records at a time, the
+  /// first time `turn` records earlier. Records that are not written are lost when the process is
+  /// killed.
   static Result<Writer> open(const std::filesystem::path& file, std::uint32_t at_once = 1,
                              std::uint32_t turn = 0);
   Writer(Writer&& other) noexcept;
   Writer& operator=(Writer&& other) noexcept;
   ~Writer();
 
+  /// Records one record; it reaches the disk with the next write. Never fails, see dropped().
   void append(const Record& record);
+  /// Number of records that the disk refused.
   std::uint64_t dropped() const { return dropped_; }
 
  private:
@@ -66,13 +72,13 @@ class Writer {
   mcap::Bytes buffer_;
 };
 
-/// The same file, compressed, made in memory and written at once: for what cannot be killed
-/// half-way.
+/// The same file, compressed, made in memory and written at once: for logs that are complete before
+/// they are written, as those of a simulation.
 class Batch {
  public:
   Batch();
   void append(const Record& record);
-  /// Writes the file anew. Once. \pre its folder exists
+  /// Writes the file, replacing an existing one. Called once. \pre its folder exists
   Result<void> write(const std::filesystem::path& file);
 
  private:
@@ -82,11 +88,11 @@ class Batch {
 
 using Damage = mcap::Damage;
 
-/// The record that a message of any recording holds, or nothing if it is none.
+/// The robot-log record in a message of any recording; nothing if the message is not one.
 std::optional<RobotRecord> decode(const mcap::Message& message, const mcap::Channel& channel);
 
-/// Hands over every readable record in turn. Fails only if the file cannot be read or is no black
-/// box at all.
+/// Calls `take` for every readable record in turn. Fails only if the file cannot be read or is not
+/// a robot log at all.
 Result<Damage> read_records(const std::filesystem::path& file,
                             const std::function<void(const Record&)>& take);
 
@@ -94,6 +100,7 @@ Result<Damage> read_records(const std::filesystem::path& file,
 /// file.
 Result<std::vector<Step>> last_steps(const std::filesystem::path& file);
 
+/// All records of a file and what was wrong with it.
 struct File : Damage {
   std::vector<Record> records;
 };

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-// What ends a recording: where everything is, and how much of it.
+// The summary at the end of a recording: indexes and statistics.
 #include <algorithm>
 #include <array>
 
@@ -8,8 +8,11 @@
 
 namespace swarm::mcap {
 
+// The groups of the summary, then the offsets of these groups, the footer and the magic number.
+// `begin` is the position of the summary in the file.
 void Writer::append_summary(Bytes& out, std::uint64_t begin) const {
   Put put(out);
+  // All records of one kind, which must be adjacent.
   struct Group {
     Op op;
     std::uint64_t offset, length;
@@ -22,6 +25,7 @@ void Writer::append_summary(Bytes& out, std::uint64_t begin) const {
   };
   group(Op::kSchema, schemas_, [&](const Schema& schema) { append_schema(out, schema); });
   group(Op::kChannel, channels_, [&](const Channel& channel) { append_channel(out, channel); });
+  // There is one record of statistics; the list of one element makes it a group like the others.
   group(Op::kStatistics, std::array{0}, [&](int) {
     std::int64_t first = 0, last = 0;
     for (const ChunkPlace& chunk : chunks_) {
@@ -45,6 +49,7 @@ void Writer::append_summary(Bytes& out, std::uint64_t begin) const {
     put.end_length<std::uint32_t>(map);
     put.end_record(record);
   });
+  // Lets a reader find the chunks of a period, and in them the messages of a channel.
   group(Op::kChunkIndex, chunks_, [&](const ChunkPlace& chunk) {
     const std::size_t record = put.begin_record(Op::kChunkIndex);
     put.number(chunk.begin_ns);
@@ -83,6 +88,7 @@ void Writer::append_summary(Bytes& out, std::uint64_t begin) const {
     put.text(name);
     put.end_record(record);
   });
+  // Lets a reader load one group, for example the attachments, without the rest of the summary.
   const std::uint64_t offsets_begin = begin + out.size();
   for (const Group& g : groups) {
     const std::size_t record = put.begin_record(Op::kSummaryOffset);
@@ -91,6 +97,7 @@ void Writer::append_summary(Bytes& out, std::uint64_t begin) const {
     put.number(g.length);
     put.end_record(record);
   }
+  // The checksum at its end is filled in below, when all bytes before it are known.
   const std::size_t footer = put.begin_record(Op::kFooter);
   put.number(begin);
   put.number(offsets_begin);

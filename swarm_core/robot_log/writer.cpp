@@ -17,11 +17,14 @@
 namespace swarm::mcap {
 namespace {
 
+// Uncompressed size from which a chunk is closed: larger ones compress better, smaller ones lose
+// less.
 constexpr std::size_t kChunkBytes = 1U << 20U;
 constexpr std::string_view kLibrary = "swarmflow " SWARM_VERSION;
 
 }  // namespace
 
+// O_EXCL refuses an existing file without a race between test and creation.
 Result<Writer> Writer::create(const std::filesystem::path& file, Compression compression) {
   const int fd = ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
   if (fd < 0) {
@@ -41,6 +44,7 @@ Result<Writer> Writer::create(const std::filesystem::path& file, Compression com
   return writer;
 }
 
+// `scratch_` holds nothing between calls and is not moved.
 Writer& Writer::operator=(Writer&& other) noexcept {
   if (this == &other) return *this;
   std::swap(fd_, other.fd_);
@@ -67,6 +71,8 @@ Writer::~Writer() {
     const auto finished = finish();
 }
 
+// Writes all bytes or, if the disk refuses, removes the part that it took. Keeps errno for the
+// caller.
 bool Writer::put(const Bytes& bytes) {
   std::size_t done = 0;
   while (done < bytes.size()) {
@@ -79,7 +85,7 @@ bool Writer::put(const Bytes& bytes) {
     size_ += done;
     return true;
   }
-  // Half a record would end the file for simple readers.
+  // A partial record would end the file for simple readers, so it is removed.
   const int reason = errno;
   if (done > 0 && ::ftruncate(fd_, static_cast<off_t>(size_)) == 0) {
     ::lseek(fd_, static_cast<off_t>(size_), SEEK_SET);
@@ -88,6 +94,8 @@ bool Writer::put(const Bytes& bytes) {
   return false;
 }
 
+// Declarations are written outside of chunks, after the current chunk and before the first one that
+// uses them. Declarations that the disk refused are written again before the next chunk.
 std::uint16_t Writer::add_channel(const std::string& topic, const Schema& schema,
                                   const std::map<std::string, std::string>& metadata) {
   flush();
@@ -137,6 +145,7 @@ void Writer::add(const Metadata& metadata) {
   if (put(scratch_)) metadata_.emplace_back(metadata.name, place);
 }
 
+// Messages collect in a chunk; the entries remember time and offset of each for the chunk's index.
 void Writer::write(std::uint16_t channel, std::int64_t log_time_ns, std::int64_t publish_time_ns,
                    std::span<const unsigned char> data) {
   SWARM_ASSERT(channel < channels_.size());
@@ -149,6 +158,7 @@ void Writer::write(std::uint16_t channel, std::int64_t log_time_ns, std::int64_t
   if (chunk_.records.size() >= kChunkBytes) flush();
 }
 
+// Chunk and message indexes go to the disk in one write, so that it has both or neither.
 void Writer::flush() {
   if (chunk_.messages == 0) return;
   scratch_ = lost_declarations_;
@@ -176,6 +186,7 @@ void Writer::flush() {
     put_numbers.end_record(record);
   }
   place.index_length = size_ + scratch_.size() - place.offset - place.length;
+  // Only chunks that the disk took are counted and indexed.
   if (put(scratch_)) {
     lost_declarations_.clear();
     messages_ += chunk_.messages;
@@ -188,6 +199,7 @@ void Writer::flush() {
   chunk_.clear();
 }
 
+// The file is closed even if its end could not be written: readers do without it.
 Result<void> Writer::finish() {
   flush();
   scratch_.clear();

@@ -13,19 +13,20 @@
 
 namespace swarm::mcap {
 
-/// Writes a recording: append-only, chunks of about 1 MiB, at the end an index and statistics. What
-/// is not flushed yet is lost when the process is killed; everything before can be read. A failing
-/// disk loses chunks, which are counted, and never the file: it goes on where there is room again.
+/// Writes a recording: append-only, in chunks of about 1 MiB, with index and statistics at the end.
+/// A process that is killed loses the messages that are not flushed; all earlier ones can be read.
+/// A full disk loses chunks, whose messages are counted; writing continues when there is room
+/// again.
 class Writer {
  public:
-  /// Makes the file anew. Fails if it exists: recordings are not overwritten.
+  /// Creates the file. Fails if it exists: recordings are not overwritten.
   static Result<Writer> create(const std::filesystem::path& file,
                                Compression compression = Compression::kZstd);
   Writer(Writer&& other) noexcept { *this = std::move(other); }
   Writer& operator=(Writer&& other) noexcept;
   ~Writer();  ///< finishes
 
-  /// Ids are given here; the same schema is written once.
+  /// Adds a channel and returns its id; equal schemas are written once.
   std::uint16_t add_channel(const std::string& topic, const Schema& schema,
                             const std::map<std::string, std::string>& metadata = {});
   void add(const Attachment& attachment);
@@ -35,26 +36,29 @@ class Writer {
   void write(std::uint16_t channel, std::int64_t log_time_ns, std::int64_t publish_time_ns,
              std::span<const unsigned char> data);
 
-  /// Hands the chunk so far to the disk.
+  /// Writes the current chunk to the disk.
   void flush();
 
-  /// Index, statistics, end. Fails if anything was lost or the end could not be written.
+  /// Writes index, statistics and end. Fails if messages were lost or the end could not be written.
   Result<void> finish();
 
   std::uint64_t messages() const { return messages_; }  ///< that are in the file
   std::uint64_t dropped() const { return dropped_; }    ///< messages that the disk did not take
 
  private:
+  /// Where a chunk is in the file and what it contains, for its index record.
   struct ChunkPlace {
     std::int64_t begin_ns = 0, end_ns = 0;
     std::uint64_t offset = 0, length = 0, index_length = 0;
     std::map<std::uint16_t, std::uint64_t> index_offsets{};
     std::uint64_t compressed = 0, uncompressed = 0;
   };
+  /// A message of the chunk being filled, for the message index.
   struct Entry {
     std::int64_t log_time_ns;
     std::uint64_t offset;
   };
+  /// Position and length of a record in the file.
   struct Place {
     std::uint64_t offset = 0, length = 0;
   };

@@ -8,6 +8,7 @@
 namespace swarm {
 namespace {
 
+// Boxes in a leaf: scanning a few is cheaper than another level of the tree.
 constexpr std::uint32_t kLeaf = 4;
 
 Box hull(const Box& a, const Box& b) {
@@ -16,6 +17,8 @@ Box hull(const Box& a, const Box& b) {
 
 }  // namespace
 
+// A static bounding volume hierarchy. Few boxes are scanned without a tree. `hair_m_` covers the
+// rounding of distances, which grows with the coordinates.
 BoxIndex::BoxIndex(std::vector<Box> boxes) : boxes_(std::move(boxes)) {
   double farthest_m = 0.0;
   for (const Box& box : boxes_) {
@@ -29,8 +32,8 @@ BoxIndex::BoxIndex(std::vector<Box> boxes) : boxes_(std::move(boxes)) {
   build(0, static_cast<std::uint32_t>(boxes_.size()));
 }
 
-// Halves by the median of the centres on the longer side of all: depth log₂ n for any input, equal
-// boxes included.
+// Splits the boxes at the median of their centres along the axis on which the centres spread most:
+// the depth is log₂ n for any input, equal boxes included.
 void BoxIndex::build(std::uint32_t first, std::uint32_t last) {
   const std::size_t at = tree_.size();
   tree_.emplace_back();
@@ -59,6 +62,8 @@ void BoxIndex::build(std::uint32_t first, std::uint32_t last) {
     build(first, middle);
     build(middle, last);
   }
+  // Nodes are stored in depth-first order, so a query that rejects a node goes on at `skip`, behind
+  // its subtree, and needs no stack.
   tree_[at].skip = static_cast<std::uint32_t>(tree_.size());
 }
 

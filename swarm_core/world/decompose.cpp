@@ -66,12 +66,13 @@ class EarClipper {
   }
 
  private:
+  // All ears of a polygon together cost O(n²) for most polygons and O(n³) at worst.
   std::uint32_t find_ear(std::uint32_t start, std::size_t left) const {
     std::uint32_t at = start;
     for (std::size_t i = 0; i < left; ++i, at = next_[at]) {
       if (turns_left(v_[previous_[at]], v_[at], v_[next_[at]]) && is_empty(at)) return at;
     }
-    // Only rounding leads here: what is left is as thin as that. The flattest corner goes.
+    // Only rounding leads here, in a remainder as thin as the rounding: the flattest corner is cut.
     std::uint32_t flattest = start;
     double least = std::abs(turn(v_[previous_[start]], v_[start], v_[next_[start]]));
     at = start;
@@ -85,6 +86,7 @@ class EarClipper {
     return flattest;
   }
 
+  // Whether no remaining vertex lies in the triangle of a corner.
   bool is_empty(std::uint32_t ear) const {
     const Vec2& a = v_[previous_[ear]];
     const Vec2& b = v_[ear];
@@ -103,6 +105,7 @@ std::size_t position_of(const Loop& loop, std::uint32_t vertex) {
   return static_cast<std::size_t>(std::find(loop.begin(), loop.end(), vertex) - loop.begin());
 }
 
+// The vertex `steps` further along the loop.
 std::uint32_t after(const Loop& loop, std::size_t position, std::size_t steps) {
   return loop[(position + steps) % loop.size()];
 }
@@ -129,7 +132,7 @@ bool merge(const std::vector<Vec2>& v, Loop& left, Loop& right, std::uint32_t a,
   return true;
 }
 
-// Hertel–Mehlhorn: every diagonal is looked at once and goes if both its ends stay convex.
+// Hertel–Mehlhorn: visits every diagonal once and removes it if both its ends stay convex.
 void merge_parts(const std::vector<Vec2>& v, std::vector<Loop>& parts) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> owner;  // directed edge → part
   for (std::size_t part = 0; part < parts.size(); ++part) {
@@ -139,6 +142,7 @@ void merge_parts(const std::vector<Vec2>& v, std::vector<Loop>& parts) {
   }
   std::vector<std::size_t> merged_into(parts.size());
   for (std::size_t part = 0; part < parts.size(); ++part) merged_into[part] = part;
+  // Union-find with path halving: a part that was merged points to the part that took it.
   const auto root = [&](std::size_t part) {
     while (merged_into[part] != part) part = merged_into[part] = merged_into[merged_into[part]];
     return part;
@@ -146,6 +150,8 @@ void merge_parts(const std::vector<Vec2>& v, std::vector<Loop>& parts) {
   for (const auto& [edge, part] : owner) {
     const auto [a, b] = edge;
     const auto opposite = owner.find({b, a});
+    // Each diagonal has two directed edges; only one of them is used. Edges of the outline have no
+    // opposite.
     if (a > b || opposite == owner.end()) continue;
     const std::size_t left = root(part);
     const std::size_t right = root(opposite->second);
@@ -155,6 +161,7 @@ void merge_parts(const std::vector<Vec2>& v, std::vector<Loop>& parts) {
 
 }  // namespace
 
+// Straight corners, which ear clipping keeps, are dropped from the parts at the end.
 std::vector<std::vector<Vec2>> decompose_convex(const Polygon& polygon) {
   const std::vector<Vec2>& v = polygon.vertices_m();
   if (polygon.is_convex()) return {v};
@@ -170,7 +177,7 @@ std::vector<std::vector<Vec2>> decompose_convex(const Polygon& polygon) {
       perimeter_m += (next - at).norm();
       if (turns_left(v[after(part, i, part.size() - 1)], at, next)) corners.push_back(at);
     }
-    // What rounding left as a line covers nothing.
+    // A part that rounding reduced to a line has no area and is dropped.
     if (corners.size() >= 3 && signed_area_twice_m2(corners) > kTiny_m * perimeter_m) {
       convex.push_back(std::move(corners));
     }

@@ -4,7 +4,7 @@
 
 #include "swarmflow/core/linalg.hpp"
 
-/// What polygons and worlds share of plane geometry.
+/// Plane geometry that polygons and worlds share.
 namespace swarm {
 
 /// Lengths up to this count as zero [m].

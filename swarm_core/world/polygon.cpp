@@ -21,8 +21,8 @@ struct Corner {
   std::size_t index = 0;
 };
 
-// Whether b lies on the way from a to c and may go; a corner that folds back (dot < 0) must stay
-// for the check to see it.
+// Whether b lies on the segment from a to c and can be removed. A corner at which the outline folds
+// back (dot < 0) must stay, so that the test for self-intersection finds it.
 bool is_superfluous(const Vec2& a, const Vec2& b, const Vec2& c) {
   const Vec2 ab = b - a;
   const Vec2 bc = c - b;
@@ -31,6 +31,7 @@ bool is_superfluous(const Vec2& a, const Vec2& b, const Vec2& c) {
   return ab.dot(bc) > 0.0 && std::abs(cross(ab, ac)) <= kTiny_m * ac.norm();
 }
 
+// A stack: a new vertex removes the corners before it that became superfluous.
 std::vector<Corner> corners_of(const std::vector<Vec2>& vertices_m) {
   std::vector<Corner> corners;
   corners.reserve(vertices_m.size());
@@ -43,8 +44,8 @@ std::vector<Corner> corners_of(const std::vector<Vec2>& vertices_m) {
       corners.push_back({vertices_m[i], i});
     }
   }
-  // The seam between the last vertex and the first: a repeated one first, for it would hide the
-  // rest.
+  // The seam between the last vertex and the first: a repeated vertex is removed first, because it
+  // would hide the others.
   while (corners.size() >= 3 && ((corners.back().at_m - corners.front().at_m).norm() <= kTiny_m ||
                                  is_superfluous(corners[corners.size() - 2].at_m,
                                                 corners.back().at_m, corners.front().at_m))) {
@@ -57,11 +58,12 @@ std::vector<Corner> corners_of(const std::vector<Vec2>& vertices_m) {
   return corners;
 }
 
+// For p on the line through a and b.
 bool on_segment(const Vec2& a, const Vec2& b, const Vec2& p) {
   return (a.cwiseMin(b).array() <= p.array()).all() && (p.array() <= a.cwiseMax(b).array()).all();
 }
 
-// Crossing or touching.
+// Whether two segments cross or touch, by the signs of the four orientations.
 bool segments_meet(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) {
   const double side_c = cross(b - a, c - a);
   const double side_d = cross(b - a, d - a);
@@ -122,6 +124,8 @@ double signed_area_twice_m2(std::span<const Vec2> vertices_m) {
   return twice;
 }
 
+// Clean-up comes before the test for self-intersection, because repeated vertices would touch.
+// Orientation and convexity follow at last, from a polygon known to be simple.
 Result<Polygon> Polygon::make(std::vector<Vec2> vertices_m) {
   if (vertices_m.size() > kMaxVertices) {
     return fail(ErrorCode::kBadInput, fmt::format("polygon: {} vertices, at most {} are accepted",
@@ -174,6 +178,7 @@ Polygon Polygon::shifted(const Vec2& by_m) const {
   return polygon;
 }
 
+// Ray casting to the right; the half-open comparison counts a vertex on the ray once.
 bool Polygon::contains(const Vec2& point_m) const {
   bool inside = false;
   const Vec2* from = &vertices_m_.back();

@@ -13,8 +13,9 @@ namespace swarm {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+// Cells of the grid: 128 along each side of a square, 64 kB of offsets besides the candidates.
 constexpr double kCellsMax = 128.0 * 128.0;
-constexpr double kHair_m = 1e-9;  // rounding must not hide a candidate
+constexpr double kHair_m = 1e-9;  // slack, so that rounding does not exclude a candidate
 
 Box grown(const Box& box, const Vec2& point_m) {
   return {box.min_m.cwiseMin(point_m), box.max_m.cwiseMax(point_m)};
@@ -27,6 +28,7 @@ double depth_m(const Box& box, const Vec2& p) {
 
 }  // namespace
 
+// Pieces are numbered: boxes first, then convex parts of polygons, in one index.
 Result<ShapeField> ShapeField::make(std::vector<Polygon> polygons, std::vector<Box> boxes_m) {
   if (polygons.empty() && boxes_m.empty()) {
     return fail(ErrorCode::kBadInput, "a shape must have a polygon or a box");
@@ -45,7 +47,7 @@ Result<ShapeField> ShapeField::make(std::vector<Polygon> polygons, std::vector<B
   for (const Polygon& polygon : polygons) {
     for (const Vec2& v : polygon.vertices_m()) field.extent_m_ = grown(field.extent_m_, v);
   }
-  // A world cuts polygons into convex parts that know their distance.
+  // A World decomposes polygons into convex parts, which compute signed distances.
   auto world =
       World::make(field.extent_m_, std::vector<Obstacle>(polygons.begin(), polygons.end()));
   if (!world) return tl::unexpected(world.error());
@@ -59,6 +61,7 @@ Result<ShapeField> ShapeField::make(std::vector<Polygon> polygons, std::vector<B
   return field;
 }
 
+// Squared distance of a point to a piece and the offset from its nearest point; 0 inside.
 ShapeField::Nearest ShapeField::piece(std::uint32_t i, const Vec2& point_m) const {
   if (i < boxes_m_.size()) {
     const Box& box = boxes_m_[i];
@@ -70,6 +73,8 @@ ShapeField::Nearest ShapeField::piece(std::uint32_t i, const Vec2& point_m) cons
   return {outside_m * outside_m, outside_m * sd.gradient};
 }
 
+// Exact search without the grid: a few near pieces give a bound, the index the rest. Ends at the
+// first piece that contains the point.
 ShapeField::Nearest ShapeField::searched(const Vec2& point_m) const {
   Nearest best{kInfinity, Vec2::Zero()};
   const auto look = [&](std::uint32_t i) {
@@ -85,8 +90,12 @@ ShapeField::Nearest ShapeField::searched(const Vec2& point_m) const {
   return best;
 }
 
+// For each cell the pieces that can be nearest to any of its points: the distance is 1-Lipschitz,
+// so a piece is no candidate if it is farther from the cell's centre than the nearest one by more
+// than twice the distance from centre to corner. A cell inside one piece has no candidates, which
+// stands for the value 0.
 void ShapeField::build_grid() {
-  // As far as robots are likely to come from.
+  // The margin covers the surroundings from which robots are likely to approach.
   const Vec2 size_m = extent_m_.max_m - extent_m_.min_m;
   const double margin_m = 0.5 * size_m.maxCoeff();
   const Vec2 grid_m = size_m + Vec2::Constant(2.0 * margin_m);
@@ -116,6 +125,8 @@ void ShapeField::build_grid() {
   first_.push_back(static_cast<std::uint32_t>(candidates_.size()));
 }
 
+// F = dist² and its gradient 2(x − nearest point) [diffusion, eq. 6]. Inside the grid only the
+// candidates of the cell are visited.
 ShapeField::Value ShapeField::at(const Vec2& point_m) const {
   const Vec2 cell = (point_m - grid_min_m_) * cells_per_m_;
   Nearest best{kInfinity, Vec2::Zero()};

@@ -70,8 +70,8 @@ std::vector<ConvexEdge> edges_of(std::span<const Vec2> vertices_m) {
   return edges;
 }
 
-// Inside, the nearest edge is the one whose line is nearest. Outside, a foot that lies on an edge
-// is the nearest point; without one it is a corner.
+// Inside, the nearest edge is the one whose line is nearest. Outside, a perpendicular foot on an
+// edge that faces the point is the nearest point; if there is none, the nearest corner is.
 ConvexObstacle::Faced convex_distance(std::span<const ConvexEdge> edges, const Vec2& p) {
   double farthest_m = -std::numeric_limits<double>::infinity();
   const ConvexEdge* facing = nullptr;
@@ -103,6 +103,7 @@ ConvexObstacle::Faced convex_distance(std::span<const ConvexEdge> edges, const V
   return {{distance_m, nearest_offset / distance_m}};
 }
 
+// At the centre every direction is a gradient; the x axis is as good as any.
 SignedDistance circle_distance(const Circle& circle, const Vec2& p) {
   const Vec2 offset = p - circle.center_m;
   const double norm_m = offset.norm();
@@ -114,6 +115,8 @@ SignedDistance obstacle_distance(const Obstacle& obstacle, const Vec2& p) {
   return polygon_distance(std::get<Polygon>(obstacle).vertices_m(), p);
 }
 
+// Whether two segments cross in the interior of both; touching ends are covered by the distances
+// below.
 bool cross_properly(const Vec2& a, const Vec2& ab, const Vec2& c, const Vec2& cd) {
   const Vec2 ac = c - a;
   const double side_c = cross(ab, ac);
@@ -127,12 +130,15 @@ double segment_point_squared(const Vec2& a, const Vec2& ab, const Vec2& p) {
   return (p - a - nearest_parameter(a, ab, p) * ab).squaredNorm();
 }
 
+// Segments that do not cross are nearest at an end of one of them.
 double segment_segment_squared(const Vec2& a, const Vec2& ab, const Vec2& c, const Vec2& cd) {
   if (cross_properly(a, ab, c, cd)) return 0.0;
   return std::min({segment_point_squared(a, ab, c), segment_point_squared(a, ab, c + cd),
                    segment_point_squared(c, cd, a), segment_point_squared(c, cd, a + ab)});
 }
 
+// A cheap test before the distance of segments: the gap along one axis bounds the distance from
+// below.
 bool boxes_apart(const Box& a, const Box& b, double gap_m) {
   return a.min_m.x() - b.max_m.x() > gap_m || b.min_m.x() - a.max_m.x() > gap_m ||
          a.min_m.y() - b.max_m.y() > gap_m || b.min_m.y() - a.max_m.y() > gap_m;
@@ -152,6 +158,8 @@ Box box_of(const Circle& circle) {
   return {circle.center_m - reach, circle.center_m + reach};
 }
 
+// A segment is blocked if it is near an edge, or if it lies inside entirely, for which its begin is
+// tested.
 bool polygon_blocks(const Polygon& polygon, const Vec2& from, const Vec2& step, const Box& swept,
                     double reach_m) {
   const std::vector<Vec2>& vertices = polygon.vertices_m();
@@ -169,11 +177,14 @@ bool polygon_blocks(const Polygon& polygon, const Vec2& from, const Vec2& step, 
 
 }  // namespace
 
+// A circle has no edges, so it has no face either.
 ConvexObstacle::Faced ConvexObstacle::faced(const Vec2& point_m) const {
   if (vertices_m.empty()) return {circle_distance(circle, point_m)};
   return convex_distance(edges, point_m);
 }
 
+// Every convex part remembers the obstacle it comes from, and the boxes of obstacles and of parts
+// get an index each.
 Result<World> World::make(Box bounds_m, std::vector<Obstacle> obstacles,
                           std::span<const Vec2> velocities_mps, std::size_t bodies) {
   SWARM_ASSERT(velocities_mps.empty() || velocities_mps.size() == obstacles.size());
@@ -238,6 +249,8 @@ bool World::operator==(const World& other) const {
          obstacles_ == other.obstacles_;
 }
 
+// Branch and bound: obstacles near the point give an upper bound, the index visits only boxes
+// within it.
 SignedDistance World::signed_distance(const Vec2& point_m) const {
   constexpr double kInfinity_m = std::numeric_limits<double>::infinity();
   double bound_m = kInfinity_m;
@@ -255,6 +268,8 @@ SignedDistance World::signed_distance(const Vec2& point_m) const {
   return best;
 }
 
+// Cheaper than signed_distance() where only near obstacles matter: the bound is known from the
+// start.
 double World::distance_up_to_m(const Vec2& point_m, double most_m) const {
   double least_m = most_m;
   boxes_.for_each_within({point_m, point_m}, most_m, [&](std::uint32_t i) {
@@ -263,6 +278,8 @@ double World::distance_up_to_m(const Vec2& point_m, double most_m) const {
   return least_m;
 }
 
+// An obstacle is farther than the clearance if and only if all its convex parts are, and distances
+// to parts are cheaper because their edges are precomputed.
 bool World::is_clear(const Vec2& point_m, double clearance_m) const {
   return !convex_boxes_.any_within({point_m, point_m}, clearance_m, [&](std::uint32_t i) {
     return convex_obstacles_[i].signed_distance(point_m).distance_m <= clearance_m;

@@ -1,8 +1,8 @@
 #!/bin/sh
 # SPDX-FileCopyrightText: The Swarmflow authors
 # SPDX-License-Identifier: Apache-2.0
-# Installs the build into a prefix, moves the prefix, builds the examples against it as a stranger would and flies
-# them. Usage: run.sh BUILD_DIR
+# Installs the build into a prefix, moves the prefix, builds the examples against it as an external project would
+# and runs their missions. Usage: run.sh BUILD_DIR
 set -eu
 build=$1
 here=$(cd "$(dirname "$0")" && pwd)

@@ -20,8 +20,8 @@ double standard_normal_quantile(double p);
 double cvar_coefficient(double alpha);
 
 /// The risk limit of a plan: CVaR_α(−s) ≤ δ for every convex obstacle, s the signed distance to it
-/// [SwarmPRM, eq. 12; ROVER, eq. 10b]. In words: in the worst share α of cases robots still keep a
-/// mean distance of −δ from the obstacle.
+/// [SwarmPRM, eq. 12; ROVER, eq. 10b]. That is: averaged over the worst share α of cases, robots
+/// keep a distance of at least −δ from the obstacle.
 struct RiskLimit {
   double alpha = 0.05;    ///< α: share of the tail that is averaged, in (0, 1)
   double delta_m = -0.2;  ///< δ: threshold of the safe region, ≤ 0 [m]

@@ -85,7 +85,7 @@ TEST(FitMixture, BicFindsTheNumberOfComponents) {
 }
 
 TEST(FitMixture, LikelihoodNeverFalls) {
-  // With covariances at their floor and patches of some extent: where a careless M-step would fall.
+  // Covariances at their floor and patches with an extent: a wrong M-step would lower F here.
   for (const double sigma_min_m : {0.01, 0.5, 2.0}) {
     for (std::uint32_t components = 1; components <= 12; ++components) {
       Rng rng(components);
@@ -143,7 +143,7 @@ TEST(FitMixture, DropsWhatIsTooLight) {
   double sum = 0.0;
   for (const auto& [weight, gaussian] : fit->mixture.components()) {
     EXPECT_GE(weight, 1e-3);
-    EXPECT_LT(gaussian.mean_m().norm(), 21.0);  // the dot of weight 1e-4 at (30, 30) is nobody's
+    EXPECT_LT(gaussian.mean_m().norm(), 21.0);  // the dot of weight 1e-4 at (30, 30) is dropped
     sum += weight;
   }
   EXPECT_NEAR(sum, 1.0, 1e-12);

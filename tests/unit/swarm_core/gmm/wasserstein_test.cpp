@@ -92,7 +92,7 @@ TEST(TransportMap, CostsExactlyTheDistance) {
     const Gaussian b = testing::random_gaussian(rng);
     const Mat2 move = transport_map(a, b) - Mat2::Identity();
 
-    // E‖T(x−μ) − (x−μ)‖² = tr((T−I)Σ(T−I)): the mean squared way of the robots.
+    // E‖T(x−μ) − (x−μ)‖² = tr((T−I)Σ(T−I)): the mean squared path of the robots.
     const double mean_squared_path =
         (b.mean_m() - a.mean_m()).squaredNorm() + (move * a.covariance_m2() * move).trace();
 

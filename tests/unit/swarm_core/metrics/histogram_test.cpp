@@ -35,7 +35,7 @@ TEST(Histogram, CoversTheRangeWithoutGapsInBinsOfAtMostASixteenth) {
   for (std::size_t bin = 0; bin < Histogram::kBins; ++bin) {
     const std::int64_t top = Histogram::top_us(bin);
     ASSERT_GE(top, bottom);
-    // Width minus one over the smallest value: what a reading from the top can be off by.
+    // (Width − 1) / smallest value: the largest relative error of a quantile read at a bin's top.
     EXPECT_LE(static_cast<double>(top - bottom), 0.0625 * static_cast<double>(bottom));
     for (const std::int64_t value : {bottom, top}) {
       Histogram histogram;

@@ -62,7 +62,7 @@ TEST(ShortestPaths, WrapAroundACircle) {
       const Vec2 a = center + 6.0 * Vec2(std::cos(turn), std::sin(turn));
       const Vec2 b = center - 7.0 * Vec2(std::cos(turn + bend), std::sin(turn + bend));
       const double grown = radius + 0.2;
-      // The closed form holds where the circle is in the way.
+      // The closed form holds where the circle blocks the straight line.
       if (bend * 3.2 > grown) continue;
       const double exact = around_circle(a, b, center, grown);
       const double found = distance(paths, a, b);
@@ -74,7 +74,7 @@ TEST(ShortestPaths, WrapAroundACircle) {
 }
 
 TEST(ShortestPaths, TurnAtACorner) {
-  // A wall from below whose upper right corner is (5, 5): the way goes over both upper corners.
+  // A wall from below whose upper right corner is (5, 5): the path turns at both upper corners.
   const World world =
       make_world({{0, 0}, {10, 10}}, {make_polygon({{4, -1}, {5, -1}, {5, 5}, {4, 5}})});
 
@@ -96,7 +96,7 @@ TEST(ShortestPaths, TurnAtACorner) {
 }
 
 TEST(ShortestPaths, DoNotLeaveTheWorld) {
-  // The wall reaches beyond the upper bound: the way outside around it would be shorter.
+  // The wall reaches beyond the upper bound: a path outside the bounds would be shorter.
   const World world =
       make_world({{0, 0}, {10, 10}}, {make_polygon({{4, 3}, {5, 3}, {5, 10.1}, {4, 10.1}})});
 
@@ -128,8 +128,8 @@ TEST(ShortestPaths, LetAPointInsideAGrownObstacleOut) {
   EXPECT_NEAR(distance(paths, {5, 9}, {5, 6.2}), 2.8, 1e-9);
 }
 
-/// Shortest way on a grid with moves to 16 neighbours: never shorter than the true one, and in the
-/// open longer by at most 1/cos(½·26.57°) = 2.75 %.
+/// Shortest path on a grid with moves to 16 neighbours: never shorter than the true one, and in
+/// free space longer by at most 1/cos(½·26.57°) = 2.75 %.
 class GridOracle {
  public:
   GridOracle(const World& world, double radius, double cell, int cells)

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-// One mission file per mistake, in broken/. Its first line says what must be found:
+// One mission file per mistake, in broken/. Its first line holds the expected message:
 //   # expect LINE:COLUMN fragment of the message
 #include <algorithm>
 #include <filesystem>

@@ -17,7 +17,7 @@
 namespace swarm {
 namespace {
 
-/// As our own programs read it.
+/// Parses with the built-in components.
 Result<Mission> parse(std::string_view yaml, const std::string& name) {
   return parse_mission(yaml, name, {}, builtin_catalogue());
 }
@@ -181,7 +181,7 @@ void expect_same(const Mission& a, const Mission& b) {
     if (const auto* kind = std::get_if<CommandKind>(&a.script[i].action)) {
       EXPECT_EQ(*kind, std::get<CommandKind>(b.script[i].action));
     } else {
-      // A change is what its keys say; the keys are written with all digits.
+      // Equal keys mean equal changes, because keys are written with all digits.
       const auto& change = std::get<SceneChange>(a.script[i].action);
       const auto& other = std::get<SceneChange>(b.script[i].action);
       EXPECT_EQ(name_of(change), name_of(other));

@@ -10,7 +10,7 @@ namespace swarm {
 namespace {
 
 FlowPlan some_plan() {
-  // 1/3 and 0.1 have no finite binary expansion: they show whether all digits are written.
+  // 1/3 and 0.1 have no finite binary expansion, so they test whether all digits are written.
   const Gaussian a = Gaussian::from_parameters({0.1, 1.0 / 3.0}, 1.7, 2.3, 0.3);
   const Gaussian b = Gaussian::from_parameters({7.0 / 3.0, -4.2}, 0.9, 1.1, -0.55);
   return FlowPlan::make({{a, MissionTime(0), 1.0}, {b, MissionTime(1.0 / 7.0), 1.0}}, {{0, 1, 1.0}})

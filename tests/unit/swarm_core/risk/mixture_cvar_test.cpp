@@ -28,7 +28,7 @@ double tail_probability(const Line& line, double level) {
   return sum;
 }
 
-// VaR by nothing but bisection.
+// VaR by bisection alone.
 double var_by_bisection(const Line& line, double alpha) {
   double low = -1e6;
   double high = 1e6;
@@ -70,7 +70,7 @@ double cvar_by_quadrature(const Line& line, double alpha) {
   return cvar;
 }
 
-// Also degenerate ones: weights of nothing, spreads from a millimetre to a hundred metres, twins.
+// Includes degenerate mixtures: weights of 0, spreads from 1 mm to 100 m, equal components.
 Line random_line(Rng& rng) {
   const auto count = 1 + static_cast<int>(uniform(rng, 0.0, 5.99));
   Line line;

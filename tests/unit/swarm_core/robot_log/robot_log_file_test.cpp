@@ -66,7 +66,7 @@ class RobotLogFile : public testing::Test {
  protected:
   RobotLogFile() {
     folder_ = std::filesystem::temp_directory_path() /
-              ("blackbox_test_" + std::to_string(::getpid()) + "_" +
+              ("robot_log_test_" + std::to_string(::getpid()) + "_" +
                testing::UnitTest::GetInstance()->current_test_info()->name());
     file_ = file_of(folder_, RobotId(42));
   }
@@ -234,7 +234,7 @@ TEST_F(RobotLogFile, DetectsEveryFlippedBitAndReadsOn) {
     const auto file = read_file(file_);
 
     ASSERT_TRUE(file.has_value());
-    // Exactly the record the bit belongs to is gone, and the reader knows.
+    // Exactly the record that contains the bit is lost, and the reader reports the damage.
     EXPECT_EQ(file->records.size(), 6U) << "byte " << byte;
     EXPECT_EQ(file->damaged + (file->truncated ? 1U : 0U), 1U) << "byte " << byte;
   }

@@ -12,7 +12,8 @@
 
 namespace swarm::testing {
 
-/// Star-shaped around `center_m`, so simple; almost never convex. Radii 1–10 m.
+/// A random polygon whose corners are all visible from `center_m`, so it is simple; almost never
+/// convex. Radii 1–10 m.
 inline std::vector<Vec2> random_star(Rng& rng, const Vec2& center_m, std::size_t corners) {
   std::vector<Vec2> vertices;
   for (std::size_t i = 0; i < corners; ++i) {
