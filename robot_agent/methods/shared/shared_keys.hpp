@@ -7,7 +7,7 @@
 /// Keys of the mission's control section that more than one built-in method reads.
 namespace swarm::agent {
 
-/// Of methods that follow a path.
+/// Keys of methods that follow a path.
 struct PathKeys {
   double look_ahead_s = 6.0;
   double approach_gain_hz = 0.8;
@@ -26,7 +26,7 @@ inline OptionTable<PathKeys> path_keys() {
       .number("escape_s", &PathKeys::escape_s, between(0, 600), "longest way to such a place");
 }
 
-/// Of methods that obstacles push.
+/// Keys of methods with a repulsion from obstacles.
 struct ObstacleKeys {
   double obstacle_gap_m = 0.5;
   double obstacle_push_mps = 1.0;
