@@ -17,9 +17,10 @@ namespace swarm::launcher {
 
 /// Robots whose processes die at one time of a simulated mission, as by `kill -9`.
 struct Kill {
+  /// Either ids or a number of robots is given.
   double at_s = 0.0;              ///< mission time
   std::vector<RobotId> robots{};  ///< these; if empty:
-  std::uint32_t count = 0;        ///< so many, drawn by the seed …
+  std::uint32_t count = 0;        ///< number of robots, drawn by the seed …
   std::optional<Box> in_m{};      ///< … among those whose centre is inside
 };
 
@@ -27,13 +28,13 @@ struct Kill {
 /// (kBadInput) with what is allowed.
 Result<Kill> parse_kill(std::string_view text);
 
-/// A robot that may be chosen.
+/// A robot whose process is alive, and may be killed.
 struct Candidate {
   RobotId robot;
   Vec2 position_m = Vec2::Zero();
 };
 
-/// Which of the living robots die, by id. Fewer than asked for if there are not so many.
+/// The robots that die, in the order of their ids; fewer than requested if there are fewer.
 std::vector<RobotId> choose(const Kill& kill, std::span<const Candidate> living,
                             std::uint64_t seed);
 

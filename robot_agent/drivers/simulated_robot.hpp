@@ -58,7 +58,7 @@ constexpr std::uint64_t body_seed(RobotId robot, std::uint64_t run_seed) {
   return mix_seed(mix_seed(run_seed, robot.value()), kBodySeed);
 }
 
-/// The body a mission asks for, at rest; a unicycle has a random heading.
+/// The body that a mission specifies, at rest; a unicycle has a random heading.
 SimulatedRobot make_simulated_body(const BodySpec& body, SteadyTime now, const Vec2& position_m,
                                    std::uint64_t seed);
 

@@ -34,7 +34,7 @@ struct RobotTick {
   std::uint32_t plan_version = 0;  ///< of the newest plan; that of new_plan if there is one
   const OfferedPlan* new_plan = nullptr;
   std::optional<PlanTime> plan_time{};              ///< of the plan's clock, if it is known
-  const PlannedDensity* planned_density = nullptr;  ///< at that time, if it is asked for
+  const PlannedDensity* planned_density = nullptr;  ///< at that time; null if it is not read
 };
 
 /// The parts outside of the loop that a step uses. All outlive the step.

@@ -58,7 +58,7 @@ void ProcessEvents::announce_planner(SteadyTime now, UtcTime utc_now, const Inbo
   planner_was_alive_ = alive;
   announce(utc_now, alive ? link::Severity::kInfo : link::Severity::kWarning,
            alive ? "planner-heard" : "planner-silent",
-           alive ? "hears the planner" : "planner silent: holds with avoidance on");
+           alive ? "receives the planner" : "planner silent: holds with avoidance on");
 }
 
 void ProcessEvents::on_overrun(UtcTime utc_now, Duration took) {

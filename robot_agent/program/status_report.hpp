@@ -15,7 +15,7 @@
 namespace swarm::agent {
 
 /// Publishes the status of the robots of a process: groups of them in turn, at the mission's rate
-/// and whenever the status of a robot changes in a way that is reported at once.
+/// and at once whenever a robot changes its mode or comes to rest.
 class StatusReport {
  public:
   StatusReport(const Mission& mission, link::Writer<link::StatusMessage>& writer)

@@ -9,7 +9,7 @@
 namespace swarm::agent {
 namespace {
 
-constexpr int kDeep = 6;            // recursion depth: bends of bends; also passes of free_position()
+constexpr int kDeep = 6;            // recursion depth of bends, and passes of free_position()
 constexpr double kBetween_m = 0.3;  // width beyond its own of a gap that a robot passes
 constexpr double kSkim_m = 0.1;     // clearance from bodies on the lines of a bend
 constexpr double kWall_m = 0.05;    // clearance from obstacles that are no bodies

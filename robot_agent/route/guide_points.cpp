@@ -9,7 +9,7 @@
 namespace swarm::agent {
 namespace {
 
-constexpr double kReached_m = 0.3;  // reached at this distance even if the next point is not in sight
+constexpr double kReached_m = 0.3;  // reached, even if the next point is not in sight
 
 }  // namespace
 

@@ -14,7 +14,7 @@ constexpr double kReached_m = 0.5;  // an aim this near counts as reached
 constexpr double kBackTrack_m = 30.0;
 constexpr double kSample_m = 0.5;    // spacing of the samples of planned clearance
 constexpr double kLeast_m = 0.05;    // surface clearance of any line of sight
-constexpr double kTouch_m = 1e-3;    // tolerance: a line of sight begins at the robot's own clearance
+constexpr double kTouch_m = 1e-3;    // tolerance at the robot's end of a line of sight
 constexpr double kKeepAim_m = 1.5;   // an aim this far ahead is kept between two looks,
 constexpr double kAtCarrot_m = 0.1;  // and one this near the carrot
 

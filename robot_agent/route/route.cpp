@@ -46,7 +46,7 @@ std::uint32_t follow(const FlowPlan& plan, std::uint32_t node, double share,
 
 /// The robot's point in each station. An offset whose point is too near to an obstacle shrinks
 /// towards the mean by bisection; then both ends of each leg that is not free shrink, in the last
-/// two passes down to the means, whose legs the planner has checked.
+/// two passes down to the means.
 std::vector<Vec2> free_vertices(const std::vector<Station>& stations, const World& world,
                                 const RouteOptions& options) {
   const Box inside{world.bounds_m().min_m.array() + options.radius_m,

@@ -70,7 +70,7 @@ double Schedule::lag_s(double plan_time_s, double at_m) const {
   const double from_s = at_start ? first.time_s : time_in(i);
   while (i + 1 < entries_.size() && entries_[i + 1].at_m <= at_m + kFlat_m) ++i;
   const bool at_end = i + 1 == entries_.size();
-  if (at_end) return std::min(0.0, plan_time_s - from_s);  // the schedule ends here: no lag, however late
+  if (at_end) return std::min(0.0, plan_time_s - from_s);  // the end: no lag however late
   const double to_s = std::max(from_s, time_in(i));
   if (plan_time_s < from_s) return at_start ? 0.0 : plan_time_s - from_s;
   return std::max(0.0, plan_time_s - to_s);

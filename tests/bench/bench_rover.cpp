@@ -61,7 +61,7 @@ double mean_path_m(const swarm::FlowPlan& plan) {
   return sum_m;
 }
 
-// Cheapest assignment of the means along shortest ways around the obstacles.
+// Cheapest assignment of the means along shortest paths around the obstacles.
 double mean_bound_m(const Mission& mission) {
   std::vector<swarm::Vec2> from, to;
   std::vector<double> supplies, demands;

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
 // What control costs: a control period of a whole swarm in mid-flight, of 500 robots on
-// the SwarmPRM map and of any number on an open one. And who hears whom, by cells and by looking at
-// everybody.
+// the SwarmPRM map and of any number on an open one. And the
+// reception of states by cells, compared with a scan of all states.
 //   build/bench/bin/bench_simulation
 #include <cmath>
 #include <numbers>
@@ -98,7 +98,7 @@ BENCHMARK(BM_OpenMapByAllCores)
     ->UseRealTime()
     ->Complexity();
 
-/// Robots that all speak, as densely as a swarm in flight.
+/// Robots that all publish, as densely as a swarm in flight.
 std::vector<agent::NeighbourReport> reports_of(std::uint32_t robots, double side_m) {
   Rng rng(1);
   std::vector<agent::NeighbourReport> sent(robots);
@@ -109,7 +109,7 @@ std::vector<agent::NeighbourReport> reports_of(std::uint32_t robots, double side
   return sent;
 }
 
-// Without cells there is one for all, so that everybody is looked at.
+// Without cells there is one for all, so that all states are scanned.
 void receive_all(benchmark::State& state, bool cells) {
   constexpr double kRange_m = 4.0, kArea_m2 = 2.0;
   const auto robots = static_cast<std::uint32_t>(state.range(0));

@@ -14,8 +14,8 @@ namespace swarm::agent {
 namespace {
 
 constexpr double kChiSquared2Dof90 = 4.605170185988091;
-constexpr double kReachShare = 0.05;  // s, longest step: share of the distance to the nearest neighbour
-constexpr double kArrive = 0.99;      // of the tolerance, to arrive; all of it to stay so (hysteresis)
+constexpr double kReachShare = 0.05;  // s, longest step, of the distance to the nearest neighbour
+constexpr double kArrive = 0.99;      // of the tolerance, to arrive; all of it to stay arrived
 constexpr double kFadeAtRest = 0.1;   // of the range, see CotangentOptions
 constexpr double kRoom = 0.9;         // of the tolerance: here a robot under way to a target stays
 constexpr double kTargetReached = 1.0;      // radii from the target

@@ -108,7 +108,7 @@ Flown fly(const std::string& more) {
   return flown;
 }
 
-TEST(ControlRegistry, FliesAMethodOfSomebodyElse) {
+TEST(ControlRegistry, RunsAMethodAddedByAUser) {
   const Flown flown = fly("");
   EXPECT_EQ(flown.output.mode, RobotMode::kMoving);
   EXPECT_EQ(flown.output.velocity_mps, Vec2(0.75, 0));

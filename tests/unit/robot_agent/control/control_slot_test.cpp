@@ -55,7 +55,7 @@ TYPED_TEST(ControlSlotOf, KeepsItsMethodWhereverItIsMoved) {
   EXPECT_EQ(alive, 0);
 }
 
-TEST(ControlSlot, TakesAMethodThatSomebodyElseMade) {
+TEST(ControlSlot, TakesAMethodFromTheHeap) {
   int alive = 0;
   {
     const ControlSlot slot = ControlSlot::of(std::make_unique<Counted<8>>(alive, 3.0));

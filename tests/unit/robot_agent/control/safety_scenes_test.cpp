@@ -40,7 +40,7 @@ struct Body {
   Vec2 velocity = Vec2::Zero();
 };
 
-/// Everyone knows everyone as of the last tick.
+/// Each robot knows all others as of the last tick.
 void step(std::vector<Body>& bodies, std::vector<SafetyFilter>& filters) {
   std::vector<Vec2> commanded(bodies.size(), Vec2::Zero());
   for (std::size_t i = 0; i < bodies.size(); ++i) {
@@ -110,7 +110,7 @@ TEST(SafetyScenes, NoContactsInDenseGroupsCornersAndCrossings) {
     for (int tries = 0; tries < 60 && bodies.size() < 10; ++tries) {
       const Vec2 p = random_place(rng, 5);
       if (!room_for(p, bodies, world)) continue;
-      // Some swap places, some cross at random, one in ten stands dead.
+      // Some swap positions, some cross at random, one in ten does not move.
       const Vec2 goal = uniform01(rng) < 0.5 ? Vec2(-p) : random_place(rng, 5);
       bodies.push_back({p, goal, uniform01(rng) < 0.1 ? Kind::kFrozen : Kind::kObeys});
     }
@@ -118,7 +118,7 @@ TEST(SafetyScenes, NoContactsInDenseGroupsCornersAndCrossings) {
   }
 }
 
-TEST(SafetyScenes, OneWhoRamsAtFullSpeedIsEvadedInTheOpen) {
+TEST(SafetyScenes, ARobotThatRamsAtFullSpeedIsEvadedInTheOpen) {
   const World world = *World::make({{-100, -100}, {100, 100}}, {});
   Rng rng(12);
   for (int scene = 0; scene < scenes(); ++scene) {

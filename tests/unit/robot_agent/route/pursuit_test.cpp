@@ -10,7 +10,7 @@ namespace {
 //   y
 //   │        ┌── 20,20
 //   │  wall  │
-//   └────────┘ 20,0         way: (0,0) → (20,0) → (20,20), wall inside the corner
+//   └────────┘ 20,0         path: (0,0) → (20,0) → (20,20), wall inside the corner
 World corner_world() {
   return *World::make({{-10, -10}, {40, 40}},
                       {*Polygon::make({{2, 2}, {18, 2}, {18, 30}, {2, 30}})});
@@ -44,7 +44,7 @@ TEST(Pursuit, ReachesTheEndAroundTheCorner) {
   }
 
   EXPECT_LT((robot - Vec2(20, 20)).norm(), 0.05);
-  EXPECT_LT(walked, 40.0);  // it may cut the corner, never walk more than the way
+  EXPECT_LT(walked, 40.0);  // it may cut the corner, but drives no farther than the path
 }
 
 TEST(Pursuit, FallsBackToThePathWhenPushedAroundACorner) {
