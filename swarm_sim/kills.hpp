@@ -17,8 +17,8 @@ namespace swarm::launcher {
 
 /// Robots whose processes die at one time of a simulated mission, as by `kill -9`.
 struct Kill {
-  /// Either ids or a number of robots is given.
   double at_s = 0.0;              ///< mission time
+  /// Which robots: either those of a list, or a number of them.
   std::vector<RobotId> robots{};  ///< these; if empty:
   std::uint32_t count = 0;        ///< number of robots, drawn by the seed …
   std::optional<Box> in_m{};      ///< … among those whose centre is inside

@@ -241,9 +241,9 @@ void NeighbourTable::filter(std::int32_t now_us, const Vec2& own_position_m, Fil
     if ((left[0] | left[1] | left[2] | left[3]) != 0)
       f.as_of_us = is_gone ? all(kGone) : f.as_of_us;
     pass.blocks[i] = {x_m, y_m, age_us};
-#pragma GCC unroll 4
     // Stream compaction without branches: each number is written, and the end of a list moves on
     // only if the mask is set.
+#pragma GCC unroll 4
     for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
       *next_close = kLanes * i + lane;
       next_close -= is_close[lane];

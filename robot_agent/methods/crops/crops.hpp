@@ -33,10 +33,10 @@ struct CropsOptions {
 
 /// Combined roadmaps and potentials, the motion of CRoPS: a robot goes from one intermediate goal
 /// of the guide to the next (guide_points.hpp) in the direction of the superposition of its fields
-/// (crops_fields/), at cruise speed.
+/// (fields/), at cruise speed.
 ///
 /// What differs from the paper, because bodies may not overlap here:
-///   - the robot nearer to the goal goes first (crops_fields/give_way_field.hpp);
+///   - the robot nearer to the goal goes first (fields/give_way_field.hpp);
 ///   - the path ends at the robot's own slot in the goal, and robots that have arrived make room
 ///     (goal_slot.hpp); there robots press instead of keeping apart;
 ///   - where the fields cancel, a robot stops instead of oscillating at full speed.

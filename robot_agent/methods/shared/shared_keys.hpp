@@ -23,7 +23,7 @@ inline OptionTable<PathKeys> path_keys() {
               "speed per metre to the aim point near the end")
       .number("stuck_after_s", &PathKeys::stuck_after_s, positive(3600),
               "no progress for this long: diffusion to a place nearby")
-      .number("escape_s", &PathKeys::escape_s, between(0, 600), "longest time to reach such a place");
+      .number("escape_s", &PathKeys::escape_s, between(0, 600), "longest time to such a place");
 }
 
 /// Keys of methods with a repulsion from obstacles.
