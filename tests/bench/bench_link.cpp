@@ -90,7 +90,7 @@ class ChannelSender final : public Sender {
   std::vector<link::CellStatesMessage> received_;
 };
 
-/// One datagram to each peer, a thread that waits for theirs.
+/// Plain UDP: one datagram to each peer, and a thread that waits for theirs.
 class UdpSender final : public Sender {
  public:
   UdpSender(std::uint32_t self, std::uint32_t processes)

@@ -75,7 +75,7 @@ class Attack {
         foxglove_(seed + 1, kFoxgloveValid),
         clients_(kClients) {}
 
-  /// One client does one thing.
+  /// One action of a random client.
   void strike() {
     const std::size_t which = mutator_.below(clients_.size());
     const bool page = which < clients_.size() / 2;
@@ -163,8 +163,8 @@ class Attack {
   ViewServer& server_;
   FrameMutator page_;
   FrameMutator foxglove_;
-  FrameMutator& mutator_ = page_;                     // for all other dice
-  std::vector<std::unique_ptr<ViewClient>> clients_;  // the first half speaks the page's protocol
+  FrameMutator& mutator_ = page_;                     // for all other random choices
+  std::vector<std::unique_ptr<ViewClient>> clients_;  // the first half uses the page's protocol
 };
 
 /// A client that only wants to see a frame.

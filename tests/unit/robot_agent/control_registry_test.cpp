@@ -28,7 +28,7 @@ const OptionTable<DriftOptions>& drift_table() {
   return table;
 }
 
-/// Goes east, whatever the plan is.
+/// A method that drives east and ignores the plan.
 class Drift final : public ControlMethod {
  public:
   explicit Drift(const DriftOptions& options) : options_(options) {}

@@ -12,7 +12,7 @@
 namespace swarm::agent {
 namespace {
 
-/// Counts how many of it there are; `Room` decides whether a slot has room for it.
+/// A method that counts its instances; `Room` decides whether one fits into a slot.
 template <std::size_t Room>
 class Counted final : public ControlMethod {
  public:

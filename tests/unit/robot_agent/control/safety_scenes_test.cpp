@@ -80,7 +80,7 @@ Vec2 random_place(Rng& rng, double half_m) {
   return {uniform(rng, -half_m, half_m), uniform(rng, -half_m, half_m)};
 }
 
-/// Least gap between robots that obey, and of them to obstacles, over ten seconds.
+/// Least gap between robots that use the filter, and from them to obstacles, over ten seconds.
 double fly(std::vector<Body> bodies, const World& world) {
   std::vector<SafetyFilter> filters(bodies.size(), SafetyFilter(world, options()));
   double least_m = 1e9;
@@ -128,7 +128,7 @@ TEST(SafetyScenes, ARobotThatRamsAtFullSpeedIsEvadedInTheOpen) {
                                 {from, -20.0 * from, Kind::kRams}};
     std::vector<SafetyFilter> filters(2, SafetyFilter(world, options()));
     for (int k = 0; k < 100; ++k) {
-      if (scene % 2 == 0) bodies[1].goal = bodies[0].position + 5 * bodies[0].velocity;  // hunts
+      if (scene % 2 == 0) bodies[1].goal = bodies[0].position + 5 * bodies[0].velocity;  // pursues the other robot
       step(bodies, filters);
       ASSERT_GT((bodies[0].position - bodies[1].position).norm(), 2 * kRadius_m)
           << "scene " << scene << " step " << k;

@@ -247,7 +247,7 @@ TEST(NeighbourTable, ReportsCloseNeighboursFirst) {
   for (const Neighbour& n : fresh.close) EXPECT_LE(n.position_m.y(), 1.5);
   EXPECT_EQ(fresh.close.data(), fresh.all.data());
 
-  // Who is silent for 0.2 s too long may be 0.4 m nearer by now.
+  // A robot silent for 0.2 s longer than expected may be 0.4 m nearer by now.
   const Neighbourhood old = sut.at(at(900), Vec2::Zero());
   EXPECT_EQ(old.all.size(), 29U);
   EXPECT_EQ(old.close.size(), 12U);

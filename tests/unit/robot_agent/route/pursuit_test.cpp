@@ -53,7 +53,7 @@ TEST(Pursuit, FallsBackToThePathWhenPushedAroundACorner) {
   for (double x = 0; x <= 20; x += 0.5) sut.update({x, 0}, world);
   for (double y = 0; y <= 10; y += 0.5) sut.update({20, y}, world);
 
-  const auto aim = sut.update({10, 0}, world);  // thrown back behind the wall
+  const auto aim = sut.update({10, 0}, world);  // pushed back behind the wall
 
   EXPECT_TRUE(aim.visible);
   EXPECT_TRUE(world.segment_is_free({10, 0}, aim.point_m, 0.2));

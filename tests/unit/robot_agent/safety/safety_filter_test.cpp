@@ -41,7 +41,7 @@ double least_gap(const std::vector<Body>& bodies) {
 }
 
 /// A dense group in lock-step that knows its neighbours as they were `delay` steps ago,
-/// extrapolated, with a share of the messages lost. Returns the least gap ever.
+/// extrapolated, with a share of the messages lost. Returns the least gap of the run.
 double fly_dense_region(std::vector<Body>& bodies, const World& world, int steps, std::size_t delay,
                  double loss, Rng& rng) {
   std::vector<SafetyFilter> filters(bodies.size(), SafetyFilter(world, options()));

@@ -65,7 +65,7 @@ TEST(CotangentRepulsion, GradientAndCurvatureAreThoseOfDifferences) {
     std::vector<Neighbour> others;
     for (int i = 0; i < 12; ++i) {
       const Vec2 p(uniform(rng, -1.2, 1.2), uniform(rng, -1.2, 1.2));
-      // Not across the corner of g at R, and not where third differences rule.
+      // Not across the corner of g at R, and not where third differences dominate.
       if (p.norm() > 0.25 && std::abs(p.norm() - 1.0) > 1e-3) others.push_back(at(p));
     }
     const auto energy = [&](const Vec2& p) {
