@@ -25,7 +25,7 @@ struct Kill {
 };
 
 /// Reads `ids:3,7@60`, `10@60` or `10@60,in=90:40:110:60` (x0:y0:x1:y1 in metres). Fails
-/// (kBadInput) with what is allowed.
+/// (kBadInput) with the forms that are allowed.
 Result<Kill> parse_kill(std::string_view text);
 
 /// A robot whose process is alive, and may be killed.

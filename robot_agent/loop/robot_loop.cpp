@@ -55,8 +55,8 @@ Measurement RobotLoop::measure(const RobotTick& tick, const RobotParts& parts) {
   return body;
 }
 
-/// Order: the command goes to the driver before anything is logged, so that the disk does not delay
-/// it.
+/// Decides and commands. The command goes to the driver before the step is logged, so that the disk
+/// does not delay it.
 void RobotLoop::decide(const RobotTick& tick, const RobotParts& parts, const Measurement& body) {
   const RobotMode mode_before = output_.mode;
   const bool was_settled = output_.settled;

@@ -17,7 +17,7 @@ namespace {
 // Keeps the random numbers of network faults apart from those of the robots.
 constexpr std::uint64_t kFaultSeed = 0xFA17;
 
-/// States by UDP multicast groups, one for each cell of the map.
+/// States by UDP multicast, a group per cell.
 Result<std::unique_ptr<link::StateChannel>> make_group_channel(
     const LinkSpec& spec, const shell::RunInfo& run, const link::ReceptionFaults& faults) {
   link::GroupChannelOptions groups{

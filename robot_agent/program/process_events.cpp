@@ -24,7 +24,7 @@ void ProcessEvents::on_tick(SteadyTime now, UtcTime utc_now, Inbox& inbox,
   announce_refusals(utc_now, inbox);
 }
 
-/// What was refused and the ages of states belong to the process: the log of its first robot has
+/// Refusals and ages of states belong to the process: the log of its first robot has
 /// them.
 void ProcessEvents::record_link_stats(UtcTime utc_now, Inbox& inbox, const Histogram& state_age) {
   for (LocalRobot& robot : robots_) {

@@ -52,9 +52,9 @@ struct Listeners {
 ///    obstacle is convex and lies within its half-plane, and u = 0 obeys all of them.
 /// 2. Two robots that obey, begin with gap ≥ m and know each other to within e keep gap ≥ m − e
 ///    (with β = 0), however late their ticks are: a command closes at most γ (gap − m) in the 2Δt
-///    it lasts, half of what is left above m for each, γ ≤ ½. With knowledge that is τ old the pair
+///    it lasts, half of what is left above m for each, γ ≤ ½. With states that are τ old the pair
 ///    is the delayed system ẋ = −(γ/T) x(t − τ) for x = gap − m, which does not overshoot as long
-///    as γτ/T ≤ 1/e: that is what a ≥ eγ is for. β, 0 for those known from before 3.5 Δt, lets a
+///    as γτ/T ≤ 1/e: that is what a ≥ eγ is for. β, 0 for those with τ > 3.5 Δt, lets a
 ///    robot follow one that moves away, as far as what is given up when that one stops at once, β
 ///    v_max τ, is below 0.9 m.
 /// 3. From a robot that keeps off no other, received at every tick and no faster than v_max, a
