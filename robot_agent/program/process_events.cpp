@@ -24,8 +24,7 @@ void ProcessEvents::on_tick(SteadyTime now, UtcTime utc_now, Inbox& inbox,
   announce_refusals(utc_now, inbox);
 }
 
-/// Refusals and ages of states belong to the process: the log of its first robot has
-/// them.
+/// Refusals and ages of states belong to the process: the log of its first robot has them.
 void ProcessEvents::record_link_stats(UtcTime utc_now, Inbox& inbox, const Histogram& state_age) {
   for (LocalRobot& robot : robots_) {
     robot_log::LinkStats stats{.stamp = utc_now,

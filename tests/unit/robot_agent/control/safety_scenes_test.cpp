@@ -128,7 +128,7 @@ TEST(SafetyScenes, ARobotThatRamsAtFullSpeedIsEvadedInTheOpen) {
                                 {from, -20.0 * from, Kind::kRams}};
     std::vector<SafetyFilter> filters(2, SafetyFilter(world, options()));
     for (int k = 0; k < 100; ++k) {
-      if (scene % 2 == 0) bodies[1].goal = bodies[0].position + 5 * bodies[0].velocity;  // pursues it
+      if (scene % 2 == 0) bodies[1].goal = bodies[0].position + 5 * bodies[0].velocity;  // pursuit
       step(bodies, filters);
       ASSERT_GT((bodies[0].position - bodies[1].position).norm(), 2 * kRadius_m)
           << "scene " << scene << " step " << k;
