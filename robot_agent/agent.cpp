@@ -11,8 +11,9 @@
 namespace swarm::agent {
 namespace {
 
-/// Whether a robot is still where the planner heard it: one that comes back later than that finds
-/// its own way into the plan, not back to where its group was.
+/// Whether a robot is still near the position that the planner last received from it. One whose
+/// process was down for longer enters the plan from where it is, instead of driving back to where
+/// its group was.
 bool is_near_source(const FlowPlan& plan, std::uint32_t source, const Vec2& position_m) {
   constexpr double kNear_m = 15.0;
   constexpr double kNearSigmas = 5.0;
@@ -22,7 +23,8 @@ bool is_near_source(const FlowPlan& plan, std::uint32_t source, const Vec2& posi
 }
 
 constexpr double kAtRest_mps = 0.05;
-constexpr double kFinalApproach_m = 4.0;  // nearer to the end than this a turn aside would only stir
+constexpr double kFinalApproach_m = 4.0;  // nearer to the end, robots do not turn aside
+// Time constant of the mean of the commanded velocity.
 constexpr double kMeanOver_s = 2.0;
 
 }  // namespace
@@ -42,6 +44,8 @@ Agent::Agent(const World& world, Shared<AgentOptions> options, const AgentIdenti
       moved_(self.underway),
       followed_route_{.share = self.share} {}
 
+/// Chooses how the robot enters the plan: at the source that the planner names, if it is still
+/// there; from where it is, once it has moved; otherwise at the plan's beginning.
 void Agent::accept_plan(const FlowPlan& plan, const Vec2& position_m,
                         std::optional<PlanEntry> entry, std::optional<double> plan_time_s) {
   if (has_route_ && plan.digest() == followed_route_.plan_digest) return;
@@ -62,14 +66,14 @@ void Agent::accept_plan(const FlowPlan& plan, const Vec2& position_m,
   arrived_ = false;
 }
 
-/// A robot that is in its goal already keeps the place it was going to there: new plans would
-/// stir those who wait for the last ones. It goes there in the time of the new plan.
+/// A robot that is in its goal already keeps its slot there: a new slot with each plan would
+/// disturb the robots that wait for the last ones. It goes there in the time of the new plan.
 void Agent::keep_slot(Route& route, const Vec2& position_m) const {
   constexpr double kSame_m = 1e-6;
   const bool same_goal = has_route_ && (route.goal.mean_m() - followed_route_.goal.mean_m()).norm() < kSame_m;
   if (!same_goal || !route.goal.contains_99(position_m)) return;
   if (!world_->segment_is_free(position_m, followed_route_.end_m, options_->route.radius_m)) return;
-  // In no more time than it had left: each plan would put its arrival off else.
+  // In no more time than it had left; otherwise each new plan would put its arrival off.
   const auto before = method_.tracking();
   const double left_s = before ? std::max(1.0, followed_route_.end_s - before->plan_time_s) : followed_route_.end_s;
   const double end_s = std::min(route.schedule.end_s(), left_s);
@@ -78,6 +82,8 @@ void Agent::keep_slot(Route& route, const Vec2& position_m) const {
                             : Schedule({{0.0, 0.0}, {end_s, route.path.length_m()}});
 }
 
+/// The first that applies: a stop holds in any state, and a robot that has arrived stays arrived
+/// when the mission pauses or the planner is silent.
 RobotMode Agent::decide_mode(const AgentInput& input) const {
   if (input.phase == MissionPhase::kStopped || !method_.fault().empty()) return RobotMode::kStopped;
   if (!has_route_ || input.phase == MissionPhase::kReady) return RobotMode::kWaiting;
@@ -86,6 +92,8 @@ RobotMode Agent::decide_mode(const AgentInput& input) const {
   return RobotMode::kMoving;
 }
 
+/// Estimates the neighbours, has the control method propose a velocity, bounds it by the safety
+/// filter, and decides whether to publish the new state.
 AgentOutput Agent::tick(const AgentInput& input, Rng& rng) {
   const Neighbourhood neighbourhood = neighbours_.at(input.now, input.position_m);
   const ControlView view{.now = input.now,
@@ -104,17 +112,21 @@ AgentOutput Agent::tick(const AgentInput& input, Rng& rng) {
   out.remaining_m = has_route_ ? method_.remaining_m() : 0.0;
 
   if (out.mode != RobotMode::kStopped) {
+    // An arrived robot drives, too: it keeps its slot and makes room. Any other holds its position
+    // and lets itself be pushed.
     const bool drives = out.mode == RobotMode::kMoving || out.mode == RobotMode::kArrived;
     const Vec2 desired = drives ? method_.desired_velocity(view, arrived_, rng) : method_.hold(view);
     const bool gives_way = out.mode == RobotMode::kMoving && out.remaining_m > kFinalApproach_m;
     out.velocity_mps = filter_.filter(input.position_m, desired, view.close, gives_way);
   }
   if (has_route_) out.tracking = method_.tracking();
-  // With noise in what it measures a robot never stands; where it goes nowhere, it rests.
+  // With measurement noise a robot never stops entirely. It counts as settled if its commanded
+  // velocity, now or averaged over two seconds, is negligible.
   mean_mps_ += mean_share_ * (out.velocity_mps - mean_mps_);
   out.settled = out.mode == RobotMode::kArrived &&
                 std::min(out.velocity_mps.norm(), mean_mps_.norm()) < kAtRest_mps;
 
+  // Followers rely on the published velocity: a body with a lag publishes the measured one.
   out.reported_mps = input.velocity_mps.value_or(out.velocity_mps);
   const SendInput state{.now = input.now,
                       .position_m = input.position_m,

@@ -19,16 +19,17 @@
 
 namespace swarm::agent {
 
-/// What is a robot's own.
+/// What distinguishes a robot from others with the same body.
 struct AgentIdentity {
   RobotId robot;
   double share = 0.0;     ///< of the stratified draw, see stratified_share()
-  bool underway = false;  ///< respawned: it may be anywhere along its way
+  bool underway = false;  ///< respawned: it may be anywhere along its path
 };
 
+/// The identity of a robot at the beginning of a mission.
 AgentIdentity agent_identity(const Mission& mission, RobotId robot);
 
-/// What it draws from.
+/// The random numbers of a robot, a function of the run's seed and its id.
 inline Rng agent_rng(RobotId robot, std::uint64_t seed) {
   return Rng(mix_seed(seed, robot.value()));
 }
@@ -39,34 +40,37 @@ struct PlanEntry {
   double share = 0.0;        ///< in [0, 1), for the draws at the splits behind it
 };
 
+/// What a robot knows at a tick.
 struct AgentInput {
   SteadyTime now;
   Vec2 position_m = Vec2::Zero();  ///< measured
   MissionPhase phase = MissionPhase::kReady;
   bool planner_alive = false;
-  /// Measured, of a body that does not have the velocity it is given at once.
+  /// Measured, of a body that does not have a commanded velocity at once.
   std::optional<Vec2> velocity_mps{};
   std::optional<PlanTime> plan_time{};  ///< of the plan accepted last; empty: no clock is known
-  const PlannedDensity* planned_density = nullptr;  ///< then; needed by density_push_mps > 0
+  const PlannedDensity* planned_density = nullptr;  ///< then; read if density_push_mps > 0
 };
 
+/// What a robot decides at a tick.
 struct AgentOutput {
   Vec2 velocity_mps = Vec2::Zero();  ///< to command; valid for two control periods
-  Vec2 reported_mps = Vec2::Zero();      ///< the velocity to tell the neighbours
+  Vec2 reported_mps = Vec2::Zero();      ///< the velocity to publish
   RobotMode mode = RobotMode::kWaiting;
-  bool send = false;          ///< tell the neighbours the new state now
+  bool send = false;          ///< publish the new state now
   bool settled = false;      ///< arrived and at rest
-  double remaining_m = 0.0;  ///< of the own way
+  double remaining_m = 0.0;  ///< left of the own path
   double nearest_gap_m =
-      0.0;  ///< to the nearest believed neighbour, surface to surface; +∞ if none
+      0.0;  ///< to the nearest estimated neighbour, surface to surface; +∞ if none
   std::uint16_t neighbours = 0;
   std::optional<TimeTracking>
       tracking{};                         ///< empty for a robot that does not keep the plan's times
   std::span<const Neighbour> estimated{};  ///< those within reach; valid until the next tick
 };
 
-/// One robot: turns the flow, the map and what it hears of its neighbours into its velocity, alone.
-/// A pure function of its inputs and what it draws; the control loop cannot fail, it holds. tick()
+/// One robot: computes its velocity from the flow, the map and the states received from its
+/// neighbours, without any other party. A pure function of its inputs and random numbers; a robot
+/// that cannot go on holds, tick() does not fail. tick()
 /// does not allocate once warm.
 class Agent {
  public:
@@ -80,14 +84,16 @@ class Agent {
                    std::optional<PlanEntry> entry = std::nullopt,
                    std::optional<double> plan_time_s = std::nullopt);
 
+  /// Takes a neighbour's state that was `late` on receipt.
   NeighbourTable::Outcome receive(const NeighbourReport& report, const Vec2& own_position_m,
                                Duration late = {}) {
     return neighbours_.take(report, own_position_m, late);
   }
 
+  /// One control period. \pre ascending times
   AgentOutput tick(const AgentInput& input, Rng& rng);
 
-  /// For whoever ticks many robots in turn: bring what a tick looks at into the cache, first the
+  /// For a loop that ticks many robots in turn: bring what a tick reads into the cache, first the
   /// agent itself, then what it points to.
   void prefetch() const { swarm::prefetch(this, sizeof(*this) - sizeof(followed_route_)); }
   void prefetch_neighbours() const { neighbours_.prefetch(); }
@@ -95,7 +101,7 @@ class Agent {
   bool has_route() const { return has_route_; }
   /// Index of the goal (sink of the plan) this robot is at or goes to. \pre has_route()
   std::uint32_t goal(const Vec2& position_m) const { return method_.goal(position_m); }
-  /// Where the present way begins. \pre has_route()
+  /// Where the present path begins. \pre has_route()
   const Vec2& route_begin_m() const { return followed_route_.begin_m; }
   /// Plan time by which it is behind its reference position; negative if ahead; 0 once arrived.
   double lag_s() const { return has_route_ && !arrived_ ? method_.lag_s() : 0.0; }
@@ -120,7 +126,7 @@ class Agent {
   bool has_route_ = false;
   bool arrived_ = false;
   bool moved_ = false;
-  /// What only a new plan is compared with: last.
+  /// What a new plan is compared with. Rarely read, so it comes last and is not prefetched.
   struct FollowedRoute {
     double share;
     std::uint64_t plan_digest = 0;

@@ -17,6 +17,7 @@
 namespace swarm::agent {
 namespace {
 
+/// The largest speed of any robot of the mission.
 double fastest_mps(const RobotsSpec& robots) {
   double fastest = robots.speed_max_mps;
   for (const RobotGroupSpec& group : robots.groups) {
@@ -32,8 +33,10 @@ double close_m(const Mission& mission, const BodySpec& body, double press_gap_m)
   const double period_s = 1.0 / mission.control.rate_hz;
   const double margin_m = mission.safety.neighbour_margin_m;
   const double braking_s = period_s / mission.safety.gap_share + lag_s;
+  // The safety filter's first line bounds a velocity below v_max where gap < m + 2T v_max/γ.
   const double brake_m = margin_m + 2.0 * body.speed_max_mps * braking_s;
-  // A robot that follows, or one that stopped unnoticed and was left behind, moves on for so long.
+  // For this long a follower drives on behind a robot that stopped unnoticed: the silence allowed
+  // to it, the two periods that a command lasts, and the lag.
   const double unnoticed_s = 2.0 * period_s + lag_s + mission.link.send_interval_max_s;
   const double follows_m = margin_m + fastest_mps(mission.robots) * unnoticed_s;
   const double pressing_m = std::max(press_gap_m, room_gap_m(mission));
@@ -49,6 +52,7 @@ std::vector<std::string_view> names_of(const ControlRegistry& registry) {
 
 }  // namespace
 
+/// Translates the mission's sections and the robot's body into the options of the agent's parts.
 Result<Shared<AgentOptions>> agent_options(const Mission& mission, RobotId robot,
                                            const ControlRegistry& registry) {
   const BodySpec& body = body_of(mission.robots, robot);
@@ -64,6 +68,8 @@ Result<Shared<AgentOptions>> agent_options(const Mission& mission, RobotId robot
   auto control = entry->prepare({.mission = mission, .body = body});
   if (!control) return tl::unexpected(control.error());
   const double near_m = close_m(mission, body, control->press_gap_m);
+  // Methods that read all neighbours have an infinite reach: then the communication radius limits
+  // it.
   const double matters_m =
       std::isinf(control->reach_m) ? communication_radius_m : std::max(near_m, control->reach_m);
   return Shared<AgentOptions>(AgentOptions{
@@ -83,6 +89,8 @@ Result<Shared<AgentOptions>> agent_options(const Mission& mission, RobotId robot
                      .communication_radius_m = communication_radius_m,
                      .reach_m = matters_m,
                      .close_m = near_m,
+                     // The filter's 2T v_max/γ per second that information is older, as T grows by
+                     // a τ.
                      .reach_growth_mps = 2.0 * body.speed_max_mps * mission.safety.stale_gain /
                                          mission.safety.gap_share,
                      .near_m = l.send_near_m,
@@ -104,6 +112,7 @@ Shared<AgentOptions> agent_options(const Mission& mission, RobotId robot) {
 
 Result<AgentOptionsOf> AgentOptionsOf::make(const Mission& mission,
                                             const ControlRegistry& registry) {
+  // Robots with the same body share one immutable set of options.
   std::map<const BodySpec*, Shared<AgentOptions>> by_body;
   for (std::uint32_t id = 0; id < mission.robots.count; ++id) {
     const auto [found, is_new] = by_body.try_emplace(&body_of(mission.robots, RobotId(id)));

@@ -26,8 +26,8 @@ struct AgentOptions {
 };
 
 /// The options of a robot of a mission, and of any other with its body.
-/// kBadInput if the registry has no such control method, or what the method reports about the
-/// mission.
+/// Fails with kBadInput if the registry lacks the control method, and with the method's error if
+/// that refuses the mission.
 Result<Shared<AgentOptions>> agent_options(const Mission& mission, RobotId robot,
                                            const ControlRegistry& registry);
 /// The same with a built-in method. \pre mission.control.method is one
@@ -36,10 +36,12 @@ Shared<AgentOptions> agent_options(const Mission& mission, RobotId robot);
 /// The options of all robots of a mission, made once for each body. The mission outlives it.
 class AgentOptionsOf {
  public:
+  /// Fails as agent_options() does, for the first body that it fails for.
   static Result<AgentOptionsOf> make(const Mission& mission, const ControlRegistry& registry);
   /// With a built-in method.
   explicit AgentOptionsOf(const Mission& mission);
 
+  /// The options of one robot. O(log bodies).
   const Shared<AgentOptions>& operator()(RobotId robot) const;
   /// Whether the control method reads the planned density.
   bool reads_density() const;

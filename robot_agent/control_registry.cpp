@@ -10,6 +10,8 @@
 
 namespace swarm::agent {
 
+/// Methods may share a key only if they agree on its type, range and doc: a mission file has one
+/// section for all methods.
 void ControlRegistry::add(ControlEntry entry) {
   SWARM_ASSERT(find(entry.spec.name) == nullptr && entry.prepare);
   for (const OptionSpec& option : entry.spec.options) {
@@ -29,6 +31,7 @@ const ControlEntry* ControlRegistry::find(std::string_view name) const {
   return found == entries_.end() ? nullptr : &*found;
 }
 
+/// In the order of registration.
 Components ControlRegistry::specs() const {
   Components specs;
   for (const ControlEntry& entry : entries_) specs.push_back(entry.spec);
@@ -41,6 +44,7 @@ void register_builtin_control(ControlRegistry& registry) {
   registry.add(intermittent_diffusion_method());
 }
 
+/// Made on first use and never changed afterwards, so all threads may read it.
 const ControlRegistry& builtin_control() {
   static const ControlRegistry registry = [] {
     ControlRegistry made;

@@ -11,6 +11,8 @@
 namespace swarm::agent {
 namespace {
 
+/// An entry for a motion model of the simulated robot; make_simulated_body() picks the model by the
+/// name in the mission.
 DriverEntry simulated(std::string name, std::string doc, const LagSpec& lag) {
   return {.spec = {.name = std::move(name), .doc = std::move(doc), .options = {}, .lag = lag},
           .make = [](const DriverContext& context) -> Result<std::unique_ptr<Driver>> {
@@ -38,6 +40,8 @@ Components DriverRegistry::specs() const {
   return specs;
 }
 
+/// All built-in drivers are simulated. The lag declares which limits a body must have, for the
+/// safety filter.
 void register_builtin_drivers(DriverRegistry& registry) {
   registry.add(simulated("single_integrator", "Simulated: has a commanded velocity at once", {}));
   registry.add(simulated("unicycle", "Simulated: drives forwards and turns, within limits",

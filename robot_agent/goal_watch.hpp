@@ -11,19 +11,20 @@
 namespace swarm::agent {
 
 /// Whether a robot has arrived: inside its goal's 99 % ellipse and within 1 m of its own end point,
-/// or within 4 m if a crowd has let it no nearer for 3 s. Once arrived it stays so while it is
-/// inside the ellipse.
+/// or within 4 m if other robots have let it no nearer for 3 s. Once arrived it stays so while it
+/// is inside the ellipse.
 class GoalWatch {
  public:
   GoalWatch() = default;
   GoalWatch(const Gaussian& goal, const Vec2& end_m) : goal_(goal), end_m_(end_m) {}
 
-  /// Whether it is for this place in this goal: then a new plan does not begin it anew.
+  /// Whether it watches this end point in this goal: then a new plan does not reset it.
   bool is_for(const Gaussian& goal, const Vec2& end_m) const {
     constexpr double kSame_m = 1e-6;
     return (goal.mean_m() - goal_.mean_m()).norm() < kSame_m && (end_m - end_m_).norm() < kSame_m;
   }
 
+  /// To be called at every tick: it also keeps the time of the last progress.
   bool has_arrived(SteadyTime now, const Vec2& position_m) {
     const bool inside = goal_.contains_99(position_m);
     if (arrived_) return arrived_ = inside;

@@ -9,6 +9,7 @@ namespace swarm::agent {
 
 namespace {
 
+// A state older than this on receipt, after the time it waited for our tick, has a wrong stamp.
 constexpr Duration kLatePlausible = std::chrono::seconds(1);
 
 }  // namespace
@@ -23,6 +24,8 @@ Inbox::Inbox(Readers readers, link::StateChannel& states, const link::WireLimits
       gate_({.limits = limits}),
       received_cells_(communication_radius_m) {}
 
+/// Keeps only the newest plan that passes the gate. A plan of the same digest is the same flow
+/// under another version: the plan's clock goes on.
 void Inbox::receive_plans(UtcTime utc_now) {
   plans_.clear();
   readers_.plan->take(plans_);
@@ -43,7 +46,7 @@ void Inbox::receive_scenes(UtcTime utc_now) {
   readers_.scene->take(scenes_);
   for (const link::SceneMessage& message : scenes_) {
     auto scene = gate_.scene(message, utc_now);
-    // Version 0 is the mission file's, with which the agent began.
+    // Version 0 is the scene of the mission file, with which the agent began.
     if (scene && scene->version > 0) new_scene_ = std::move(*scene);
   }
 }
@@ -62,6 +65,7 @@ void Inbox::receive_heartbeats(SteadyTime now, UtcTime utc_now) {
   }
 }
 
+/// The stamp of the stop command is kept for the log: it measures how long a stop takes.
 void Inbox::receive_commands(UtcTime utc_now) {
   commands_.clear();
   readers_.command->take(commands_);
@@ -75,6 +79,7 @@ void Inbox::receive_commands(UtcTime utc_now) {
   }
 }
 
+/// Plans before heartbeats, so that a heartbeat of a plan received at the same tick counts at once.
 void Inbox::receive_fixed_topics(SteadyTime now, UtcTime utc_now) {
   receive_plans(utc_now);
   receive_scenes(utc_now);
@@ -91,12 +96,13 @@ void Inbox::begin_states() {
   states_.take(batches_);
 }
 
+/// Checks one state and gives it a time on our steady clock: receipt minus the age by its stamp.
 void Inbox::receive_state(const link::RobotStateMessage& state, SteadyTime steady_now,
                           UtcTime utc_now, const EchoGuard* own) {
   if (!gate_.state(state, utc_now, own)) return;
   // A state may have waited in the socket since our last tick, however long ago that is, and have
-  // been late before that. What is older still, or comes from the future, has a clock that is off:
-  // the state counts as old as it may be.
+  // been late before that. One that is older still, or comes from the future, has a stamp by a
+  // clock that is off: it counts as received right after the last tick.
   const Duration waited = received_before_ ? steady_now - *received_before_ : Duration::zero();
   Duration age = utc_now - UtcTime(Duration(state.stamp_utc_ns));
   if (age < -limits_.clock_skew_warn || age > waited + kLatePlausible) {

@@ -21,6 +21,7 @@ namespace swarm::agent {
 
 using link::EchoGuard;
 
+/// The readers of the topics that every agent process subscribes to.
 struct Readers {
   link::ReaderPtr<link::PlanMessage> plan;
   link::ReaderPtr<link::SceneMessage> scene;
@@ -32,6 +33,7 @@ struct Readers {
 struct NewPlan {
   FlowPlan flow;
   std::vector<link::PlanEntryMessage> entries;  ///< by robot id; empty in a mission's first plan
+  /// Where the plan has this robot enter; empty if anywhere.
 
   std::optional<PlanEntry> entry_of(RobotId robot) const {
     if (robot.value() >= entries.size()) return std::nullopt;
@@ -45,12 +47,12 @@ struct NewPlan {
 /// on domain objects.
 class Inbox {
  public:
-  /// No robot listens farther than `communication_radius_m`.
+  /// `communication_radius_m`: the largest of the robots of the process.
   Inbox(Readers readers, link::StateChannel& states, const link::WireLimits& limits,
         const MissionWatch& mission, Duration planner_silence, double communication_radius_m);
 
   /// Takes what arrived. `own(id)` names the guard of a robot of this process, or nullptr. Robots
-  /// of one process hear each other over the bus like everyone else; a robot skips its own echo.
+  /// of one process receive each other over the bus as any others; a robot skips its own echo.
   template <class OwnGuard>
   void receive(SteadyTime steady_now, UtcTime utc_now, OwnGuard own) {
     receive_fixed_topics(steady_now, utc_now);
@@ -65,7 +67,7 @@ class Inbox {
     received_cells_.sort(received_);
   }
 
-  /// What was received robots near a place, and maybe of some that are not.
+  /// The states received at the last tick, to be visited by position.
   const ReceivedCells& received() const { return received_cells_; }
 
   /// The newest plan, once, when one arrived.
@@ -77,7 +79,7 @@ class Inbox {
   std::uint64_t plan_scene_version() const { return plan_scene_version_; }
 
   const MissionWatch& mission() const { return mission_; }
-  /// Of the newest plan received; empty while no heartbeat told it.
+  /// Plan time of the newest plan; empty until a heartbeat of that plan is received.
   std::optional<PlanTime> plan_time(SteadyTime now) { return plan_time_.at(now); }
   std::int64_t stop_stamp_utc_ns() const { return stop_stamp_utc_ns_; }
 

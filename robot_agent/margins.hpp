@@ -15,8 +15,8 @@ inline double obstacle_margin_m(const Mission& mission, const BodySpec& body) {
          2.0 * std::hypot(body.position_noise_m, body.motion_noise_m);
 }
 
-/// Gap above which a robot has room [m]. In a dense region gaps are as small as the filter's
-/// margin, so that what presses begins well above.
+/// Gap above which a robot has room [m]. In a dense region gaps shrink to the filter's margin, so
+/// fields that push robots apart begin well above it.
 inline double room_gap_m(const Mission& mission) { return mission.safety.neighbour_margin_m + 0.5; }
 
 }  // namespace swarm::agent

@@ -7,8 +7,8 @@
 
 namespace swarm::agent {
 
-/// What a process knows of the mission: its phase, moved by commands, and whether the planner
-/// lives.
+/// What a process knows of the mission: its phase, changed by commands, and whether the planner
+/// is alive.
 ///
 ///   ready ──start──▶ running ◀──resume/pause──▶ paused        any ──stop──▶ stopped (for good)
 ///
@@ -16,8 +16,9 @@ namespace swarm::agent {
 /// at any time and more than once.
 class MissionWatch {
  public:
-  /// `resume_delay`: so long a planner must be received again after a silence. Whoever was cut off from it
-  /// was from others, and hears them, too, before it moves.
+  /// `resume_delay`: time for which the planner must be received again after a silence before
+  /// robots move. A process cut off from the planner was cut off from its neighbours, too: the
+  /// delay lets it receive their states first.
   explicit MissionWatch(Duration planner_silence, Duration resume_delay = Duration::zero())
       : planner_silence_(planner_silence), resume_delay_(resume_delay) {}
 
@@ -30,6 +31,7 @@ class MissionWatch {
   }
 
   MissionPhase phase() const { return phase_; }
+  /// Whether robots may move: the planner is received, and has been for resume_delay.
   bool planner_alive(SteadyTime now) const {
     return received_ && now - received_at_ <= planner_silence_ && now - back_at_ >= resume_delay_;
   }
@@ -40,7 +42,7 @@ class MissionWatch {
   MissionPhase phase_ = MissionPhase::kReady;
   bool received_ = false;
   SteadyTime received_at_;
-  SteadyTime back_at_;  // heard without a silence since
+  SteadyTime back_at_;  // begin of reception without a silence
 };
 
 }  // namespace swarm::agent

@@ -6,6 +6,9 @@
 
 namespace swarm::agent {
 
+/// Age of a heartbeat by a minimum filter: receipt minus stamp is clock difference plus delay, and
+/// its minimum over one to two windows stands for the clock difference. Two windows in turn need no
+/// list of samples.
 double PlanTimeWatch::age_s(const Beat& beat, SteadyTime now) {
   const std::int64_t now_ns = now.time_since_epoch().count();
   const std::int64_t apart_ns = now_ns - beat.stamp_utc_ns;
@@ -22,11 +25,14 @@ double PlanTimeWatch::age_s(const Beat& beat, SteadyTime now) {
   }
   least_ns_ = std::min(least_ns_, apart_ns);
   const double age = 1e-9 * static_cast<double>(apart_ns - std::min(least_ns_, least_before_ns_));
+  // The planner's clock was set back: all samples so far are worthless.
   if (age <= kOldest_s) return age;
   restart();
   return 0.0;
 }
 
+/// Extrapolates the plan time to the receipt. A heartbeat of another version is kept: it may arrive
+/// before its plan.
 void PlanTimeWatch::on_heartbeat(const Beat& beat, SteadyTime now) {
   const Received received{.version = beat.version,
                           .plan_time_s = beat.plan_time_s + beat.rate * age_s(beat, now),
@@ -35,6 +41,7 @@ void PlanTimeWatch::on_heartbeat(const Beat& beat, SteadyTime now) {
   (beat.version == version_ ? received_ : other_) = received;
 }
 
+/// The same flow keeps the highest plan time, so that it does not go back.
 void PlanTimeWatch::on_plan(std::uint32_t version, bool same_flow) {
   if (!same_flow) highest_s_ = 0.0;
   if (version == version_) return;
@@ -44,6 +51,8 @@ void PlanTimeWatch::on_plan(std::uint32_t version, bool same_flow) {
   other_.reset();
 }
 
+/// Extrapolates at the rate received last, up to the silence. While the plan time is held at its
+/// highest value, its rate is 0.
 std::optional<PlanTime> PlanTimeWatch::at(SteadyTime now) {
   if (!received_) return std::nullopt;
   const Duration since = std::min(now - received_->at, silence_);

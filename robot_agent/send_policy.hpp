@@ -13,14 +13,15 @@
 
 namespace swarm::agent {
 
+/// When a state is published.
 struct SendOptions {
-  double error_m = 0.05;    ///< speak when others' extrapolation of us is off by more
-  Duration interval_max{};  ///< or when we have been silent this long
+  double error_m = 0.05;    ///< publish when others' extrapolation of us is off by more …
+  Duration interval_max{};  ///< … or when the last state is this old
   double near_m = 1.0;      ///< on a degraded link: at every tick while a surface is nearer
-  Duration period{};        ///< until it can speak again
+  Duration period{};        ///< of control: the time until the next chance to publish
 };
 
-/// What there is to say, and who listens.
+/// What the decision depends on: the own state, the neighbours that receive it and the link.
 struct SendInput {
   SteadyTime now;
   Vec2 position_m = Vec2::Zero();
@@ -29,8 +30,9 @@ struct SendInput {
   LinkQuality link;
 };
 
-/// When a robot speaks (dead reckoning): others extrapolate its last state linearly, it does the
-/// same and speaks before the difference matters, and before its silence does.
+/// Decides when a robot publishes its state (dead reckoning): others extrapolate its last state
+/// linearly, it does the same, and publishes before the difference matters to them, and before its
+/// silence makes a follower brake.
 class SendPolicy {
  public:
   explicit SendPolicy(Shared<SendOptions> options) : options_(std::move(options)) {}
@@ -41,6 +43,7 @@ class SendPolicy {
 
  private:
   Shared<SendOptions> options_;
+  /// The state that others extrapolate.
   struct SentState {
     SteadyTime now;
     Vec2 position_m = Vec2::Zero();

@@ -21,7 +21,7 @@ tl::unexpected<Error> refuse(std::string_view text) {
                           text));
 }
 
-/// The number that the text is, all of it.
+/// Reads a text that is one finite number as a whole; nothing else may follow.
 template <class Number>
 std::optional<Number> number(std::string_view text) {
   Number value{};
@@ -34,13 +34,14 @@ std::optional<Number> number(std::string_view text) {
   return value;
 }
 
-/// The part up to a separator, which is taken off with it.
+/// Removes the part up to a separator, and the separator, from the text; returns the part.
 std::string_view take_until(std::string_view& text, char separator) {
   const std::string_view part = text.substr(0, text.find(separator));
   text.remove_prefix(std::min(text.size(), part.size() + 1));
   return part;
 }
 
+/// `x0:y0:x1:y1` with x0 < x1 and y0 < y1.
 std::optional<Box> read_box(std::string_view text) {
   std::array<double, 4> numbers{};
   for (double& value : numbers) {
@@ -55,6 +56,7 @@ std::optional<Box> read_box(std::string_view text) {
 
 }  // namespace
 
+/// WHOM@SECONDS with an optional box behind a comma; a list of ids allows no box.
 Result<Kill> parse_kill(std::string_view text) {
   constexpr std::string_view kIds = "ids:";
   constexpr std::string_view kIn = "in=";
@@ -94,11 +96,13 @@ std::vector<RobotId> choose(const Kill& kill, std::span<const Candidate> living,
     if (is_asked_for(candidate)) chosen.push_back(candidate.robot);
   }
   if (!kill.robots.empty() || chosen.size() <= kill.count) return chosen;
-  // By lot, the lot of each robot being its own: whether others are there does not change it.
+  // Each robot has a random number of its own, and the smallest are chosen: which other robots are
+  // candidates does not change a robot's number.
   std::sort(chosen.begin(), chosen.end(), [&](RobotId a, RobotId b) {
     return mix_seed(seed, a.value()) < mix_seed(seed, b.value());
   });
   chosen.resize(kill.count);
+  // By id again, as the header states.
   std::sort(chosen.begin(), chosen.end());
   return chosen;
 }

@@ -18,22 +18,23 @@ namespace swarm::launcher {
 /// Robots whose processes die at one time of a simulated mission, as by `kill -9`.
 struct Kill {
   double at_s = 0.0;              ///< mission time
+  /// Which robots: either those of a list, or a number of them.
   std::vector<RobotId> robots{};  ///< these; if empty:
-  std::uint32_t count = 0;        ///< so many, drawn by the seed …
+  std::uint32_t count = 0;        ///< number of robots, drawn by the seed …
   std::optional<Box> in_m{};      ///< … among those whose centre is inside
 };
 
 /// Reads `ids:3,7@60`, `10@60` or `10@60,in=90:40:110:60` (x0:y0:x1:y1 in metres). Fails
-/// (kBadInput) with what is allowed.
+/// (kBadInput) with the forms that are allowed.
 Result<Kill> parse_kill(std::string_view text);
 
-/// A robot that may be chosen.
+/// A robot whose process is alive, and may be killed.
 struct Candidate {
   RobotId robot;
   Vec2 position_m = Vec2::Zero();
 };
 
-/// Which of the living robots die, by id. Fewer than asked for if there are not so many.
+/// The robots that die, in the order of their ids; fewer than requested if there are fewer.
 std::vector<RobotId> choose(const Kill& kill, std::span<const Candidate> living,
                             std::uint64_t seed);
 

@@ -15,6 +15,7 @@
 namespace swarm::launcher {
 namespace {
 
+/// The options as parsed; --fault and --kill are still texts.
 struct CommandLine {
   SimulateOptions options;
   std::string fault;
@@ -48,6 +49,7 @@ void add_options(CLI::App& app, const std::shared_ptr<CommandLine>& line) {
   app.add_flag("--json", o->json, "Print the summary as JSON");
 }
 
+/// Parses faults and kills here, so that their errors name the text that is wrong.
 Result<ExitCode> simulate(CommandLine& line) {
   const auto faults = parse_link_faults(line.fault);
   if (!faults) return tl::unexpected(faults.error());

@@ -18,11 +18,14 @@ Recording::Recording(const Mission& mission, UtcTime begin, std::uint64_t keeps_
   SWARM_ASSERT(keeps_every >= 1);
 }
 
+/// A note of the same stamp as the robot's step is written before or after it as in a process,
+/// which appends to one file.
 void Recording::note(RobotId robot, robot_log::Note note) {
   const bool follows_step = !periods_.empty() && periods_.back()[robot.value()].stamp == note.stamp;
   notes_[robot.value()].push_back({.note = std::move(note), .follows_step = follows_step});
 }
 
+/// Backwards through the periods: a dead robot has no steps in the latest ones.
 std::vector<robot_log::Step> Recording::last_steps(RobotId robot) const {
   std::vector<robot_log::Step> steps;
   for (auto period = periods_.rbegin(); period != periods_.rend() && steps.size() < 2; ++period) {
@@ -40,6 +43,7 @@ void Recording::replay(std::uint32_t robot, Take take) const {
                         .process_id = 0,
                         .radius_m = body_of(mission_.robots, RobotId(robot)).radius_m,
                         .stamp = begin_});
+  // Merges three sequences by their stamps: notes, steps of the periods, and estimates.
   auto note = notes_[robot].begin();
   const auto last_note = notes_[robot].end();
   auto estimate = estimates_[robot].begin();
@@ -55,6 +59,7 @@ void Recording::replay(std::uint32_t robot, Take take) const {
     take(step);
     for (; estimate != last_estimate && estimate->stamp <= step.stamp; ++estimate) take(*estimate);
   }
+  // The link's counters belong to all robots: the first log has them, before the last notes.
   if (robot == 0) {
     take(robot_log::LinkStats{.stamp = periods_.empty() ? begin_ : periods_.back()[robot].stamp,
                              .states_sent = static_cast<std::uint32_t>(link_.states_sent),
@@ -65,6 +70,7 @@ void Recording::replay(std::uint32_t robot, Take take) const {
   for (; note != last_note; ++note) take(note->note);
 }
 
+/// By the code that reads log files, so that an audit of a recording and of its files agree.
 std::vector<monitor::Track> Recording::tracks() const {
   std::vector<monitor::Track> tracks;
   tracks.reserve(notes_.size());
@@ -76,6 +82,7 @@ std::vector<monitor::Track> Recording::tracks() const {
   return tracks;
 }
 
+/// One file at a time: only one robot's log is in memory as a file.
 Result<void> Recording::write(const std::filesystem::path& run_dir) const {
   for (std::uint32_t i = 0; i < notes_.size(); ++i) {
     robot_log::Batch box;

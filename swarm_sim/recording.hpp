@@ -16,35 +16,36 @@
 
 namespace swarm::launcher {
 
-/// The robot logs of a simulation, in memory, a control period after the other: a swarm writes
-/// them as it goes from robot to robot, so in flight they cost the cache nothing. Robots may be
-/// recorded by several threads, each robot by one at a time. The dead make no steps.
+/// The robot logs of a simulation, in memory, period by period: robots write to it one after the
+/// other, so recording writes memory in order and evicts little from the cache. Several threads may
+/// record, each robot by one at a time. Robots whose processes are dead have no steps.
 class Recording {
  public:
   /// Keeps every n-th period, from the first one on, and the last. \pre keeps_every ≥ 1
   Recording(const Mission& mission, UtcTime begin, std::uint64_t keeps_every);
   static constexpr std::uint64_t kFirstAndLast = std::numeric_limits<std::uint64_t>::max();
 
-  /// Every robot makes at most one step in it.
+  /// Begins a control period, in which every robot records at most one step.
   void begin_period() {
     const bool last_is_kept = begun_ == 0 || (begun_ - 1) % keeps_every_ == 0;
     if (last_is_kept) periods_.emplace_back(notes_.size(), robot_log::Step{.stamp = kNever});
     ++begun_;
   }
   void step(RobotId robot, const robot_log::Step& step) { periods_.back()[robot.value()] = step; }
-  /// Where a robot took a neighbour to be; kept with the step of the period.
+  /// A robot's estimate of a neighbour; kept if the step of the period is.
   void estimate(RobotId robot, const robot_log::Estimate& estimate) {
     if ((begun_ - 1) % keeps_every_ == 0) estimates_[robot.value()].push_back(estimate);
   }
+  /// Records a note; its order relative to the step of the same stamp is kept.
   void note(RobotId robot, robot_log::Note note);
   /// The last two steps of a robot that are kept, the newest last.
   std::vector<robot_log::Step> last_steps(RobotId robot) const;
 
-  /// What the network did, told once for all robots together.
+  /// Counters of the network, of all robots together.
   struct Link {
     std::uint64_t states_sent = 0;
     std::uint64_t states_received = 0;
-    std::vector<std::uint32_t> refused{};  ///< by link::RefusalReason; empty: none was
+    std::vector<std::uint32_t> refused{};  ///< by link::RefusalReason; empty: none
     Histogram state_age{};
   };
   Link& link() { return link_; }
@@ -55,16 +56,18 @@ class Recording {
   Result<void> write(const std::filesystem::path& run_dir) const;
 
  private:
-  static constexpr UtcTime kNever = UtcTime::min();  // a step that was not made
+  static constexpr UtcTime kNever = UtcTime::min();  // stamp of a robot without a step in a period
 
   template <class Take>
+  /// Passes all records of a robot to `take`, in the order of a log file.
   void replay(std::uint32_t robot, Take take) const;
 
   const Mission& mission_;
   UtcTime begin_;
+  // Periods per period kept, and periods begun so far.
   std::uint64_t keeps_every_;
   std::uint64_t begun_ = 0;
-  std::vector<std::vector<robot_log::Step>> periods_;  // each of all robots
+  std::vector<std::vector<robot_log::Step>> periods_;  // per period, a step of each robot
   /// A note, and whether it comes after the step of the same moment.
   struct PlacedNote {
     robot_log::Note note;
@@ -75,7 +78,7 @@ class Recording {
   Link link_;
 };
 
-/// One robot's part of a recording.
+/// The log of one robot, as its control loop writes it.
 class RobotRecording final : public agent::RobotLog {
  public:
   RobotRecording(Recording& recording, RobotId robot) : recording_(recording), robot_(robot) {}

@@ -25,7 +25,7 @@
 namespace swarm::launcher {
 namespace {
 
-/// Writes what happens into the run directory.
+/// Writes events, plans, plan clock and scenes into the run directory, in the files of a real run.
 class DirectoryObserver final : public SimulationObserver {
  public:
   explicit DirectoryObserver(std::filesystem::path dir)
@@ -67,7 +67,8 @@ class DirectoryObserver final : public SimulationObserver {
   std::optional<Error> failure_;
 };
 
-/// Runs a simulation to its end, with a live line.
+/// Runs a simulation to its end. Shows progress four times a second of wall time, and passes stop
+/// signals on: the first ends the mission in order, as in a real run.
 void fly(Simulation& simulation, std::uint32_t robots) {
   Progress progress;
   SteadyTime shown_at;
@@ -83,6 +84,7 @@ void fly(Simulation& simulation, std::uint32_t robots) {
   }
 }
 
+/// The summary of a run without logs: no audit, so only arrivals and times.
 Result<ExitCode> summarise_unrecorded(const Simulation& simulation, const Measurements& measured,
                                       bool json) {
   const Supervisor::Counts c = simulation.counts();
@@ -112,6 +114,7 @@ Result<ExitCode> simulate_mission(const SimulateOptions& options) {
   auto mission = load_mission(options.mission_file, builtin_catalogue());
   if (!mission) return tl::unexpected(mission.error());
   if (options.robots) mission->robots.count = *options.robots;
+  // Ids can be checked only once the number of robots is known.
   for (const Kill& kill : options.kills) {
     for (const RobotId robot : kill.robots) {
       if (robot.value() < mission->robots.count) continue;
@@ -141,6 +144,7 @@ Result<ExitCode> simulate_mission(const SimulateOptions& options) {
   }
 
   const auto begin = std::chrono::steady_clock::now();
+  // Without a record only the first period and the last one are kept.
   Recording recording(*mission, Simulation::begin_utc(),
                       options.record ? 1 : Recording::kFirstAndLast);
   const SimulationOptions simulated{
@@ -152,6 +156,7 @@ Result<ExitCode> simulate_mission(const SimulateOptions& options) {
   auto simulation = Simulation::make(*mission, simulated, recording, *observer);
   if (!simulation) return tl::unexpected(simulation.error());
   if (options.record) {
+    // The audit compares densities with the cap that the planner has promised to keep.
     const PlanningRecord promised{mission->planner.method,
                                   (*simulation)->planning_method().traits().density_cap_per_m2};
     if (auto w = shell::write_file(dir / shell::kPlanningFile, to_json(promised)); !w) {
@@ -166,6 +171,7 @@ Result<ExitCode> simulate_mission(const SimulateOptions& options) {
                         .wall_s = to_seconds(std::chrono::steady_clock::now() - begin),
                         .ns_per_agent_step = cost.median_step_ns};
   if (!options.record) return summarise_unrecorded(**simulation, measured, options.json);
+  // A plan that could not be written ends the run only here, after the simulation.
   if (written->failure()) return tl::unexpected(*written->failure());
   if (auto w = recording.write(dir); !w) return tl::unexpected(w.error());
   return summarise(dir, measured, options.json);

@@ -14,20 +14,23 @@
 
 namespace swarm::launcher {
 
+/// The options of `swarm_launcher simulate`.
 struct SimulateOptions {
   std::filesystem::path mission_file;
   std::optional<std::uint32_t> robots;  ///< instead of the mission's
+  /// Of placement, plan, robots, faults and kills.
   std::uint64_t seed = 1;
   LinkFaults faults;
+  /// See SimulationOptions.
   bool clocks_in_step = true;
   std::vector<Kill> kills{};  ///< robots whose processes die
   std::size_t threads = 0;    ///< 0: as many as make it faster
-  bool record = true;         ///< robot logs, audit and report; else arrivals and times alone
+  bool record = true;         ///< robot logs, audit and report; otherwise arrivals and times only
   std::filesystem::path out;  ///< run directory; empty: runs/<mission>-<time>
   bool json = false;
 };
 
-/// `swarm_launcher simulate`: the mission in lock-step, in one process, as fast as it goes; the
+/// `swarm_launcher simulate`: the mission in lock-step, in one process, as fast as possible; the
 /// same run directory and audit as of a real run. Result on stdout, progress on stderr.
 Result<ExitCode> simulate_mission(const SimulateOptions& options);
 

@@ -12,7 +12,8 @@ namespace {
 
 constexpr double kMaxCells = 1e6;
 
-/// Cells as wide as the reach, or wider where the world is vast.
+/// Cells as wide as the largest communication radius, so that nine of them hold all that a robot
+/// receives; wider where that would make more than a million cells.
 double cell_size_m(const Vec2& extent_m, double largest_communication_radius_m) {
   return std::max(largest_communication_radius_m, std::sqrt(extent_m.x() * extent_m.y() / kMaxCells));
 }
@@ -29,6 +30,8 @@ SimulatedNetwork::SimulatedNetwork(const Box& bounds_m, double largest_communica
       columns_(1 + static_cast<int>((bounds_m.max_m.x() - bounds_m.min_m.x()) / cell_m_)),
       rows_(1 + static_cast<int>((bounds_m.max_m.y() - bounds_m.min_m.y()) / cell_m_)) {}
 
+/// Counting sort of the states by cell, row by row, in O(states + cells). Uses the memory of a
+/// forgotten moment.
 void SimulatedNetwork::post(SteadyTime at, std::span<const agent::NeighbourReport> sent) {
   if (sent.empty()) return;
   Moment moment;
@@ -53,6 +56,7 @@ void SimulatedNetwork::post(SteadyTime at, std::span<const agent::NeighbourRepor
   moments_.push_back(std::move(moment));
 }
 
+/// A state is due at the latest delay + jitter after it was sent.
 void SimulatedNetwork::forget(SteadyTime time) {
   while (!moments_.empty() && moments_.front().at + faults_.delay + faults_.jitter < time) {
     spare_.push_back(std::move(moments_.front()));
@@ -60,6 +64,8 @@ void SimulatedNetwork::forget(SteadyTime time) {
   }
 }
 
+/// The fate of a message (lost, or its delay) is drawn from a hash of seed, sender, number and
+/// receiver, not from a generator with a state: threads and order do not matter.
 bool SimulatedNetwork::arrives(const agent::NeighbourReport& report, RobotId receiver, SteadyTime sent_at,
                   SteadyTime from, SteadyTime until) const {
   const std::uint64_t message =

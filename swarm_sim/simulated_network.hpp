@@ -15,23 +15,26 @@
 
 namespace swarm::launcher {
 
-/// The bus of a simulation: carries robot states from those who say them to those near enough, late
-/// or never as the faults have it. What becomes of a message is a function of the seed, its sender,
-/// number and receiver, whoever asks and when: any number of threads may hear at a time.
+/// The bus of a simulation: carries robot states from their senders to the robots within the
+/// communication radius, delayed or lost as the faults demand. What happens to a message is a
+/// function of the seed, its sender, number and receiver alone: any number of threads may receive
+/// at a time, in any order.
 class SimulatedNetwork {
  public:
-  /// `largest_communication_radius_m` is the largest communication radius of any robot, `begin` the run's.
+  /// `largest_communication_radius_m` is that of all robots, `begin` the time that faults count
+  /// from.
   SimulatedNetwork(const Box& bounds_m, double largest_communication_radius_m, const LinkFaults& faults, std::uint64_t seed,
       SteadyTime begin);
 
-  /// Puts what robots said at a moment on the air; moments ascend.
+  /// Sends the states that robots published at a moment; moments ascend.
   void post(SteadyTime at, std::span<const agent::NeighbourReport> sent);
 
-  /// Nobody asks for what was due before `time` any more.
+  /// Drops states due before `time`: no robot will receive them any more.
   void forget(SteadyTime time);
 
-  /// Hands over what reaches a robot at `position_m` with communication radius `communication_radius_m` in
-  /// [from, until), its own words left out. Costs what was published in up to nine cells.
+  /// Hands over what reaches a robot at `position_m` with communication radius
+  /// `communication_radius_m` in [from, until), except its own states. O(states published in up to
+  /// nine cells).
   template <class Take>
   void receive(RobotId receiver, const Vec2& position_m, double communication_radius_m, SteadyTime from,
             SteadyTime until, Take take) const {
@@ -48,7 +51,7 @@ class SimulatedNetwork {
         const std::size_t first = moment.begin[row + static_cast<std::size_t>(x0)];
         const std::size_t last = moment.begin[row + static_cast<std::size_t>(x1) + 1];
         for (std::size_t i = first; i < last; i += kAtOnce) {
-          // Who is in range is unpredictable: found without a branch.
+          // Which senders are in range is unpredictable: they are found without a branch.
           std::array<std::uint32_t, kAtOnce> near;
           std::size_t found = 0;
           for (std::size_t k = i; k < std::min(last, i + kAtOnce); ++k) {
@@ -66,32 +69,38 @@ class SimulatedNetwork {
   }
 
  private:
+  /// Senders tested before those in range are handed over: a small list that stays in the cache.
   static constexpr std::size_t kAtOnce = 64;
 
+  /// The states sent at one moment, sorted by cell.
   struct Moment {
     SteadyTime at;
     std::vector<std::uint32_t> begin;  // of each cell in `sent`, row by row; one more at the end
     std::vector<agent::NeighbourReport> sent;
   };
 
+  /// Positions outside of the bounds belong to the cells at the border.
   int column_of(double x_m) const {
     return std::clamp(static_cast<int>((x_m - origin_m_.x()) / cell_m_), 0, columns_ - 1);
   }
   int row_of(double y_m) const {
     return std::clamp(static_cast<int>((y_m - origin_m_.y()) / cell_m_), 0, rows_ - 1);
   }
+  /// Whether a message reaches the receiver, and does so in [from, until).
   bool arrives(const agent::NeighbourReport& report, RobotId receiver, SteadyTime sent_at,
                SteadyTime from, SteadyTime until) const;
 
+  // Loss, delay and jitter, in force in an interval from begin_ on.
   LinkFaults faults_;
   SteadyTime begin_;
   std::uint64_t seed_;
+  // The grid of cells: its lower left corner, the size of a cell, and their numbers.
   Vec2 origin_m_;
   double cell_m_;
   int columns_;
   int rows_;
   std::deque<Moment> moments_;
-  std::vector<Moment> spare_;  // keep their memory
+  std::vector<Moment> spare_;  // forgotten moments, kept for their memory
   std::vector<std::uint32_t> cells_;
 };
 

@@ -18,13 +18,14 @@
 namespace swarm::launcher {
 namespace {
 
-// Where a robot's clock stands matters only relative to others'.
+// The steady clock at the start of every simulation: only differences of it matter.
 constexpr SteadyTime kBegin{std::chrono::seconds(1000)};
-// Of a control period, with clocks out of step.
+// Moments of a control period at which robots tick, with clocks out of step.
 constexpr std::size_t kSlots = 10;
-// Below, waking a second thread twice a period costs more than it brings.
+// With fewer robots, waking another thread twice a period costs more than it saves.
 constexpr std::uint32_t kRobotsPerThread = 400;
 
+/// A body's own communication radius, or the mission's.
 double communication_radius_m(const Mission& mission, RobotId robot) {
   const double own_m = body_of(mission.robots, robot).communication_radius_m;
   return own_m > 0.0 ? own_m : mission.link.communication_radius_m;
@@ -72,6 +73,7 @@ Simulation::Simulation(const Mission& mission, planner::Planner planner,
   options_.kills = in_order_of_time(std::move(options_.kills));
 }
 
+/// Plans before the first period; a mission without a plan fails here.
 Result<std::unique_ptr<Simulation>> Simulation::make(const Mission& mission,
                                                      const SimulationOptions& options,
                                                      Recording& recording,
@@ -121,17 +123,20 @@ void Simulation::place(const std::vector<Vec2>& positions_m) {
   }
 }
 
+/// The phase of a real process, rounded down to a slot.
 std::size_t Simulation::slot_of(std::uint32_t robot) const {
   const double slots = static_cast<double>(slots_.size());
   return std::min(static_cast<std::size_t>(agent::tick_phase(robot) * slots), slots_.size() - 1);
 }
 
-/// Robots take the plan when they tick.
+/// Records a new plan. Robots accept it when they tick next.
 void Simulation::publish() {
   plan_ms_ += keeper_.newest().planned.stats.total_ms;
   observer_.on_plan(keeper_.version(), keeper_.newest().planned);
 }
 
+/// One step of the planner: reports its notices, publishes a new plan, and advances the plan's
+/// clock and density to now.
 void Simulation::keep_planned() {
   const planner::PlanKeeper::Step step = keeper_.step(now_, utc(now_));
   for (const planner::PlanKeeper::Notice& notice : step.notices) {
@@ -145,12 +150,13 @@ void Simulation::keep_planned() {
   }
 }
 
-/// Every robot has the clock from the planner's heartbeats, which take no time here.
+/// The plan time that every robot knows: in a simulation heartbeats arrive at once.
 std::optional<agent::PlanTime> Simulation::plan_time(SteadyTime now) const {
   if (clock_.plan_version == 0) return std::nullopt;
   return agent::PlanTime{clock_.plan_time_s + clock_.rate * to_seconds(now - now_), clock_.rate};
 }
 
+/// Applies the changes one by one; one that is not possible is refused, the others count.
 void Simulation::change_scene(std::span<const SceneChange> changes) {
   for (const SceneChange& change : changes) {
     auto next = after(scene_, change, mission_.world, utc(now_));
@@ -166,6 +172,7 @@ void Simulation::change_scene(std::span<const SceneChange> changes) {
   world_moves_ = true;
 }
 
+/// Carries out what the supervisor would have the launcher do. Signalled processes exit at once.
 void Simulation::act(const Action& action) {
   if (const auto* command = std::get_if<SendCommand>(&action)) {
     phase_ = command->kind == CommandKind::kStop ? MissionPhase::kStopped
@@ -191,6 +198,8 @@ void Simulation::supervise() {
   for (const Action& action : supervisor_.step(now_)) act(action);
 }
 
+/// The order of a period: deaths and supervisor, map, planner, robots, status. Robots thus see the
+/// scene and the plan of this period, and the supervisor acts on their status in the next.
 bool Simulation::step() {
   kill_due();
   supervise();
@@ -200,6 +209,7 @@ bool Simulation::step() {
         recording_.note(RobotId(i), {.stamp = utc(now_), .code = "exit", .text = "graceful end"});
       count_states(robots_[i]);
     }
+    // The end: completes the recording.
     for (const Collected& c : collected_) recording_.link().state_age.merge(c.ages);
     if (const link::RefusalCounters& refused = gate_.refused(); refused.total() > 0) {
       recording_.link().refused.assign(refused.all().begin(), refused.all().end());
@@ -210,7 +220,7 @@ bool Simulation::step() {
     world_ = world_at(mission_.world, scene_, utc(now_));
     world_moves_ = scene_.moves(utc(now_));
   }
-  keep_planned();  // robots make their paths on the new map
+  keep_planned();  // after the map: robots compute their paths on it
   recording_.begin_period();
   coast_fallen();
   const auto begin = std::chrono::steady_clock::now();
@@ -226,6 +236,7 @@ bool Simulation::step() {
   return true;
 }
 
+/// The median over periods, as single periods include those in which all robots enter a new plan.
 Simulation::Cost Simulation::cost() const {
   Cost cost{.plan_ms = plan_ms_,
             .agent_steps = periods_ * robots_.size(),

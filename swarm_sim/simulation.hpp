@@ -26,6 +26,7 @@
 
 namespace swarm::launcher {
 
+/// What a simulation depends on besides its mission.
 struct SimulationOptions {
   std::uint64_t seed = 1;
   LinkFaults faults{};
@@ -35,27 +36,30 @@ struct SimulationOptions {
   std::vector<Kill> kills{};
 };
 
-/// Threads that make a simulation of so many robots faster: more than one only where a control
-/// period is long against waking the others.
+/// The number of threads that is fastest for a number of robots: more than one only where a control
+/// period takes long compared with waking a thread.
 std::size_t useful_threads(std::uint32_t robots);
 
-/// Told what happens in a simulation.
+/// Receives the events of a simulation, as they happen; all on the thread that calls step().
 class SimulationObserver {
  public:
   virtual ~SimulationObserver() = default;
+  /// What the event log of a real run would have.
   virtual void on_event(UtcTime, const std::string& /*source*/, bool /*warning*/,
                         const std::string& /*code*/, const std::string& /*text*/) {}
+  /// A plan that is published; versions ascend from 1.
   virtual void on_plan(std::uint32_t /*version*/, const planner::PlanResult&) {}
   virtual void on_clock(const PlanClock&) {}
+  /// A change of the scene, and the scene after it.
   virtual void on_scene(const Scene&, const SceneChange&) {}
 };
 
 /// A mission in lock-step: the agents, planner and supervisor of a real run, each a pure function
-/// of what it hears, driven by a clock that waits for nobody. In each control period every robot
-/// measures, receives what the network brings, decides and commands, by the loop that a process
-/// runs; then what was published goes on the network. So results depend on mission and options
-/// alone, not on the number of threads, to the last bit. The planner answers at once: how long it
-/// thinks costs no mission time.
+/// of its inputs, driven by a simulated clock that runs as fast as they compute. In each control
+/// period every robot measures, receives what the network brings, decides and commands, by the loop
+/// that a process runs; then what was published goes on the network. Results depend on mission and
+/// options alone, to the last bit, and not on the number of threads. Planning takes no mission
+/// time.
 class Simulation {
  public:
   /// Places the robots and plans. Mission and observer outlive the simulation.
@@ -73,6 +77,7 @@ class Simulation {
   /// The planning method of the mission.
   const planner::PlanningMethod& planning_method() const { return keeper_.method(); }
 
+  /// How the mission ended, once step() has returned false.
   Outcome outcome() const { return supervisor_.outcome(); }
   double mission_s() const { return supervisor_.mission_time(now_).count(); }
   /// Of the last control period.
@@ -80,6 +85,7 @@ class Simulation {
   const PlanClock& plan_clock() const { return clock_; }
   Supervisor::Counts counts() const { return supervisor_.counts(); }
 
+  /// Computing time.
   struct Cost {
     double plan_ms = 0.0;  ///< of all plans together
     std::uint64_t agent_steps = 0;
@@ -92,22 +98,24 @@ class Simulation {
   static UtcTime begin_utc();
 
  private:
+  /// One robot of the simulation.
   struct Robot {
     agent::RobotLoop loop;
     agent::SimulatedRobot body;  // by value: in the cache with the rest
-    double communication_radius_m = 0.0;        // communication radius
+    double communication_radius_m = 0.0;        // its own, or the mission's
     SteadyTime received_until;
     std::uint32_t plan_version = 0;  // that it follows
   };
+  /// The bus interface that RobotLoop::step() takes, on the simulated network.
   struct RobotBus;
 
-  /// Who is ticked after a robot; null: nobody.
+  /// The robots ticked after a robot by the same thread, to be prefetched; null: none.
   struct Upcoming {
     const Robot* next;
     const Robot* second;
   };
 
-  /// What a thread collects.
+  /// The output of the robots that a thread ticks.
   struct Collected {
     std::vector<link::RobotStateMessage> published;
     Histogram ages;  // of the states that robots used
@@ -116,24 +124,32 @@ class Simulation {
   Simulation(const Mission& mission, planner::Planner planner, const SimulationOptions& options,
              Recording& recording, SimulationObserver& observer);
 
+  /// Simulated UTC of a simulated steady time.
   UtcTime utc(SteadyTime t) const;
+  /// Makes the robots at these positions, and assigns them to slots.
   void place(const std::vector<Vec2>& positions_m);
   void keep_planned();
   void publish();
+  /// Has the supervisor decide, and carries out its actions.
   void supervise();
+  /// The plan time within this control period; empty before the first plan.
   std::optional<agent::PlanTime> plan_time(SteadyTime now) const;
   void act(const Action& action);
   void change_scene(std::span<const SceneChange> changes);
   void kill_due();
   void kill(RobotId robot);
+  /// Starts the process of a dead robot again, see admit_respawned().
   void respawn(RobotId robot);
   void admit_respawned();
+  /// Bodies of killed robots until their watchdogs and brakes have stopped them.
   void coast_fallen();
   void add_bodies(std::span<const RobotId> robots);
   void clear_bodies(std::span<const RobotId> robots);
+  /// The slot of the control period in which a robot ticks.
   std::size_t slot_of(std::uint32_t robot) const;
   void report_status();
   void tick_slot(std::size_t slot);
+  /// Brings a robot into the cache, but not what it points to.
   static void prefetch(const Robot& robot);
   agent::RobotTick tick_at(SteadyTime now) const;
   std::optional<agent::OfferedPlan> offered_plan(const Robot& robot) const;
@@ -149,12 +165,14 @@ class Simulation {
   Duration period_;
   World world_;
   Scene scene_;
+  // Whether the map is to be rebuilt: the scene has changed, or an obstacle is moving.
   bool world_moves_ = false;
+  // The programs of a real run besides the robots: planner, and launcher with its status cadence.
   planner::PlanKeeper keeper_;
   Supervisor supervisor_;
   agent::StatusCadence cadence_;
   MissionPhase phase_ = MissionPhase::kReady;
-  UtcTime stop_sent_{};  // 0: not yet
+  UtcTime stop_sent_{};  // stamp of the stop command; 0: none yet
   SimulatedNetwork network_;
   link::Gate gate_;  // what receivers check, once for each published state
   ThreadPool thread_pool_;
@@ -162,16 +180,20 @@ class Simulation {
   std::vector<Rng> rngs_;                          // of each; large and rarely used
   std::vector<std::vector<std::uint32_t>> slots_;  // robots that tick together
   std::vector<Collected> collected_;               // one a thread
-  std::vector<agent::NeighbourReport> sent_states_;     // what was published at a moment
-  // Those who report their status out of turn. Apart from robots_: most are only looked at.
+  std::vector<agent::NeighbourReport> sent_states_;     // states published at a moment
+  // Robots that report their status out of turn. Apart from robots_: a pass over all of them reads
+  // little memory.
   std::vector<std::uint8_t> has_updates_;
   std::vector<std::uint8_t> dead_;        // their processes
   std::vector<std::uint32_t> fallen_;     // dead robots that their drivers have not stopped yet
   std::vector<std::uint32_t> respawned_;  // in this period
+  // Index of the first kill that is not due yet; kills are sorted by time.
   std::size_t next_kill_ = 0;
+  // Begin of the present control period.
   SteadyTime now_;
   PlanClock clock_;                 // at now_
   agent::DensityForecast density_;  // then
+  // Measured cost: control periods run, time of planning, wall time per agent and step.
   std::uint64_t periods_ = 0;
   double plan_ms_ = 0.0;
   std::vector<float> step_ns_;

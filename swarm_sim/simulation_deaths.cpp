@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-// Robots whose processes die in a simulation, and come back.
+// Robots whose processes die in a simulation, and are respawned.
 #include <algorithm>
 #include <csignal>
 #include <memory>
@@ -15,10 +15,13 @@
 namespace swarm::launcher {
 namespace {
 
+/// Draws of kills differ from all others of the same seed.
 constexpr std::uint64_t kKillSeed = 0xD1E;
 
 }  // namespace
 
+/// Kills due by now, each with a seed of its own by its number. Fewer robots than requested is a
+/// warning.
 void Simulation::kill_due() {
   if (phase_ == MissionPhase::kReady) return;  // mission time has not begun
   for (; next_kill_ < options_.kills.size() && options_.kills[next_kill_].at_s <= mission_s();
@@ -38,7 +41,8 @@ void Simulation::kill_due() {
   }
 }
 
-/// It ticks no more and says nothing; its driver stops its body when the last command runs out.
+/// The robot neither ticks nor publishes any more; its driver stops the body when the last command
+/// runs out.
 void Simulation::kill(RobotId robot) {
   const std::uint32_t id = robot.value();
   for (std::vector<std::uint32_t>& members : slots_) std::erase(members, id);
@@ -48,7 +52,7 @@ void Simulation::kill(RobotId robot) {
   supervisor_.on_exit(ProcessIndex(1 + id), {.code = 0, .signal = SIGKILL}, now_);
 }
 
-/// What moves of the dead, recorded until it is at rest: there the body stays.
+/// Moves the bodies of dead robots on and records them until they are at rest, where they stay.
 void Simulation::coast_fallen() {
   std::erase_if(fallen_, [this](std::uint32_t id) {
     Robot& robot = robots_[id];
@@ -64,12 +68,13 @@ void Simulation::coast_fallen() {
   });
 }
 
-/// Its process is started again: it joins at the end of this period.
+/// The robot's process is started again: it joins at the end of this period.
 void Simulation::respawn(RobotId robot) {
   if (dead_[robot.value()] != 0) respawned_.push_back(robot.value());
 }
 
-/// A new process takes over the body where it is, as one would, and reports at once.
+/// Replaces the loops of respawned robots, as new processes would start: without state, at the
+/// position of the body, and with a status report at once.
 void Simulation::admit_respawned() {
   for (const std::uint32_t id : std::exchange(respawned_, {})) {
     Robot& robot = robots_[id];
@@ -91,6 +96,8 @@ void Simulation::admit_respawned() {
   }
 }
 
+/// Adds the bodies of robots that are not received any more as obstacles, large enough for where
+/// they may have come to rest by their last two steps.
 void Simulation::add_bodies(std::span<const RobotId> robots) {
   std::vector<SceneChange> changes;
   for (const RobotId robot : robots) {
@@ -105,6 +112,7 @@ void Simulation::add_bodies(std::span<const RobotId> robots) {
                                  describe({robots.begin(), robots.end()})));
 }
 
+/// Removes the obstacles of robots that are received again.
 void Simulation::clear_bodies(std::span<const RobotId> robots) {
   std::vector<SceneChange> changes;
   for (const RobotId robot : robots) {

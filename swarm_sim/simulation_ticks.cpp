@@ -9,7 +9,7 @@
 namespace swarm::launcher {
 namespace {
 
-// The ages of the states that a robot uses are measured in one of so many periods.
+// Periods between two measurements of state ages, per robot: a histogram costs time at every state.
 constexpr std::uint64_t kPeriodsPerAges = 10;
 
 }  // namespace
@@ -19,7 +19,7 @@ struct Simulation::RobotBus {
   const SimulatedNetwork& network;
   Robot& robot;
   SteadyTime now;
-  const Robot* prefetched;  // while this one decides; null: none
+  const Robot* prefetched;  // a later robot, fetched while this one decides; null: none
   std::vector<link::RobotStateMessage>& published;
 
   template <class Take>
@@ -32,8 +32,8 @@ struct Simulation::RobotBus {
   void publish(const link::RobotStateMessage& state) { published.push_back(state); }
 };
 
-// A swarm is larger than the cache: a robot is fetched two robots ahead, the neighbours it knows
-// one robot ahead, a part at a time, for the memory takes only so many orders at once.
+// A swarm is larger than the cache: a robot is prefetched two robots ahead, its neighbour table one
+// robot ahead. Spread over the tick, as the processor has a limited number of memory requests open.
 void Simulation::prefetch(const Robot& robot) {
   robot.loop.prefetch();
   swarm::prefetch(&robot.body, sizeof(Robot) - sizeof(robot.loop));
@@ -64,6 +64,7 @@ std::optional<agent::OfferedPlan> Simulation::offered_plan(const Robot& robot) c
   return offered;
 }
 
+/// One tick of one robot, by the loop of a real process.
 void Simulation::tick_robot(std::uint32_t id, const agent::RobotTick& tick,
                             const Upcoming& upcoming, Collected& collected) {
   Robot& robot = robots_[id];
@@ -86,6 +87,8 @@ void Simulation::tick_robot(std::uint32_t id, const agent::RobotTick& tick,
   if (robot.loop.has_updates()) has_updates_[id] = 1;
 }
 
+/// Ticks the robots of a slot in parallel, each thread a contiguous part of them. States are sent
+/// only when all have ticked, in the order of the robots: threads do not change the result.
 void Simulation::tick_slot(std::size_t slot) {
   const std::vector<std::uint32_t>& members = slots_[slot];
   const agent::RobotTick tick = tick_at(now_ + period_ * static_cast<std::int64_t>(slot) /
@@ -103,8 +106,8 @@ void Simulation::tick_slot(std::size_t slot) {
   deliver_published(tick.now);
 }
 
-/// Puts what the robots published on the network. A state is checked here, once, as each of its
-/// receivers would.
+/// Sends the published states by the network. Each state is checked once here, instead of by each
+/// of its receivers; the result is the same.
 void Simulation::deliver_published(SteadyTime now) {
   sent_states_.clear();
   for (Collected& collected : collected_) {
@@ -121,7 +124,8 @@ void Simulation::deliver_published(SteadyTime now) {
   network_.post(now, sent_states_);
 }
 
-/// What a robot tells of itself reaches supervisor and planner at once.
+/// Passes the status of robots to supervisor and planner, without delay: robots in turn, and those
+/// with updates.
 void Simulation::report_status() {
   std::uint64_t in_turn = cadence_.first_in_turn(periods_);
   for (std::uint32_t i = 0; i < robots_.size(); ++i) {
@@ -147,7 +151,7 @@ void Simulation::report_status() {
   }
 }
 
-/// At the end of a robot, or of its process.
+/// Adds a robot's counters to the recording, at the end of the mission or of its process.
 void Simulation::count_states(const Robot& robot) {
   recording_.link().states_sent += robot.loop.states_sent();
   recording_.link().states_received += robot.loop.states_received();

@@ -8,7 +8,7 @@
 
 namespace swarm::agent {
 
-/// ẍ = a with ‖a‖ ≤ acceleration_max: changes its velocity v to the one it is given on a straight
+/// ẍ = a with ‖a‖ ≤ acceleration_max: changes its velocity v to the commanded one on a straight
 /// line, as fast as it can.
 ///
 ///   a = a_max (u − v)/‖u − v‖ until v = u, then 0

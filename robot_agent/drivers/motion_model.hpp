@@ -6,8 +6,8 @@
 
 namespace swarm::agent {
 
-/// What a body can do with a velocity it is given: f of x(k+1) = f(x(k), u(k)) [ROVER, eq. 9]. Moves
-/// by the time it is given, without noise.
+/// How a body follows a commanded velocity: f of x(k+1) = f(x(k), u(k)) [ROVER, eq. 9]. Without
+/// noise.
 class MotionModel {
  public:
   virtual ~MotionModel() = default;
@@ -20,10 +20,10 @@ class MotionModel {
 
   virtual Vec2 position_m() const = 0;
   virtual Vec2 velocity_mps() const = 0;
-  virtual bool has_lag() const = 0;  ///< whether it takes time to be at a velocity it is given
+  virtual bool has_lag() const = 0;  ///< whether it takes time to reach a commanded velocity
 };
 
-/// The part of a velocity that a body with this top speed can do.
+/// A velocity shortened to the body's top speed.
 inline Vec2 limited(const Vec2& velocity_mps, double speed_max_mps) {
   const double speed_mps = velocity_mps.norm();
   return speed_mps > speed_max_mps ? Vec2(velocity_mps * (speed_max_mps / speed_mps))

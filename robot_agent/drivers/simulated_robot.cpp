@@ -8,6 +8,8 @@
 namespace swarm::agent {
 namespace {
 
+/// The motion model by its name in the mission; any other name is a single integrator. The heading
+/// of a unicycle is drawn.
 SimulatedRobot::Model model_of(const BodySpec& body, const Vec2& position_m, std::uint64_t seed) {
   if (body.model == "unicycle") {
     Rng rng(seed);
@@ -35,6 +37,8 @@ MotionModel& SimulatedRobot::model() {
   return std::visit([](MotionModel& any) -> MotionModel& { return any; }, model_);
 }
 
+/// x is drawn before y in statements of their own: the order of evaluation within an expression is
+/// unspecified, and runs are to be reproducible.
 Vec2 SimulatedRobot::draw(double sigma_m) {
   if (sigma_m == 0.0) return Vec2::Zero();
   const double x = standard_normal(*rng_);
@@ -42,6 +46,8 @@ Vec2 SimulatedRobot::draw(double sigma_m) {
   return sigma_m * Vec2(x, y);
 }
 
+/// Moves the body on to `now` in two parts, since its command may have run out in between: the
+/// watchdog stops it then, as in a real driver.
 Measurement SimulatedRobot::measure(SteadyTime now) {
   MotionModel& body = model();
   Measurement m;
@@ -72,6 +78,7 @@ void SimulatedRobot::command(SteadyTime now, const Vec2& velocity_mps, Duration 
   valid_until_ = now + valid_for;
 }
 
+/// Model and noise draw from seeds of their own.
 SimulatedRobot make_simulated_body(const BodySpec& body, SteadyTime now, const Vec2& position_m,
                                    std::uint64_t seed) {
   const SimulatedNoise noise{body.motion_noise_m, body.position_noise_m};

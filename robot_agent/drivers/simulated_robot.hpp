@@ -15,18 +15,18 @@
 
 namespace swarm::agent {
 
-/// Both zero-mean, Gaussian and independent per axis.
+/// Noise of motion and measurement, zero-mean, Gaussian and independent per axis.
 struct SimulatedNoise {
   double motion_m = 0.0;    ///< σ of w(k), once a control step while a command is in force
-  double position_m = 0.0;  ///< σ of what is measured
+  double position_m = 0.0;  ///< σ of the measured position
 };
 
-/// A body that is moved by the clock it is shown:
+/// A simulated body, which moves on with the time passed to measure():
 ///
 ///   x(k+1) = f(x(k), u(k)) + w(k)  [ROVER, eq. 9],  y(k) = x(k) + n(k)
 ///
-/// f is a motion model, a step k ends with each measurement. When its command runs out it is given
-/// to stand, which one with inertia does as fast as it can. Deterministic in its seed.
+/// f is a motion model, a step k ends with each measurement. When its command runs out it is
+/// commanded to stop, which one with inertia does as fast as it can. Deterministic in its seed.
 class SimulatedRobot final : public Driver {
  public:
   using Model = std::variant<SingleIntegrator, DoubleIntegrator, Unicycle>;
@@ -51,14 +51,14 @@ class SimulatedRobot final : public Driver {
   std::unique_ptr<Rng> rng_;  // none without noise: it is large
 };
 
-/// What a robot's simulated body draws from: in a process and in a lock-step simulation the same,
-/// and apart from what its agent draws.
+/// The seed of a robot's simulated body: the same in a process and in a lock-step simulation, and
+/// different from the seed of its agent.
 constexpr std::uint64_t body_seed(RobotId robot, std::uint64_t run_seed) {
   constexpr std::uint64_t kBodySeed = 0xB0D7;
   return mix_seed(mix_seed(run_seed, robot.value()), kBodySeed);
 }
 
-/// The body a mission asks for, at rest; a unicycle has a random heading.
+/// The body that a mission specifies, at rest; a unicycle has a random heading.
 SimulatedRobot make_simulated_body(const BodySpec& body, SteadyTime now, const Vec2& position_m,
                                    std::uint64_t seed);
 

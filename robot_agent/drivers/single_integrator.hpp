@@ -8,7 +8,7 @@
 
 namespace swarm::agent {
 
-/// ẋ = u [SwarmPRM, eq. 15] with ‖u‖ ≤ speed_max: has the velocity it is given at once.
+/// ẋ = u [SwarmPRM, eq. 15] with ‖u‖ ≤ speed_max: has a commanded velocity at once.
 class SingleIntegrator final : public MotionModel {
  public:
   explicit SingleIntegrator(const Vec2& position_m,

@@ -9,11 +9,14 @@
 namespace swarm::agent {
 namespace {
 
+// Longest step of integration.
 constexpr double kStep_s = 0.005;
+// e₀: with a larger heading error it turns on the spot.
 constexpr double kDrivesWithin_rad = 0.5;
 
 Vec2 direction(double heading_rad) { return {std::cos(heading_rad), std::sin(heading_rad)}; }
 
+/// An angle in [−π, π].
 double wrapped(double angle_rad) { return std::remainder(angle_rad, 2.0 * std::numbers::pi); }
 
 }  // namespace
@@ -27,10 +30,12 @@ void Unicycle::advance(double time_s, const Vec2& wanted_mps) {
   step(left_s, wanted);
 }
 
+/// One step: turns towards the commanded direction and changes speed, both within the limits.
 void Unicycle::step(double time_s, const Vec2& wanted_mps) {
   const double wanted_speed_mps = wanted_mps.norm();
   double turn_rad = 0.0;
   double target_mps = 0.0;
+  // A zero velocity has no direction: it keeps its heading.
   if (wanted_speed_mps > 1e-9) {
     const double off_rad = wrapped(std::atan2(wanted_mps.y(), wanted_mps.x()) - heading_rad_);
     const double most_rad = limits_.turn_rate_max_radps * time_s;

@@ -6,15 +6,17 @@
 
 namespace swarm::agent {
 
+/// The limits of speed, acceleration and turning.
 struct UnicycleLimits {
   double speed_max_mps = 1.5;
   double acceleration_max_mps2 = 3.0;
   double turn_rate_max_radps = 3.0;
 };
 
-/// A wheeled robot, its position the point between its wheels:
+/// A robot with two driven wheels; its position is the point between them:
 ///
-///   ẋ = v (cos θ, sin θ),  θ̇ = ω,  0 ≤ v ≤ speed_max, |v̇| ≤ acceleration_max, |ω| ≤ turn_rate_max
+///   ẋ = v (cos θ, sin θ),  θ̇ = ω,  0 ≤ v ≤ speed_max, |v̇| ≤ acceleration_max, |ω| ≤
+///   turn_rate_max
 ///
 /// It follows a velocity u by turning to its direction as fast as it can, and meanwhile drives the
 /// slower the more it is off:
@@ -23,8 +25,8 @@ struct UnicycleLimits {
 ///
 /// so it never drives backwards and turns on the spot when u points elsewhere. A turn from rest
 /// into u leads off its line by ‖u‖ e₀²/(6 ω_max) at most, 2 cm at 1.45 m/s and 3 rad/s; driving at
-/// ‖u‖ cos e on the way led into walls. Told to stand it keeps its heading. Integrated in steps of
-/// 5 ms at most.
+/// ‖u‖ cos e while it turns led into walls. Commanded to stop, it keeps its heading. Integrated in
+/// steps of 5 ms at most.
 class Unicycle final : public MotionModel {
  public:
   Unicycle(const Vec2& position_m, double heading_rad, const UnicycleLimits& limits)

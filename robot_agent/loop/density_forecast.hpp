@@ -11,7 +11,7 @@
 
 namespace swarm::agent {
 
-/// The swarm's planned density at the plan's time, for missions whose control method asks for it;
+/// The swarm's planned density at the plan's time, for missions whose control method reads it;
 /// one for all robots of a process. No allocation once warm.
 class DensityForecast {
  public:
@@ -20,7 +20,8 @@ class DensityForecast {
 
   bool is_asked_for() const { return is_asked_for_; }
 
-  /// Brings it to this time [s] of this plan. \pre is_asked_for() and the plan is not empty
+  /// Evaluates the plan's mixture at this plan time [s]. \pre is_asked_for() and the plan is not
+  /// empty
   void update(const FlowPlan& plan, double plan_time_s) {
     agent::update(density_, plan, plan_time_s, robots_,
                   DensityAttractionOptions{}.kernel_sigma_m());

@@ -10,10 +10,12 @@
 namespace swarm::agent {
 namespace {
 
+// A tick that begins later than this counts as late.
 constexpr Duration kLate = std::chrono::milliseconds(20);
-/// Of each robot, one estimate of a neighbour is recorded every so many ticks.
+/// Ticks between two recorded estimates of a neighbour, per robot.
 constexpr std::uint32_t kTicksPerEstimate = 10;
 
+// Ticks between two queries of the driver's health.
 constexpr std::uint32_t kTicksPerHealth = 10;
 constexpr const char* kNoPosition = "the driver has no position; the robot holds";
 
@@ -31,11 +33,11 @@ std::uint8_t RobotLoop::goal() const {
       std::min(agent_.goal(position_m_), robot_log::Step::kNoGoal - 1U));
 }
 
-/// Measures where the body is; a new plan is entered from there.
+/// Measures the body's position, and accepts a new plan from there.
 Measurement RobotLoop::measure(const RobotTick& tick, const RobotParts& parts) {
   const Measurement body = parts.driver.measure(tick.now);
   position_m_ = body.position_m;
-  if (body.command_expired) {  // the body stopped between two ticks: the path has a point there
+  if (body.command_expired) {  // the body stopped between two ticks: the log gets a step there
     parts.log.append(robot_log::Step{.stamp = tick.utc_now - (tick.now - body.expired_at),
                                     .position_m = body.expired_position_m,
                                     .mode = static_cast<std::uint8_t>(output_.mode),
@@ -53,6 +55,8 @@ Measurement RobotLoop::measure(const RobotTick& tick, const RobotParts& parts) {
   return body;
 }
 
+/// Decides and commands. The command goes to the driver before the step is logged, so that the disk
+/// does not delay it.
 void RobotLoop::decide(const RobotTick& tick, const RobotParts& parts, const Measurement& body) {
   const RobotMode mode_before = output_.mode;
   const bool was_settled = output_.settled;
@@ -96,6 +100,8 @@ AgentOutput RobotLoop::without_position() const {
   return out;
 }
 
+/// A fault of the control method is final; that of a missing position ends with the position; the
+/// driver's health is read every tenth tick.
 void RobotLoop::update_fault(bool has_position, const Driver& driver) {
   if (!agent_.control_fault().empty()) {
     if (fault_.empty()) fault_ = agent_.control_fault();
@@ -109,6 +115,8 @@ void RobotLoop::update_fault(bool has_position, const Driver& driver) {
   }
 }
 
+/// Records the true position where the driver knows it (simulated bodies): the audit measures gaps
+/// between bodies, not between measurements.
 void RobotLoop::log_step(const RobotTick& tick, RobotLog& log, const Vec2& true_position_m) const {
   const TimeTracking tracking = output_.tracking.value_or(TimeTracking{});
   log.append(robot_log::Step{.stamp = tick.utc_now,
@@ -123,12 +131,13 @@ void RobotLoop::log_step(const RobotTick& tick, RobotLog& log, const Vec2& true_
                             .reference_x_m = static_cast<float>(tracking.reference_m.x()),
                             .reference_y_m = static_cast<float>(tracking.reference_m.y())});
   if (ticks_ % kTicksPerEstimate != 0 || output_.estimated.empty()) return;
-  // Each of the neighbours in its turn.
+  // Each neighbour within reach in turn: the error of estimates is a sample of all pairs.
   const Neighbour& one = output_.estimated[ticks_ / kTicksPerEstimate % output_.estimated.size()];
   log.append(robot_log::Estimate{
       .stamp = tick.utc_now, .neighbour = one.robot, .position_m = one.position_m});
 }
 
+/// Sequence numbers begin at 1 and grow by 1 per state, so that receivers can count losses.
 link::RobotStateMessage RobotLoop::next_state(UtcTime utc_now) {
   return {.robot_id = id_.value(),
           .sequence_number = ++states_sent_,

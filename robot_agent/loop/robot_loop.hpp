@@ -30,14 +30,14 @@ struct RobotTick {
   Duration period{};    ///< of control
   MissionPhase phase = MissionPhase::kReady;
   bool planner_alive = false;
-  UtcTime stop_sent{};             ///< stamp of the stop command obeyed; 0: there was none
-  std::uint32_t plan_version = 0;  ///< of the newest plan, with new_plan if that is given
+  UtcTime stop_sent{};             ///< stamp of the stop command in force; 0: none
+  std::uint32_t plan_version = 0;  ///< of the newest plan; that of new_plan if there is one
   const OfferedPlan* new_plan = nullptr;
   std::optional<PlanTime> plan_time{};              ///< of the plan's clock, if it is known
-  const PlannedDensity* planned_density = nullptr;  ///< at that time, if it is asked for
+  const PlannedDensity* planned_density = nullptr;  ///< at that time; null if it is not read
 };
 
-/// What a robot's loop works with. All outlive the step.
+/// The parts outside of the loop that a step uses. All outlive the step.
 struct RobotParts {
   Driver& driver;
   Rng& rng;
@@ -75,15 +75,14 @@ class RobotLoop {
     if (output_.send) bus.publish(next_state(tick.utc_now));
   }
 
-  /// What the robot tells of itself to planner and launcher.
+  /// The status that the robot reports to planner and launcher.
   link::RobotStatusMessage status() const;
 
   /// Whether the last step has something that is reported at once: another mode, or coming to rest
   /// at the goal.
   bool has_updates() const { return has_updates_; }
 
-  /// What is wrong with the robot: its control method, its position, its driver's health. Empty
-  /// while all is well.
+  /// A fault of the control method, of the position or of the driver's health; empty without one.
   const std::string& fault() const { return fault_; }
 
   RobotId id() const { return id_; }
@@ -91,7 +90,7 @@ class RobotLoop {
   bool settled() const { return output_.settled; }
   bool has_route() const { return agent_.has_route(); }
   double lag_s() const { return agent_.lag_s(); }  ///< see Agent
-  /// As measured last, or where place_at() said before.
+  /// As measured last, or as set by place_at() before the first measurement.
   const Vec2& position_m() const { return position_m_; }
   void place_at(const Vec2& position_m) { position_m_ = position_m; }
   std::uint32_t states_sent() const { return states_sent_; }

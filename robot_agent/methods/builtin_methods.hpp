@@ -12,7 +12,7 @@ ControlEntry crops_method();
 ControlEntry intermittent_diffusion_method();
 
 struct IntermittentDiffusionOptions;
-/// What a mission asks of intermittent_diffusion for robots with this body.
+/// The options of intermittent_diffusion by a mission, for robots with this body.
 IntermittentDiffusionOptions intermittent_diffusion_options(const Mission& mission,
                                                             const BodySpec& body);
 

@@ -10,13 +10,13 @@ namespace {
 
 constexpr std::size_t kFirstSlots = 128;
 constexpr std::size_t kSlotsEach = 4;  // of the index, for every robot known
-constexpr std::size_t kSweepAt = 8;    // so many who are gone are worth a new index
-constexpr double kStopped_mps = 0.01;   // slower is standing: such a robot need not speak
-constexpr double kUpdates = 64.0;        // that what is thought of the link is the mean of
-constexpr double kPoor = 0.02;         // of two words in the last sixty-four, …
-constexpr double kClean = 0.005;       // … until eighty in a row came
-constexpr double kInside = 0.8;        // of the range: who is farther may have been out of it
-constexpr std::int32_t kLongest_us = 1 << 29;  // nothing is remembered for so long
+constexpr std::size_t kSweepAt = 8;    // lanes of gone robots that are worth a compaction
+constexpr double kStopped_mps = 0.01;   // slower counts as stopped: such a robot may be silent
+constexpr double kUpdates = 64.0;        // averaging window of the link quality, in messages
+constexpr double kPoor = 0.02;         // loss rate above which the link is degraded: 2 of 64 lost …
+constexpr double kClean = 0.005;       // … and below which it is good again (hysteresis)
+constexpr double kInside = 0.8;        // of the communication radius: beyond, gaps are no losses
+constexpr std::int32_t kLongest_us = 1 << 29;  // clamp of ages, 537 s: differences fit 32 bits
 constexpr Duration kFrameFor = std::chrono::seconds(60);
 constexpr double kFrame_m = 100.0;
 
@@ -30,15 +30,16 @@ constexpr double in_s(std::int64_t us) { return 1e-6 * static_cast<double>(us); 
 
 }  // namespace
 
-/// What at() finds out. Of one call alone, so all robots that a thread ticks in turn share it, and
-/// it stays in the cache.
+/// The intermediate results of one call of at(). No state is kept from call to call, so that all
+/// robots that a thread ticks in turn share one buffer, which stays in the cache.
 struct NeighbourTable::FilterPass {
+  /// The extrapolated positions of four robots.
   struct LaneBlock {
     Float4 x_m, y_m;  // dead-reckoned
     Int4 age_us;
   };
   std::vector<LaneBlock> blocks;           // as the table's
-  std::vector<std::uint32_t> close;  // numbers of those who are, the first close_found
+  std::vector<std::uint32_t> close;  // numbers of the close robots, the first close_found
   std::vector<std::uint32_t> far;    // … of the others within reach, the first far_found
   std::size_t close_found = 0;
   std::size_t far_found = 0;
@@ -56,7 +57,8 @@ NeighbourTable::NeighbourTable(Shared<NeighbourOptions> options)
   blocks_.reserve(kFirstSlots / kSlotsEach / kLanes);
 }
 
-/// The slot of a robot, or the free one where it belongs.
+/// The slot of a robot, or the free one where it belongs: Fibonacci hashing and linear probing. At
+/// least three of four slots are free, so that a probe rarely takes a second step.
 NeighbourTable::Slot& NeighbourTable::slot_of(RobotId robot) {
   const std::size_t mask = index_.size() - 1;
   std::size_t at = (robot.value() * 0x9E37'79B1U >> 16U) & mask;
@@ -66,6 +68,7 @@ NeighbourTable::Slot& NeighbourTable::slot_of(RobotId robot) {
   return index_[at];
 }
 
+/// Doubles the index when less than three quarters of it are free, and enters all robots again.
 void NeighbourTable::rebuild_index() {
   if (index_.size() < kSlotsEach * count_) index_.resize(2 * index_.size());
   std::fill(index_.begin(), index_.end(), kFree);
@@ -74,6 +77,8 @@ void NeighbourTable::rebuild_index() {
   }
 }
 
+/// Appends a robot as the last lane, and opens a block of gone lanes when the last one is full. The
+/// slot reference is invalid afterwards: the index may be rebuilt.
 void NeighbourTable::insert(RobotId robot, Slot& slot) {
   slot = static_cast<Slot>(count_);
   if (count_ % kLanes == 0) blocks_.emplace_back().as_of_us = all(kGone);
@@ -82,9 +87,11 @@ void NeighbourTable::insert(RobotId robot, Slot& slot) {
   if (index_.size() < kSlotsEach * count_) rebuild_index();
 }
 
+/// A time as microseconds from the origin then_, clamped to ±kLongest_us.
 std::int32_t NeighbourTable::since_then_us(SteadyTime t) const { return to_us(t - then_); }
 
-/// Counts all that is known from another moment and place once the last ones are far off.
+/// Moves the origin of time and space to `now` and our position once it is 60 s or 100 m away:
+/// floats resolve 8 µm at 100 m, and ages stay within kLongest_us.
 void NeighbourTable::keep_frame(SteadyTime now, const Vec2& own_position_m) {
   const Vec2 by_m = own_position_m - here_m_;
   if (now - then_ <= kFrameFor && by_m.squaredNorm() <= kFrame_m * kFrame_m) return;
@@ -98,7 +105,10 @@ void NeighbourTable::keep_frame(SteadyTime now, const Vec2& own_position_m) {
   here_m_ = own_position_m;
 }
 
-/// Numbers that were left out are words that were lost, where both ends of the gap were in range.
+/// Adds a report to the tally of the loss rate. Skipped sequence numbers count as lost messages
+/// only where the report before the gap came from well inside the communication radius and is not
+/// older than the expected silence: otherwise the sender may have been out of range meanwhile. At
+/// most four losses count for one gap.
 void NeighbourTable::count_lost(const LaneBlock& block, std::size_t lane, const NeighbourReport& report,
                                 std::int32_t as_of_us, const Vec2& own_position_m) {
   const std::uint32_t lost = report.sequence - block.sequence[lane] - 1U;
@@ -114,7 +124,9 @@ void NeighbourTable::count_lost(const LaneBlock& block, std::size_t lane, const 
   tally_.lost += std::min(lost, 4U);
 }
 
-/// What the words since the last at() tell of the link: each weighs a sixty-fourth.
+/// Updates the moving averages of loss rate and latency with the messages since the last at(): n of
+/// them weigh n/(64 + n). The link is degraded above kPoor until the loss rate is below kClean, or
+/// while the mean latency exceeds 1.5 control periods.
 void NeighbourTable::update_link_quality() {
   if (tally_.updates == 0) return;
   const auto share_of_all = [](std::uint32_t count) { return count / (kUpdates + count); };
@@ -128,6 +140,8 @@ void NeighbourTable::update_link_quality() {
   tally_ = {};
 }
 
+/// Amortised O(1). A robot unknown so far, or silent for forget_after, is taken with any sequence
+/// number: its process may have been restarted and counts from the beginning.
 NeighbourTable::Outcome NeighbourTable::take(const NeighbourReport& report,
                                              const Vec2& own_position_m, Duration late) {
   keep_frame(report.as_of, own_position_m);
@@ -146,6 +160,7 @@ NeighbourTable::Outcome NeighbourTable::take(const NeighbourReport& report,
       count_lost(block, lane, report, as_of_us, own_position_m);
     }
   }
+  // A known robot that reports from outside of the communication radius is not kept any longer.
   const double keep_squared = options_->communication_radius_m * options_->communication_radius_m;
   if ((report.position_m - own_position_m).squaredNorm() > keep_squared) {
     if (is_known) blocks_[slot / kLanes].as_of_us[slot % kLanes] = kGone;
@@ -156,6 +171,7 @@ NeighbourTable::Outcome NeighbourTable::take(const NeighbourReport& report,
   if (!is_known) insert(report.robot, slot);
   LaneBlock& block = blocks_[known / kLanes];
   const std::size_t lane = known % kLanes;
+  // Positions are stored relative to here_m_, where floats are precise.
   block.x_m[lane] = static_cast<float>(report.position_m.x() - here_m_.x());
   block.y_m[lane] = static_cast<float>(report.position_m.y() - here_m_.y());
   block.vx_mps[lane] = static_cast<float>(report.velocity_mps.x());
@@ -168,10 +184,14 @@ NeighbourTable::Outcome NeighbourTable::take(const NeighbourReport& report,
   return Outcome::kTaken;
 }
 
-/// Who is within reach, into the sieve. Most are not, and which ones is unpredictable: no branches.
-/// Those that are extrapolated out of the communication radius are gone: should they come back they will
-/// be received.
+/// The filter pass: extrapolates all known robots, four at a time, and sorts the numbers of those
+/// within reach into close and far ones. O(known robots). Which robots are within reach is
+/// unpredictable, so the pass has no branch on it. Robots that were extrapolated out of the
+/// communication radius, or are older than forget_after, are marked as gone; one that comes back is
+/// received again.
 void NeighbourTable::filter(std::int32_t now_us, const Vec2& own_position_m, FilterPass& pass) {
+  // All quantities as floats relative to here_m_ and then_. reach_now_m is the reach for
+  // information of age 0; at one control period it is options.reach_m.
   const auto keep_m = static_cast<float>(options_->communication_radius_m);
   const auto growth_mps = static_cast<float>(options_->reach_growth_mps);
   const auto period_s = static_cast<float>(period_s_);
@@ -179,9 +199,11 @@ void NeighbourTable::filter(std::int32_t now_us, const Vec2& own_position_m, Fil
   const auto beyond_close_m = static_cast<float>(options_->reach_m - options_->close_m);
   const auto own_x_m = static_cast<float>(own_position_m.x() - here_m_.x());
   const auto own_y_m = static_cast<float>(own_position_m.y() - here_m_.y());
-  // What is too old is as old as it is, anything else at most as late as words are.
+  // On a good link a silent robot is where dead reckoning has it (see SendPolicy), so that its
+  // information is only as old as messages are late; on a degraded one it is as old as the state.
   const Int4 late_us =
       all(link_.poor ? kLongest_us : static_cast<std::int32_t>(1e6 * link_.late_s));
+  // Room for all lanes in each list: below, numbers are written before it is known if they count.
   if (pass.blocks.size() < blocks_.size()) {
     pass.blocks.resize(2 * blocks_.size());
     pass.close.resize(kLanes * pass.blocks.size());
@@ -193,6 +215,7 @@ void NeighbourTable::filter(std::int32_t now_us, const Vec2& own_position_m, Fil
   Int4 gone = all(0);
   for (std::uint32_t i = 0; i < blocks_.size(); ++i) {
     LaneBlock& f = blocks_[i];
+    // Dead reckoning at constant velocity.
     const Int4 age_us = max(now_us - f.as_of_us, all(0));
     const Float4 age_s = 1e-6F * to_float(age_us);
     const Float4 x_m = f.x_m + age_s * f.vx_mps;
@@ -200,20 +223,26 @@ void NeighbourTable::filter(std::int32_t now_us, const Vec2& own_position_m, Fil
     const Float4 away_x_m = x_m - own_x_m;
     const Float4 away_y_m = y_m - own_y_m;
     const Float4 away_squared = away_x_m * away_x_m + away_y_m * away_y_m;
+    // A state that arrived late keeps its lateness. Beyond the expected silence less one period the
+    // age grows with time on any link: the robot should have published.
     const Int4 known_us = min(age_us, max(f.late_us, late_us));
     const Int4 information_age_us = max(known_us, age_us - (silence_us_ - period_us_));
     const Float4 information_age_s = max(1e-6F * to_float(information_age_us), all(period_s));
     const Float4 reach_m = reach_now_m + growth_mps * information_age_s;
+    // Masks are −1 (all bits) where true, so that subtracting one counts.
     const Int4 is_gone = (away_squared > keep_m * keep_m) | (age_us > forget_after_us_);
     const Int4 in_reach = ~is_gone & (away_squared <= reach_m * reach_m);
     const Float4 close_m = reach_m - beyond_close_m;
     const Int4 is_close = in_reach & (away_squared <= close_m * close_m);
     const Int4 is_far = in_reach & ~is_close;
     gone -= is_gone;
+    // Stores only where a robot has just gone: written cache lines are costly.
     const Int4 left = is_gone & (f.as_of_us != all(kGone));
     if ((left[0] | left[1] | left[2] | left[3]) != 0)
       f.as_of_us = is_gone ? all(kGone) : f.as_of_us;
     pass.blocks[i] = {x_m, y_m, age_us};
+    // Stream compaction without branches: each number is written, and the end of a list moves on
+    // only if the mask is set.
 #pragma GCC unroll 4
     for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
       *next_close = kLanes * i + lane;
@@ -224,12 +253,13 @@ void NeighbourTable::filter(std::int32_t now_us, const Vec2& own_position_m, Fil
   }
   pass.close_found = static_cast<std::size_t>(next_close - pass.close.data());
   pass.far_found = static_cast<std::size_t>(next_far - pass.far.data());
-  // The lanes behind the last robot are nobody's.
+  // The empty lanes behind the last robot are marked as gone, but are no robots.
   gone_ = static_cast<std::size_t>(gone[0] + gone[1] + gone[2] + gone[3]) -
           (kLanes * blocks_.size() - count_);
 }
 
-/// What is thought of one within reach.
+/// The estimate of one robot within reach: extrapolated position, radius, age of the information
+/// and the time for which the robot may have been stopped.
 void NeighbourTable::estimate(std::size_t known, const Vec2& own_position_m, const FilterPass& pass,
                              Neighbour& n) const {
   const LaneBlock& block = blocks_[known / kLanes];
@@ -241,10 +271,13 @@ void NeighbourTable::estimate(std::size_t known, const Vec2& own_position_m, con
   n.position_m = here_m_ + Vec2(filtered.x_m[lane], filtered.y_m[lane]);
   n.velocity_mps = {block.vx_mps[lane], block.vy_mps[lane]};
   n.radius_m = radius_m;
+  // A robot silent for longer than expected may be anywhere it can have driven to since.
   if (filtered.age_us[lane] > silence_us_) {
     n.radius_m += options_->fleet.of(n.robot).speed_max_mps * (age_s - silence_s_);
   }
   n.information_age_s = std::min(age_s, std::max(in_s(block.late_us[lane]), link_.late_s));
+  // On a degraded link robots this near publish at every tick (see SendPolicy): if none has
+  // arrived, the information is as old as the last state, not only as late as messages are.
   if (link_.poor && n.velocity_mps.squaredNorm() > kStopped_mps * kStopped_mps) {
     const double updates_within_m = options_->near_m + options_->radius_m + radius_m;
     const Vec2 sent_at_m = here_m_ + Vec2(block.x_m[lane], block.y_m[lane]);
@@ -252,10 +285,12 @@ void NeighbourTable::estimate(std::size_t known, const Vec2& own_position_m, con
       n.information_age_s = age_s;
     }
   }
+  // A body stops two periods after its last command, and its process may have died right after this
+  // state.
   n.possible_stop_age_s = in_s(std::max(0, filtered.age_us[lane] - 2 * period_us_));
 }
 
-/// Closes the ranks where robots are gone.
+/// Removes the lanes of gone robots, in order, and builds the index again. O(known robots).
 void NeighbourTable::sweep() {
   std::size_t kept = 0;
   for (std::size_t i = 0; i < count_; ++i) {
@@ -281,6 +316,8 @@ void NeighbourTable::sweep() {
   rebuild_index();
 }
 
+/// Order of results: close robots first, both groups in the order in which robots became known, so
+/// that equal reports give equal neighbours.
 Neighbourhood NeighbourTable::at(SteadyTime now, const Vec2& own_position_m) {
   update_link_quality();
   keep_frame(now, own_position_m);
@@ -293,6 +330,7 @@ Neighbourhood NeighbourTable::at(SteadyTime now, const Vec2& own_position_m) {
   for (std::size_t i = 0; i < pass.far_found; ++i) {
     estimate(pass.far[i], own_position_m, pass, *next++);
   }
+  // Last: sweeping renumbers the robots that the filter pass has listed.
   if (gone_ >= kSweepAt) sweep();
   const std::span<const Neighbour> all(pass.neighbours.data(), next);
   return {.all = all, .close = all.first(pass.close_found)};

@@ -18,53 +18,56 @@
 
 namespace swarm::agent {
 
-/// What another robot said of itself, already checked by the input validation.
+/// A state that another robot published of itself, after input validation.
 struct NeighbourReport {
   RobotId robot;
   std::uint32_t sequence = 0;
-  SteadyTime as_of;  ///< when it was true, on our steady clock
+  SteadyTime as_of;  ///< when the state was measured, on our steady clock
   Vec2 position_m = Vec2::Zero();
   Vec2 velocity_mps = Vec2::Zero();
 };
 
-/// Those within reach; valid until the thread asks a table again.
+/// The neighbours within reach; valid until the next call of at() by the same thread.
 struct Neighbourhood {
   std::span<const Neighbour> all;
-  std::span<const Neighbour> close;  ///< the first of them: who may touch us or bound our velocity
+  std::span<const Neighbour> close;  ///< the first of `all`: may touch us or bound our speed
 };
 
-/// How well the words of others reach us, and so, most likely, ours them.
+/// How well messages of other robots reach us; those that we send most likely fare alike.
 struct LinkQuality {
-  bool poor = false;    ///< words are lost, or later than a period and a half
-  double late_s = 0.0;  ///< how old they are when they are received, mean
+  bool poor = false;    ///< degraded: messages are lost, or later than 1.5 control periods
+  double late_s = 0.0;  ///< mean age of messages on receipt
 };
 
+/// What the table of one robot is made with.
 struct NeighbourOptions {
   double radius_m = 0.2;       ///< of the robot itself
   Fleet fleet;                 ///< sizes and speeds of the others
-  double communication_radius_m = 6.0;  ///< robots farther than this, heard or extrapolated, are not kept
-  /// Who is farther than this matters to nobody: not told by at(). Grows with what the knowledge of
-  /// a robot is older than a control period. Holds the way of one that may have stalled.
+  double communication_radius_m = 6.0;  ///< robots received or extrapolated farther off are dropped
+  /// at() leaves out robots farther than this: they matter neither to control nor to safety. For
+  /// information older than a control period it grows by reach_growth_mps. It includes the distance
+  /// that a robot has driven on which may in fact have stopped.
   double reach_m = 6.0;
-  double close_m = 6.0;  ///< … and who is farther than this, grown as much, is not close
+  double close_m = 6.0;  ///< robots nearer than this, which grows alike, are close
   double reach_growth_mps = 0.0;
-  double near_m = 1.0;          ///< on a degraded link robots this near speak at every tick
-  Duration period{};            ///< of control: a body stops two after its last command
-  Duration expected_silence{};  ///< a healthy robot speaks at least this often
+  double near_m = 1.0;          ///< on a degraded link robots this near publish at every tick
+  Duration period{};            ///< of control: a body stops two periods after its last command
+  Duration expected_silence{};  ///< a healthy robot publishes at least this often
   Duration forget_after{};
 };
 
-/// The robots near us, as far as the bus tells. Between two words of a robot its position is
-/// extrapolated; that it may have stalled in between is given beside. From `expected_silence` on its
-/// radius grows by its largest speed for every second more, and after `forget_after` it is
-/// forgotten. A robot in a crowd hears fifty others at every tick: taking a report is a look into a
-/// hash table, and believing one a pass over an array, four robots at a time.
-/// The same reports in the same order give the same neighbours in the same order. No allocation
-/// once warm.
+/// The robots near us, as known from their published states. Between two state updates the position
+/// of a robot is extrapolated, and `possible_stop_age_s` bounds for how long it may have been
+/// stopped meanwhile. From `expected_silence` on its radius grows by its largest speed for every
+/// second more, and after `forget_after` it is forgotten. In a dense region a robot receives fifty
+/// others at every tick: take() is one look-up in a hash table, at() one SIMD pass over an array,
+/// four robots at a time. The same reports in the same order give the same neighbours in the same
+/// order. No allocation once warm.
 class NeighbourTable {
  public:
   explicit NeighbourTable(Shared<NeighbourOptions> options);
 
+  /// What became of a report.
   enum class Outcome { kTaken, kDuplicate, kStale, kFar };
 
   /// Takes a report that was `late` when it was received. Older or repeated sequence numbers are
@@ -74,8 +77,8 @@ class NeighbourTable {
   /// Neighbours within reach as of `now`.
   Neighbourhood at(SteadyTime now, const Vec2& own_position_m);
 
-  /// Brings what take() and at() will look at into the cache: for whoever ticks many robots in
-  /// turn, while it ticks the one before.
+  /// Brings what take() and at() read into the cache. A loop that ticks many robots in turn calls
+  /// it while it ticks the robot before.
   void prefetch() const {
     swarm::prefetch(blocks_.data(), blocks_.size() * sizeof(LaneBlock));
     swarm::prefetch(index_.data(), index_.size() * sizeof(Slot));
@@ -87,18 +90,18 @@ class NeighbourTable {
   std::size_t known() const { return count_ - gone_; }
 
  private:
-  /// The last state updates of four robots, in two cache lines, counted from then_ and here_m_ so that
-  /// floats hold them to micrometres.
+  /// The last state updates of four robots, in two cache lines, relative to then_ and here_m_ so
+  /// that floats resolve them to micrometres.
   struct alignas(64) LaneBlock {
     Float4 x_m, y_m;
     Float4 vx_mps, vy_mps;
-    Int4 as_of_us;  // kGone: nobody
+    Int4 as_of_us;  // kGone: no robot in this lane
     Int4 late_us;
     std::array<RobotId, kLanes> robot;
     std::array<std::uint32_t, kLanes> sequence;
   };
   static constexpr std::int32_t kGone = -(1 << 30);
-  /// Number of a robot in fours_. Small, so that three of four slots can be free and still few
+  /// Number of a robot in blocks_. Small, so that three of four slots can be free and still few
   /// lines are used.
   using Slot = std::uint16_t;
   static constexpr Slot kFree = 0xFFFF;
@@ -119,17 +122,18 @@ class NeighbourTable {
 
   Shared<NeighbourOptions> options_;
   double period_s_;
-  double silence_s_;  // that is expected
+  double silence_s_;  // expected_silence
   std::int32_t period_us_;
   std::int32_t silence_us_;
   std::int32_t forget_after_us_;
+  // Origin of the times and positions in blocks_, see keep_frame().
   SteadyTime then_;
   Vec2 here_m_ = Vec2::Zero();
   std::vector<LaneBlock> blocks_;
-  std::size_t count_ = 0;    // of robots in fours_, gone or not
+  std::size_t count_ = 0;    // of robots in blocks_, gone or not
   std::size_t gone_ = 0;     // of those, as of the last at()
   std::vector<Slot> index_;  // hash table with open addressing, a power of two of them
-  /// Words since the last at().
+  /// The messages since the last at().
   struct Tally {
     std::uint32_t updates = 0;
     std::uint32_t came = 0;  // without a gap before, or with both its ends in range
@@ -138,7 +142,7 @@ class NeighbourTable {
   };
   Tally tally_;
   LinkQuality link_;
-  double loss_ = 0.0;  // share of words lost, mean of the last ones
+  double loss_ = 0.0;  // moving average of the share of messages lost
 };
 
 }  // namespace swarm::agent

@@ -8,10 +8,13 @@
 
 namespace swarm::agent {
 
+/// Different cells may share a bucket: that costs visits of states which are not near, no errors.
 std::size_t ReceivedCells::bucket_of(std::int64_t x, std::int64_t y) const {
   return mix_seed(static_cast<std::uint64_t>(x), static_cast<std::uint64_t>(y)) & mask_;
 }
 
+/// Counting sort by bucket: counts, prefix sums, then one pass that places the states. There are as
+/// many buckets as states, rounded up to a power of two, so a bucket holds about one.
 void ReceivedCells::sort(const std::vector<ReceivedState>& received) {
   mask_ = std::bit_ceil(received.size() + 1) - 1;
   begin_.assign(mask_ + 2, 0);

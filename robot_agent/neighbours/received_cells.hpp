@@ -15,20 +15,20 @@ namespace swarm::agent {
 /// A state that passed the input validation, with its age.
 struct ReceivedState {
   NeighbourReport report;
-  Duration age{};  ///< written → now, by the clocks of both
+  Duration age{};  ///< from its stamp to now, by the clocks of sender and receiver
 };
 
-/// What a process heard at a tick, sorted so that each of its many robots need not look at all of
-/// it: into square cells, and those by a hash into a few buckets. No allocation once warm.
+/// The states that a process received at a tick, sorted so that each of its many robots visits only
+/// those near it: into square cells, and the cells by a hash into buckets. No allocation once warm.
 class ReceivedCells {
  public:
   /// \pre cell_m > 0
   explicit ReceivedCells(double cell_m) : cell_m_(cell_m) {}
 
-  /// Replaces what is held, in O(heard). Positions must be finite.
+  /// Replaces the content, in O(received states). Positions must be finite.
   void sort(const std::vector<ReceivedState>& received);
 
-  /// Visits, once, all that is within a cell's size of a place, and some that is not.
+  /// Visits, once, all states within a cell's size of a position, and some farther ones.
   template <class Visit>
   void visit_near(const Vec2& position_m, Visit visit) const {
     const std::int64_t x = row_of(position_m.x()), y = row_of(position_m.y());
@@ -53,7 +53,7 @@ class ReceivedCells {
   double cell_m_;
   std::size_t mask_ = 0;
   std::vector<std::uint32_t> begin_ = {0, 0};  // of each bucket in sorted_; one more at the end
-  std::vector<std::uint32_t> bucket_;          // of each state heard
+  std::vector<std::uint32_t> bucket_;          // of each state received
   std::vector<ReceivedState> sorted_;
 };
 

@@ -22,7 +22,7 @@
 namespace swarm::agent {
 namespace {
 
-/// A shorter tick is not worth an event, however fast the control loop is.
+/// Shorter ticks are not reported as overruns, however fast the control loop is.
 constexpr Duration kLongTick = std::chrono::milliseconds(500);
 
 /// Sleeps until `at`; false when a signal woke us early.
@@ -33,12 +33,14 @@ bool sleep_until(SteadyTime at) {
   return ::clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &when, nullptr) != EINTR;
 }
 
+/// A process whose parent ended is adopted by another one: its parent's id changes.
 bool parent_is_gone(std::uint32_t parent_pid) {
   return parent_pid != 0 && static_cast<std::uint32_t>(::getppid()) != parent_pid;
 }
 
 }  // namespace
 
+/// Keeps the headers of mission and loop out of the public interface.
 struct AgentProcess::Impl {
   ProcessOptions options;
   Mission mission;
@@ -55,6 +57,7 @@ Catalogue catalogue_of(const RobotRegistry& registry) {
           .planning_is_open = true};
 }
 
+/// Joins the bus last: once others see the process, its robots are ready.
 Result<std::unique_ptr<AgentProcess>> AgentProcess::make(const ProcessOptions& options,
                                                          const RobotRegistry& registry) {
   const auto run = shell::read_run_info(options.run_dir);
@@ -83,12 +86,15 @@ Result<std::unique_ptr<AgentProcess>> AgentProcess::make(const ProcessOptions& o
   return std::unique_ptr<AgentProcess>(new AgentProcess(std::move(impl)));
 }
 
+/// Ticks at absolute times: multiples of the period on the steady clock, which all processes of a
+/// host share, plus a phase that spreads processes over the period. A late tick does not shift the
+/// next.
 Result<void> AgentProcess::run() {
   Impl& p = *impl_;
   const Duration period = from_seconds(1.0 / p.mission.control.rate_hz);
   const Duration phase = from_seconds(to_seconds(period) * tick_phase(p.options.first.value()));
   const auto now = std::chrono::steady_clock::now();
-  // So much later the bodies' watchdogs have stopped them: a command is valid for two periods.
+  // Two periods after a command the body's watchdog has stopped it.
   const Duration overrun = std::max(2 * period, kLongTick);
   SteadyTime next = now - now.time_since_epoch() % period + period + phase;
   while (shell::stop_requests() == 0) {

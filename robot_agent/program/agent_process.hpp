@@ -13,11 +13,11 @@ namespace swarm::agent {
 /// The names and keys of a mission that a robot program knows; the planner's section is open.
 Catalogue catalogue_of(const RobotRegistry& registry);
 
-/// The program: reads the run directory, joins the bus and ticks its robots by the machine's clock.
+/// The program: reads the run directory, joins the bus and ticks its robots by the steady clock.
 class AgentProcess {
  public:
   /// Fails when the run directory or the mission is bad, a driver does not start, or the bus
-  /// refuses.
+  /// cannot be joined.
   static Result<std::unique_ptr<AgentProcess>> make(const ProcessOptions& options,
                                                     const RobotRegistry& registry);
   ~AgentProcess();

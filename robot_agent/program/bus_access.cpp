@@ -14,9 +14,10 @@
 namespace swarm::agent {
 namespace {
 
-// So that the network's faults are not drawn like the robots.
+// Keeps the random numbers of network faults apart from those of the robots.
 constexpr std::uint64_t kFaultSeed = 0xFA17;
 
+/// States by UDP multicast, a group per cell.
 Result<std::unique_ptr<link::StateChannel>> make_group_channel(
     const LinkSpec& spec, const shell::RunInfo& run, const link::ReceptionFaults& faults) {
   link::GroupChannelOptions groups{
@@ -29,6 +30,7 @@ Result<std::unique_ptr<link::StateChannel>> make_group_channel(
 }  // namespace
 
 Result<BusAccess> open_endpoints(std::unique_ptr<link::Participant> participant) {
+  // The topics that every process has; those of states depend on where robots are.
   auto plan = participant->make_reader(link::plan_topic());
   auto scene = participant->make_reader(link::scene_topic());
   auto heartbeat = participant->make_reader(link::heartbeat_topic());
@@ -58,6 +60,7 @@ void open_topic_channel(BusAccess& access, const LinkSpec& spec) {
                                                      .leave_margin_m = spec.leave_margin_m});
 }
 
+/// Opens the state channel that the run uses. A process behind the gateway always uses topics.
 Result<BusAccess> join_bus(const ProcessOptions& options, const shell::RunInfo& run,
                            const Mission& mission) {
   const link::ReceptionFaults faults{

@@ -23,7 +23,8 @@ struct BusAccess {
   link::WriterPtr<link::EventMessage> event;
 };
 
-/// Joins the run's bus as the process that the options describe. Fails when the bus refuses.
+/// Joins the run's bus as the process that the options describe. Fails when the bus cannot be
+/// joined.
 Result<BusAccess> join_bus(const ProcessOptions& options, const shell::RunInfo& run,
                            const Mission& mission);
 

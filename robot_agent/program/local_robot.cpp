@@ -13,18 +13,21 @@
 namespace swarm::agent {
 namespace {
 
-/// A log is written at every step, so that nothing is lost with a process that is killed. In one of
-/// many robots that would be most of its time: each of their logs is written once a second.
+/// A log is written at every step, so that nothing is lost with a process that is killed. With many
+/// robots that would take most of the process's time: their logs are written ten records at a time.
 constexpr std::uint32_t kManyRobots = 20;
 constexpr std::uint32_t kRecordsAtOnce = 10;
 
-/// A respawned robot's body is where its log last saw it; a new one at its place in the mission.
+/// A respawned robot starts from the last position in its log, a new one from the position that the
+/// mission places it at.
 Result<Vec2> first_position(const std::filesystem::path& log_file, const Vec2& placed_m) {
   const auto last = robot_log::last_steps(log_file);
   if (!last) return tl::unexpected(last.error());
   return last->empty() ? placed_m : last->back().position_m;
 }
 
+/// Opens the log and writes its header. Robots flush at different steps, so that a process does not
+/// write all its logs at the same tick.
 Result<LogFile> open_log(const Mission& mission, const LocalRobotsSpec& spec, RobotId robot) {
   const auto file = robot_log::file_of(spec.run_dir, robot);
   auto writer = spec.count < kManyRobots
@@ -39,6 +42,7 @@ Result<LogFile> open_log(const Mission& mission, const LocalRobotsSpec& spec, Ro
   return LogFile(std::move(*writer));
 }
 
+/// A driver that does not start is shut down again, as it may hold a device.
 Result<std::unique_ptr<Driver>> start_driver(const DriverRegistry& drivers,
                                              const DriverContext& context) {
   const std::string& name = context.body().model;
@@ -79,6 +83,7 @@ Result<LocalRobots> make_local_robots(const Mission& mission, const World& world
     auto log = open_log(mission, spec, id);
     if (!log) return tl::unexpected(log.error());
     AgentIdentity self = agent_identity(mission, id);
+    // A position other than the placed one means that the robot has driven before.
     self.underway = *position_m != placed_m;
     made.any_is_underway = made.any_is_underway || self.underway;
     auto driver = start_driver(registry.drivers, {.mission = mission,

@@ -35,16 +35,17 @@ struct LocalRobotsSpec {
   UtcTime utc_now;
 };
 
+/// The robots of a process.
 struct LocalRobots {
   std::vector<LocalRobot> robots;
   bool any_is_underway = false;  ///< some were restarted in mid-flight
-  bool read_density = false;     ///< their control method asks for the planned density
+  bool read_density = false;     ///< their control method reads the planned density
 };
 
-/// Makes robots at their places in the mission, or where their logs saw them last, with the control
-/// method and the drivers that the mission names, begins their logs and starts their drivers. Fails
-/// where a log cannot be opened, robots have no place, the registry lacks a name, or a driver does
-/// not start. \pre the world outlives them
+/// Makes robots at their positions in the mission, or at the last ones in their logs, with the
+/// control method and the drivers that the mission names, begins their logs and starts their
+/// drivers. Fails where a log cannot be opened, robots cannot be placed, the registry lacks a name,
+/// or a driver does not start. \pre the world outlives them
 Result<LocalRobots> make_local_robots(const Mission& mission, const World& world,
                                       const RobotRegistry& registry, const LocalRobotsSpec& spec);
 

@@ -9,7 +9,7 @@
 
 namespace swarm::agent {
 
-/// A robot's log as a file of its own; what the disk does not take is dropped and counted.
+/// A robot's log as a file; records that cannot be written are dropped and counted.
 class LogFile final : public RobotLog {
  public:
   explicit LogFile(robot_log::Writer writer) : writer_(std::move(writer)) {}

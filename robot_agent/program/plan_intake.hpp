@@ -11,8 +11,8 @@
 namespace swarm::agent {
 
 /// Hands the newest plan to the robots of a process, once. A robot that was restarted in mid-flight
-/// finds its place in the plan by the plan's time, too: its process holds a plan back until the
-/// first heartbeat told that time, for a second at most.
+/// finds its position in the plan by the plan's time, too: its process holds a plan back until the
+/// first heartbeat with that time arrives, for a second at most.
 class PlanIntake {
  public:
   explicit PlanIntake(bool waits_for_clock) : waits_for_clock_(waits_for_clock) {}

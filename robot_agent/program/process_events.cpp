@@ -13,6 +13,7 @@ constexpr Duration kStatsEvery = std::chrono::seconds(1);
 
 }  // namespace
 
+/// Planner and faults at every tick, since they change what robots do; counters once a second.
 void ProcessEvents::on_tick(SteadyTime now, UtcTime utc_now, Inbox& inbox,
                             const Histogram& state_age) {
   announce_planner(now, utc_now, inbox);
@@ -23,6 +24,7 @@ void ProcessEvents::on_tick(SteadyTime now, UtcTime utc_now, Inbox& inbox,
   announce_refusals(utc_now, inbox);
 }
 
+/// Refusals and ages of states belong to the process: the log of its first robot has them.
 void ProcessEvents::record_link_stats(UtcTime utc_now, Inbox& inbox, const Histogram& state_age) {
   for (LocalRobot& robot : robots_) {
     robot_log::LinkStats stats{.stamp = utc_now,
@@ -37,6 +39,8 @@ void ProcessEvents::record_link_stats(UtcTime utc_now, Inbox& inbox, const Histo
   announce_dropped_records(utc_now);
 }
 
+/// On the bus for the operator, and in the first robot's log for the audit, which works without a
+/// bus.
 void ProcessEvents::announce(UtcTime utc_now, link::Severity severity, const std::string& code,
                              const std::string& text) {
   writer_.write({.severity = severity,
@@ -53,7 +57,7 @@ void ProcessEvents::announce_planner(SteadyTime now, UtcTime utc_now, const Inbo
   planner_was_alive_ = alive;
   announce(utc_now, alive ? link::Severity::kInfo : link::Severity::kWarning,
            alive ? "planner-heard" : "planner-silent",
-           alive ? "hears the planner" : "planner silent: holds with avoidance on");
+           alive ? "receives the planner" : "planner silent: holds with avoidance on");
 }
 
 void ProcessEvents::on_overrun(UtcTime utc_now, Duration took) {
@@ -64,7 +68,7 @@ void ProcessEvents::on_overrun(UtcTime utc_now, Duration took) {
                        first, first + robots_.size() - 1, to_seconds(took)));
 }
 
-/// What is wrong with a robot is announced once, and again when it is something else.
+/// A fault of a robot is announced once, and again when it changes or ends.
 void ProcessEvents::announce_faults(UtcTime utc_now) {
   faults_.resize(robots_.size());
   for (std::size_t i = 0; i < robots_.size(); ++i) {
@@ -78,6 +82,7 @@ void ProcessEvents::announce_faults(UtcTime utc_now) {
   }
 }
 
+/// Announces only what has been added since the last time, at most one event per reason and second.
 void ProcessEvents::announce_refusals(UtcTime utc_now, Inbox& inbox) {
   if (const std::uint32_t fresh = inbox.skewed() - skewed_reported_; fresh > 0) {
     skewed_reported_ += fresh;
@@ -95,6 +100,7 @@ void ProcessEvents::announce_refusals(UtcTime utc_now, Inbox& inbox) {
 }
 
 void ProcessEvents::announce_dropped_records(UtcTime utc_now) {
+  // A full disk does not stop a robot; the event is announced once.
   const bool dropped = std::any_of(robots_.begin(), robots_.end(),
                                    [](const LocalRobot& robot) { return robot.log.dropped() > 0; });
   if (dropped && !records_dropped_) {

@@ -14,9 +14,9 @@
 
 namespace swarm::agent {
 
-/// Tells what happens to a process as a whole (planner lost and back, messages refused, clocks
-/// apart, a full disk) as events on the bus and notes in its first robot's log, and records the
-/// link's counters in all logs once a second.
+/// Reports what happens to a process as a whole (planner lost and back, messages refused, clock
+/// differences, a full disk) as events on the bus and notes in its first robot's log, and records
+/// the link's counters in all logs once a second.
 class ProcessEvents {
  public:
   /// \pre robots is not empty; all outlive this
@@ -26,7 +26,7 @@ class ProcessEvents {
   /// At the end of each tick. `state_age` is that of the states all robots used.
   void on_tick(SteadyTime now, UtcTime utc_now, Inbox& inbox, const Histogram& state_age);
 
-  /// A tick took so long that the bodies' commands ran out.
+  /// Reports a tick that outlasted the bodies' commands, so that they stopped.
   void on_overrun(UtcTime utc_now, Duration took);
 
   /// Records the counters now.

@@ -11,6 +11,8 @@
 namespace swarm::agent {
 namespace {
 
+/// After a silence of the planner, robots wait for as long as a neighbour may be silent, plus two
+/// periods (see MissionWatch).
 Inbox make_inbox(const Mission& mission, Readers readers, link::StateChannel& states) {
   const Duration silence = from_seconds(mission.timing.planner_silence_s);
   const double resume_delay_s = mission.link.send_interval_max_s + 2.0 / mission.control.rate_hz;
@@ -32,7 +34,7 @@ struct RobotBus {
   template <class Take>
   void receive(const Vec2& position_m, Take take) const {
     received.visit_near(position_m, [&](const ReceivedState& state) {
-      if (state.report.robot != self) take(state.report, state.age);  // else our own echo
+      if (state.report.robot != self) take(state.report, state.age);  // not its own echo
     });
   }
   void publish(const link::RobotStateMessage& state) const {
@@ -56,10 +58,13 @@ ProcessLoop::ProcessLoop(const Mission& mission, std::unique_ptr<World> world, L
       events_(local_.robots, *bus_.event),
       density_(mission, local_.read_density) {}
 
+/// Receives once for all robots, steps them, then publishes: within a tick no robot sees the new
+/// state of another, as in separate processes.
 void ProcessLoop::tick(const Time& time) {
   std::vector<LocalRobot>& robots = local_.robots;
   bus_.participant->receive();
   inbox_.receive(time.now, time.utc_now, [&](RobotId id) -> const EchoGuard* {
+    // Ids below the first wrap around to large offsets.
     const std::uint32_t offset = id.value() - robots.front().loop.id().value();
     return offset < robots.size() ? &robots[offset].echo : nullptr;
   });
@@ -79,8 +84,8 @@ void ProcessLoop::tick(const Time& time) {
                .plan_time = plan_time,
                .planned_density = planned_density(new_plan, plan_time)},
               new_plan);
-  // Cell topics come after the plan: a start-up in which all discover all at once takes the
-  // discovery server several times as long, and no robot moves without a plan.
+  // Cell topics are joined only after the plan: discovery of all endpoints at once takes several
+  // times as long, and no robot moves without a plan.
   if (inbox_.plan_version() > 0) {
     bus_.states->publish(published_);
     bus_.states->listen_around(positions_m_);
@@ -89,6 +94,7 @@ void ProcessLoop::tick(const Time& time) {
   events_.on_tick(time.now, time.utc_now, inbox_, state_age_);
 }
 
+/// Robots share the received data, but each has its own driver, random numbers and log.
 void ProcessLoop::step_robots(RobotTick tick, const std::optional<NewPlan>& new_plan) {
   published_.clear();
   positions_m_.clear();
@@ -105,7 +111,7 @@ void ProcessLoop::step_robots(RobotTick tick, const std::optional<NewPlan>& new_
   }
 }
 
-/// The map is made anew when the scene changed, and at every tick while an obstacle moves.
+/// Rebuilds the map when the scene has changed, and at every tick while an obstacle moves.
 void ProcessLoop::follow_scene(UtcTime utc_now) {
   if (auto received = inbox_.take_scene()) {
     scene_ = std::move(*received);
@@ -117,14 +123,15 @@ void ProcessLoop::follow_scene(UtcTime utc_now) {
                        .text = fmt::format("took scene version {}", scene_.version)});
   }
   if (!world_moves_) return;
-  // A robot that comes back is inside its own body until the launcher receives it again.
+  // A respawned robot is inside the obstacle of its own fallen body until the launcher receives it
+  // and clears that body.
   const auto count = static_cast<std::uint32_t>(local_.robots.size());
   const Scene without_own = without_bodies_of(scene_, local_.robots.front().loop.id(), count);
   *world_ = world_at(mission_.world, without_own, utc_now);
   world_moves_ = scene_.moves(utc_now);
 }
 
-/// At the plan's time, where the control method asks for it.
+/// The planned density at the plan's time, if the control method reads it; otherwise null.
 const PlannedDensity* ProcessLoop::planned_density(const std::optional<NewPlan>& new_plan,
                                                    const std::optional<PlanTime>& plan_time) {
   if (!density_.is_asked_for()) return nullptr;
@@ -135,6 +142,7 @@ const PlannedDensity* ProcessLoop::planned_density(const std::optional<NewPlan>&
 }
 
 void ProcessLoop::end(const Time& time) {
+  // The last counters and status go out before drivers are shut down.
   events_.record_link_stats(time.utc_now, inbox_, state_age_);
   status_.publish_all(source(time));
   for (LocalRobot& robot : local_.robots) {

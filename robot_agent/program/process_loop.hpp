@@ -18,8 +18,8 @@
 namespace swarm::agent {
 
 /// The tick of an agent process: receives once for all of its robots, steps each one's loop,
-/// publishes their states and reports on them. It gets the time as an argument, and knows neither
-/// signals nor sleep.
+/// publishes their states and reports on them. It takes the time as an argument and neither sleeps
+/// nor handles signals.
 ///
 /// Each robot decides alone, from what it receives on the bus, also of robots in the same process;
 /// they share the bus access, the map and the clock, nothing else.
@@ -32,6 +32,7 @@ class ProcessLoop {
   ProcessLoop(const ProcessLoop&) = delete;
   ProcessLoop& operator=(const ProcessLoop&) = delete;
 
+  /// When a tick takes place.
   struct Time {
     SteadyTime now;
     UtcTime utc_now;
@@ -39,7 +40,7 @@ class ProcessLoop {
   };
   void tick(const Time& time);
 
-  /// Reports that a tick took so long that the bodies' commands ran out.
+  /// Reports a tick that outlasted the bodies' commands.
   void on_overrun(UtcTime utc_now, Duration took) { events_.on_overrun(utc_now, took); }
 
   /// Records and reports for the last time, and shuts the drivers down.
@@ -66,7 +67,7 @@ class ProcessLoop {
   Scene scene_;
   bool world_moves_ = false;
   Histogram state_age_;  // of the states that all robots used
-  FlowPlan flow_;        // in force, where its density is asked for
+  FlowPlan flow_;        // in force; kept only if its density is read
   DensityForecast density_;
   std::vector<link::RobotStateMessage> published_;
   std::vector<Vec2> positions_m_;

@@ -15,6 +15,7 @@
 namespace swarm::agent {
 namespace {
 
+/// The options as parsed, before they are checked.
 struct CommandLine {
   ProcessOptions options;
   std::uint32_t first = 0;
@@ -41,6 +42,8 @@ void add_options(CLI::App& app, CommandLine& line) {
   shell::add_common_options(app);
 }
 
+/// --describe works without a run: the launcher calls it to learn what methods and drivers a
+/// program has.
 Result<ExitCode> run(int argc, char** argv, const RobotRegistry& registry) {
   CLI::App app(
       "Moves one robot (or several) of a run, knowing only the plan, the map and the neighbours "
@@ -56,6 +59,7 @@ Result<ExitCode> run(int argc, char** argv, const RobotRegistry& registry) {
     std::puts(to_json(catalogue_of(registry)).c_str());
     return ExitCode::kOk;
   }
+  // Not required() of the parser, as --describe needs neither.
   if (app.count("--run") == 0 || app.count("--ids") == 0) {
     return fail(ErrorCode::kBadInput, "--run and --ids are required; the launcher gives both");
   }

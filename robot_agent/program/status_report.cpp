@@ -9,9 +9,10 @@
 namespace swarm::agent {
 namespace {
 
-/// Robots whose status is one message, where a process has so many.
+/// Largest number of robots whose status is one message.
 constexpr std::size_t kGroup = 100;
 
+/// The group that begins with a robot; the last one may be smaller.
 std::span<const LocalRobot> group(std::span<const LocalRobot> robots, std::size_t first) {
   return robots.subspan(first, std::min(kGroup, robots.size() - first));
 }
@@ -23,8 +24,10 @@ bool has_updates(std::span<const LocalRobot> robots) {
 
 }  // namespace
 
+/// Groups take turns by their number, so that messages spread over the ticks of a status period.
 void StatusReport::on_tick(const Source& source) {
-  // All wait for all to have the plan: that is reported at once, as is that we are here.
+  // The launcher starts the mission once all robots have the plan: a new plan is reported at once,
+  // as is the presence of the process at its first tick.
   const std::uint32_t version = source.inbox.plan_version();
   const bool all_have_updates = ticks_ == 0 || version != plan_reported_;
   plan_reported_ = version;
@@ -43,7 +46,7 @@ void StatusReport::publish_all(const Source& source) {
   }
 }
 
-/// What the process received and refused belongs to no single robot: the first group reports it.
+/// Counters of the process belong to no single robot: the message of the first group carries them.
 void StatusReport::publish_group(const Source& source, std::size_t first) {
   message_.first_robot_id = source.robots[first].loop.id().value();
   message_.process_id = static_cast<std::uint32_t>(::getpid());

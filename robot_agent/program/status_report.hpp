@@ -15,13 +15,13 @@
 namespace swarm::agent {
 
 /// Publishes the status of the robots of a process: groups of them in turn, at the mission's rate
-/// and whenever a robot has news.
+/// and at once whenever a robot changes its mode or comes to rest.
 class StatusReport {
  public:
   StatusReport(const Mission& mission, link::Writer<link::StatusMessage>& writer)
       : cadence_(mission.control.rate_hz, mission.link.status_hz), writer_(writer) {}
 
-  /// What a status is made of.
+  /// The data of a status message.
   struct Source {
     std::span<const LocalRobot> robots;
     Inbox& inbox;
@@ -41,7 +41,7 @@ class StatusReport {
 
   StatusCadence cadence_;
   link::Writer<link::StatusMessage>& writer_;
-  link::StatusMessage message_;  // kept for its memory
+  link::StatusMessage message_;  // reused, so that no tick allocates
   std::uint64_t ticks_ = 0;
   std::uint32_t plan_reported_ = 0;  // version
 };

@@ -9,12 +9,13 @@
 namespace swarm::agent {
 namespace {
 
-constexpr int kDeep = 6;            // bends of bends
-constexpr double kBetween_m = 0.3;  // a gap between bodies that a robot goes through, beside it
-constexpr double kSkim_m = 0.1;     // what is left of a bend under way to it
-constexpr double kWall_m = 0.05;    // surface distance to obstacles that are no bodies
+constexpr int kDeep = 6;            // recursion depth of bends, and passes of free_position()
+constexpr double kBetween_m = 0.3;  // width beyond its own of a gap that a robot passes
+constexpr double kSkim_m = 0.1;     // clearance from bodies on the lines of a bend
+constexpr double kWall_m = 0.05;    // clearance from obstacles that are no bodies
 constexpr double kLeast_m = 1e-6;
 
+/// The computation for one pair of world and options: collects the bodies once.
 class Detour {
  public:
   Detour(const World& world, const DetourOptions& options) : world_(world), options_(options) {
@@ -23,6 +24,8 @@ class Detour {
     }
   }
 
+  // Replaces the line by a bend around the first body on it, and each line of that in turn. Tries
+  // the shorter side first; if neither side is free of walls, the line stays.
   void bend(const Vec2& from_m, const Vec2& to_m, double touch_m, int deep,
             std::vector<Vec2>& points) const {
     const std::optional<std::size_t> first = first_on(from_m, to_m, touch_m);
@@ -41,6 +44,8 @@ class Detour {
     }
   }
 
+  // Pushes a point out of all bodies in turn, in several passes since one push may lead into
+  // another body. The result counts only if it is free; otherwise the point stays.
   Vec2 free_position(const Vec2& point_m) const {
     Vec2 p = point_m;
     for (int pass = 0; pass < kDeep; ++pass) {
@@ -68,7 +73,7 @@ class Detour {
           std::clamp((bodies_[i].center_m - from_m).dot(line) / length_m, 0.0, length_m);
       const Vec2 nearest_m = from_m + along_m / length_m * line;
       const double wanted_m = bodies_[i].radius_m + options_.radius_m + touch_m;
-      // One that an end is at is not on the line: it cannot be bent around.
+      // A body beside an end point of the line cannot be bent around: the end stays.
       if (along_m <= 0.0 || along_m >= length_m || along_m >= first_m) continue;
       if ((bodies_[i].center_m - nearest_m).norm() >= wanted_m) continue;
       first = i;
@@ -77,7 +82,8 @@ class Detour {
     return first;
   }
 
-  /// Adds a body, and all that a robot does not fit between the members and.
+  /// Adds a body and, one after the other, all bodies with a gap to a member that a robot does not
+  /// fit through. O(bodies²).
   void grow(std::vector<std::size_t>& members, std::size_t by) const {
     std::size_t looked_at = members.size();
     members.push_back(by);
@@ -97,7 +103,7 @@ class Detour {
     return std::find(members.begin(), members.end(), i) != members.end();
   }
 
-  /// A body that is at one of the points and is no member yet.
+  /// A body too near to one of the points that is not a member yet.
   std::optional<std::size_t> body_at(const std::vector<Vec2>& points,
                                      const std::vector<std::size_t>& members) const {
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
@@ -110,7 +116,8 @@ class Detour {
     return std::nullopt;
   }
 
-  /// The points beside a body, its cluster, and what else is where the points would be.
+  /// The points beside the cluster of a body. Bodies in the place of the points join the cluster,
+  /// until there are none.
   std::vector<Vec2> around(const Vec2& from_m, const Vec2& to_m, std::size_t first,
                            bool shorter_side) const {
     std::vector<std::size_t> members;
@@ -138,6 +145,7 @@ class Detour {
       left_m = std::max(left_m, off.dot(left) + wanted_m);
       right_m = std::min(right_m, off.dot(left) - wanted_m);
     }
+    // Offsets to the left of the line are positive.
     const double aside_m = (left_m <= -right_m) == shorter_side ? left_m : right_m;
     std::vector<Vec2> points = {from_m + begin_m * along + aside_m * left};
     if (end_m - begin_m > options_.radius_m) {
@@ -146,6 +154,7 @@ class Detour {
     return points;
   }
 
+  // Whether the lines through the points are free of walls; bodies on them are bent around later.
   bool is_free(const Vec2& from_m, const std::vector<Vec2>& points, const Vec2& to_m) const {
     const double clearance_m = options_.radius_m + kWall_m;
     const World& walls = world_.without_bodies();

@@ -8,6 +8,7 @@
 
 namespace swarm::agent {
 
+/// The distances of a detour.
 struct DetourOptions {
   double radius_m = 0.2;
   double touch_m = 0.3;  ///< a path nearer than this to a body is bent …
@@ -15,9 +16,10 @@ struct DetourOptions {
 };
 
 /// Points that lead from a point to another around the bodies of fallen robots on the straight line
-/// between them, in order, without its ends; empty if the line is free. Bodies no robot fits
-/// between are gone around together, on the shorter side that is free; where neither is, the line
-/// stays straight and avoidance is left to the safety filter. O(bodies²) for each body on the line.
+/// between them, in order, without its ends; empty if the line is free. The
+/// detour passes bodies that no robot fits between together, on the shorter side that is free;
+/// where neither is, the line stays straight and avoidance is left to the safety filter. O(bodies²)
+/// for each body on the line.
 std::vector<Vec2> around_bodies(const Vec2& from_m, const Vec2& to_m, const World& world,
                                 const DetourOptions& options);
 

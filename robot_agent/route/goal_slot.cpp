@@ -7,10 +7,12 @@
 namespace swarm::agent {
 namespace {
 
+// Arrival: distance to the slot. Progress: a smaller gain does not count. Blocked: no progress for
+// this time.
 constexpr double kNear_m = 1.0;
 constexpr double kProgress_m = 0.1;
 constexpr Duration kBlockedAfter = std::chrono::seconds(2);
-constexpr double kAtRest_m = 0.1;  // from the place: stay
+constexpr double kAtRest_m = 0.1;  // arrived robots this near to their slot rest
 constexpr double kRim = 8.2;       // squared Mahalanobis distance; the 99 % ellipse is at 9.21
 
 }  // namespace
@@ -18,6 +20,9 @@ constexpr double kRim = 8.2;       // squared Mahalanobis distance; the 99 % ell
 GoalSlot::GoalSlot(const Gaussian& goal, const Vec2& slot_m, Shared<GoalSlotOptions> options)
     : options_(std::move(options)), goal_(goal), slot_m_(slot_m) {}
 
+/// Arrival with hysteresis: within the rim to arrive, within the ellipse to stay arrived. Without
+/// progress for 2 s a robot inside takes its position as its slot; one outside switches its aim
+/// between slot and mean.
 bool GoalSlot::has_arrived(SteadyTime now, const Vec2& position_m) {
   const bool inside = goal_.contains_99(position_m);
   if (arrived_) {
@@ -38,11 +43,12 @@ bool GoalSlot::has_arrived(SteadyTime now, const Vec2& position_m) {
     }
     nearest_m_ = std::numeric_limits<double>::infinity();
   }
-  // At the very rim it could be pushed out again.
+  // Within the rim only: between rim and ellipse other robots could push it out again.
   const bool well_inside = goal_.mahalanobis_squared(position_m) <= kRim;
   return arrived_ = well_inside && (slot_m_ - position_m).norm() < kNear_m;
 }
 
+/// The push u of goal_slot.hpp. O(close neighbours).
 Vec2 GoalSlot::room(const ControlView& view) const {
   const double own = goal_.mahalanobis_squared(view.position_m);
   Vec2 push = Vec2::Zero();
@@ -60,9 +66,12 @@ Vec2 GoalSlot::room(const ControlView& view) const {
   return options_->room_gain_hz * push;
 }
 
+/// While pushed the slot follows the robot, so it does not return to where it made room; without a
+/// push it drives back to the slot.
 Vec2 GoalSlot::keep(const ControlView& view) {
   Vec2 push = room(view);
-  // Not out of the goal for anybody's sake: the nearer to its edge, the more inwards.
+  // Pushes may not drive the robot out of the goal: beyond the rim the outward part is removed, and
+  // an inward velocity grows towards the edge.
   const double beyond_rim = goal_.mahalanobis_squared(view.position_m) - kRim;
   if (beyond_rim > 0.0) {
     const Vec2 inwards = (goal_.mean_m() - view.position_m).normalized();

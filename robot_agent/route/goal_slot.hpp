@@ -10,6 +10,7 @@
 
 namespace swarm::agent {
 
+/// How arrived robots make room and keep their slots.
 struct GoalSlotOptions {
   double radius_m = 0.2;
   double room_gap_m = 0.4;  ///< a neighbour nearer than this pushes; above the filter's margin
@@ -17,34 +18,35 @@ struct GoalSlotOptions {
   double inner_share = 0.75;   ///< of the push of a neighbour that is farther in
   double outside_share = 3.0;  ///< … that is still outside of the goal
   double approach_gain_hz = 0.8;
-  double approach_max_mps = 0.4;  ///< of a robot that has arrived, to its place
+  double approach_max_mps = 0.4;  ///< of a robot that has arrived, to its slot
 };
 
-/// A robot's place in the goal, and how a crowd finds room in it.
+/// A robot's slot in the goal, and how all robots find room in it.
 ///
-/// Every robot has a place of its own, but in a full goal the ways to the inner ones are blocked by
-/// robots that came before. Three rules, from what a robot hears alone, let everybody in:
+/// Every robot has a slot of its own, but in a full goal the paths to the inner slots are blocked
+/// by robots that came before. Three rules, which need only the states of neighbours, let all
+/// robots in:
 ///
-///   - one that has come no nearer to its place for 2 s takes the place where it is, if it is in
-///     the goal's 99 % ellipse; otherwise it heads for the goal's mean, or again for its place;
+///   - one that has come no nearer to its slot for 2 s takes its position as its slot, if that is
+///     in the goal's 99 % ellipse; otherwise it heads for the goal's mean, or again for its slot;
 ///   - one that has arrived makes room: it moves away from neighbours nearer than room_gap,
 ///
 ///       u = k Σ_j w_j (D_j − d_j) (x − x_j)/d_j
 ///
 ///     with d_j the distance of the centres, D_j = r + r_j + room_gap, and w_j = outside_share for
 ///     those outside of the ellipse, 1 for those farther out than itself in Mahalanobis distance,
-///     inner_share for the others, so that pressure from outside is passed on through the crowd to
-///     where there is room;
-///   - and it takes the place where that ends, not beyond the rim of the ellipse: from there on it
-///     comes back inwards, the faster the nearer to the edge.
+///     inner_share for the others, so that pressure from outside is passed on inwards to where
+///     there is room;
+///   - its slot moves with it while it makes room, but not out of the goal: beyond the rim of the
+///     ellipse it drives inwards, the faster the nearer to the edge.
 ///
-/// So a full goal is filled like a vessel, and one with room is left as planned.
+/// So a full goal fills up evenly, and in one with room the robots keep their planned slots.
 class GoalSlot {
  public:
   GoalSlot() = default;
   GoalSlot(const Gaussian& goal, const Vec2& slot_m, Shared<GoalSlotOptions> options);
 
-  /// Asked once a tick. Arrived: in the ellipse and within 1 m of its place.
+  /// To be called once a tick. Arrived: well inside the ellipse and within 1 m of its slot.
   bool has_arrived(SteadyTime now, const Vec2& position_m);
 
   bool is_in_goal(const Vec2& position_m) const { return goal_.contains_99(position_m); }
@@ -55,7 +57,7 @@ class GoalSlot {
     return goal_.mahalanobis_squared(position_m) < kBeside;
   }
 
-  /// Whether it has come no nearer, outside of the goal.
+  /// Whether it heads for the mean, after 2 s without progress outside of the goal.
   bool is_blocked() const { return blocked_; }
 
   double left_m(const Vec2& position_m) const { return (slot_m_ - position_m).norm(); }
@@ -63,10 +65,10 @@ class GoalSlot {
   /// Where to head for.
   const Vec2& aim_m() const { return blocked_ ? goal_.mean_m() : slot_m_; }
 
-  /// The robot is held: no time without progress.
+  /// Restarts the time without progress: the robot is held.
   void wait(SteadyTime now) { progress_at_ = now; }
 
-  /// Velocity wished by a robot that has arrived [m/s]. O(neighbours).
+  /// Desired velocity of a robot that has arrived [m/s]. O(neighbours).
   Vec2 keep(const ControlView& view);
 
  private:

@@ -9,7 +9,7 @@
 namespace swarm::agent {
 namespace {
 
-constexpr double kReached_m = 0.3;  // reached, even if the next is not in sight
+constexpr double kReached_m = 0.3;  // reached, even if the next point is not in sight
 
 }  // namespace
 
@@ -22,14 +22,18 @@ GuidePoints::GuidePoints(const Polyline& path, Shared<GuidePointsOptions> option
   }
 }
 
+/// Line of sight to a point, as wide as body and clearance.
 bool GuidePoints::sees(const Vec2& position_m, const World& world, std::size_t point,
                        double clearance_m) const {
-  // Who stands nearer to an obstacle than that still sees what is in the open.
+  // The width of the line of sight is at most the clearance at its two ends: a robot near a wall
+  // still sees points in the open.
   const double least_m = std::min({world.distance_m(position_m), world.distance_m(points_m_[point]),
                                    options_->radius_m + clearance_m});
   return world.segment_is_free(position_m, points_m_[point], std::max(0.0, least_m - 1e-3));
 }
 
+/// Preference: the farthest later point with full clearance; the present one; a later one through
+/// any passable gap; the last earlier one.
 void GuidePoints::look(const Vec2& position_m, const World& world, bool in_goal) {
   std::size_t last = at_;
   while (last + 1 < points_m_.size() && behind_m_[at_] - behind_m_[last + 1] < options_->sight_m) {
@@ -44,7 +48,7 @@ void GuidePoints::look(const Vec2& position_m, const World& world, bool in_goal)
     if (take_if_seen(i, options_->clearance_m)) return;
   }
   if (sees(position_m, world, at_, options_->passable_m)) return;
-  // Through a narrow gap onwards rather than back: one in it would go to and fro.
+  // Onwards through a narrow gap rather than back: otherwise a robot in the gap would oscillate.
   for (std::size_t i = last; i > at_; --i) {
     if (take_if_seen(i, options_->passable_m)) return;
   }
@@ -54,6 +58,7 @@ void GuidePoints::look(const Vec2& position_m, const World& world, bool in_goal)
   }
 }
 
+/// Looks only every few ticks, as lines of sight are costly; reaching a point is checked at each.
 const Vec2& GuidePoints::update(const Vec2& position_m, const World& world, bool in_goal) {
   if (looks_in_-- == 0) {
     looks_in_ = options_->look_every - 1;

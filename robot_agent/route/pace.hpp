@@ -9,6 +9,7 @@
 
 namespace swarm::agent {
 
+/// Gains and limits of the pace.
 struct PaceOptions {
   double look_ahead_s = 6.0;      ///< T: the carrot is this far ahead in plan time
   double gain_hz = 0.3;           ///< k
@@ -30,6 +31,7 @@ class Pace {
   static constexpr double kPast_m = 0.8;      ///< a robot this far past the carrot returns to it
   static constexpr double kReturn_mps = 0.5;  ///< … at this speed at most
 
+  /// The pace at one plan time.
   struct Now {
     double reference_m = 0.0;  ///< l*(τ)
     double carrot_m = 0.0;     ///< c
@@ -59,7 +61,7 @@ class Pace {
         .pace_hz = options.gain_hz,
         .cruise_mps = options.cruise_mps};
     if (!now.is_last) return speed;
-    // Where its reference has come to rest already, the robot settles as without a clock.
+    // The reference has reached the end already: the robot approaches as without a clock.
     if (now.feed_mps <= 0.0) {
       speed.pace_mps = options.approach_gain_hz * rest_m;
       speed.pace_hz = options.approach_gain_hz;
@@ -70,6 +72,7 @@ class Pace {
     return speed;
   }
 
+  /// Plan time by which a robot at this arc length is behind.
   double lag_s(const PlanTime& t, double at_m) const {
     return schedule_.lag_s(t.plan_time_s, at_m);
   }

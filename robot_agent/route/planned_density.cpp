@@ -14,6 +14,7 @@ constexpr double kFar = 4.0;  // standard deviations: 0.03 % of a part's peak
 
 }  // namespace
 
+/// Sum of the parts' Gaussian densities and its gradient −Σ p Σ⁻¹(x − μ). O(parts).
 PlannedDensity::Value PlannedDensity::at(const Vec2& position_m) const {
   Value value;
   for (const Part& part : parts) {
@@ -28,6 +29,8 @@ PlannedDensity::Value PlannedDensity::at(const Vec2& position_m) const {
   return value;
 }
 
+/// Smoothing by a Gaussian kernel adds its variance to each covariance. Inverses and peaks are
+/// computed here, once for all robots of a process.
 void update(PlannedDensity& density, const FlowPlan& plan, double plan_time_s, double robots,
             double kernel_sigma_m) {
   density.parts.clear();

@@ -8,6 +8,8 @@
 
 namespace swarm::agent {
 
+/// Arc lengths by a running sum; vertices nearer than 1 µm to the last one are dropped, as they
+/// have no tangent.
 Polyline::Polyline(const std::vector<Vec2>& vertices_m) {
   SWARM_ASSERT(!vertices_m.empty());
   for (const Vec2& v : vertices_m) {
@@ -19,6 +21,8 @@ Polyline::Polyline(const std::vector<Vec2>& vertices_m) {
   length_m_ = arc_.back();
 }
 
+/// Linear search from `near`: successive queries are close to each other, so a few steps are
+/// enough.
 Polyline::Segment Polyline::segment(double s_m, std::size_t near) const {
   if (vertices_.size() == 1) return {.begin_m = vertices_.front(), .end_m = vertices_.front()};
   std::size_t i = std::min(near, arc_.size() - 2);
@@ -27,6 +31,7 @@ Polyline::Segment Polyline::segment(double s_m, std::size_t near) const {
   return {i, vertices_[i], vertices_[i + 1], arc_[i], arc_[i + 1]};
 }
 
+/// A path of one vertex has no direction: its tangent is 0.
 Polyline::Position Polyline::Segment::position(double s_m) const {
   const double length_m = end_s_m - begin_s_m;
   if (length_m <= 0.0) return {begin_m, Vec2::Zero()};

@@ -8,17 +8,20 @@
 namespace swarm::agent {
 namespace {
 
-constexpr double kStep_m = 0.25;    // of progress
+constexpr double kStep_m = 0.25;    // step by which progress moves on
 constexpr double kReached_m = 0.5;  // an aim this near counts as reached
+// How far back along the path a visible point is looked for.
 constexpr double kBackTrack_m = 30.0;
-constexpr double kSample_m = 0.5;    // of the planned clearance
+constexpr double kSample_m = 0.5;    // spacing of the samples of planned clearance
 constexpr double kLeast_m = 0.05;    // surface clearance of any line of sight
-constexpr double kTouch_m = 1e-3;    // a line of sight begins where the robot is
+constexpr double kTouch_m = 1e-3;    // tolerance at the robot's end of a line of sight
 constexpr double kKeepAim_m = 1.5;   // an aim this far ahead is kept between two looks,
 constexpr double kAtCarrot_m = 0.1;  // and one this near the carrot
 
 }  // namespace
 
+/// Samples the clearance of the path once, so that looks only read it. Costs a distance query per
+/// half metre.
 Pursuit::Pursuit(Polyline path, const World& world, Shared<PursuitOptions> options)
     : path_(std::move(path)),
       options_(std::move(options)),
@@ -29,7 +32,8 @@ Pursuit::Pursuit(Polyline path, const World& world, Shared<PursuitOptions> optio
   clearance_m_.reserve(pieces);
   std::size_t segment = 0;
   for (std::size_t i = 0; i < pieces; ++i) {
-    // The distance changes by at most the way: half a piece on both sides of the sample.
+    // The distance field has slope 1 at most: within half a piece of the sample the clearance is
+    // less by at most that half.
     const double s = (static_cast<double>(i) + 0.5) * kSample_m;
     const Polyline::Segment on = path_.segment(s, segment);
     segment = on.index;
@@ -42,6 +46,7 @@ std::size_t Pursuit::piece_of(double s_m) const {
   return std::min(clearance_m_.size() - 1, static_cast<std::size_t>(s_m / kSample_m));
 }
 
+/// Least planned clearance between two arc lengths. O(pieces between them).
 double Pursuit::planned_clearance_m(double from_s_m, double to_s_m) const {
   const std::size_t last = piece_of(to_s_m);
   float least_m = clearance_m_[piece_of(from_s_m)];
@@ -57,20 +62,24 @@ void Pursuit::move_to(double s_m) {
   here_ = segment_.position(s_m);
 }
 
+/// Moves progress on past all points that count as passed: nearer than passed_m, or beside the path
+/// and behind the robot. An aim that was reached by a short cut is progress at once.
 void Pursuit::advance(const Vec2& position_m) {
   if (aim_s_m_ > s_m_ && (aim_m_ - position_m).norm() < kReached_m) move_to(aim_s_m_);
   const double length = path_.length_m();
   while (s_m_ < length) {
     const Vec2 offset = position_m - here_.point_m;
     const bool near = offset.norm() < options_->passed_m;
-    // Only beside the way does "ahead of s" mean passed: a way that doubles back has points far off
-    // whose tangents say the same.
+    // "Ahead of s along the tangent" means passed only near the path: where the path doubles back,
+    // it holds at points far off, too.
     const bool beside = offset.norm() < options_->look_ahead_m && offset.dot(here_.tangent) > 0.0;
     if (!near && !beside) break;
     move_to(std::min(length, s_m_ + kStep_m));
   }
 }
 
+/// Describes the present aim. Where progress has reached the aim before the path's end, past_m is
+/// how far the robot is past the carrot along the tangent.
 Pursuit::Aim Pursuit::aim(const Vec2& position_m) const {
   Aim aim{.point_m = aim_m_,
           .left_m = (aim_m_ - position_m).norm() + path_.length_m() - aim_s_m_,
@@ -83,10 +92,11 @@ Pursuit::Aim Pursuit::aim(const Vec2& position_m) const {
   return aim;
 }
 
+/// Lines of sight are the cost of a pursuit: they are checked every look_every ticks only.
 Pursuit::Aim Pursuit::update(const Vec2& position_m, const World& world, double carrot_m) {
   carrot_m_ = std::min(carrot_m, path_.length_m());
   advance(position_m);
-  // Between two looks the aim is the one that was seen, while it is well ahead.
+  // Between two looks the last visible aim is kept, while it is well ahead or at the carrot.
   const bool is_kept =
       aim_s_m_ <= carrot_m_ && (aim_s_m_ - s_m_ > kKeepAim_m || carrot_m_ - aim_s_m_ < kAtCarrot_m);
   if (looks_in_ > 0 && is_kept) {
@@ -97,11 +107,14 @@ Pursuit::Aim Pursuit::update(const Vec2& position_m, const World& world, double 
   return look(position_m, world);
 }
 
+/// Halves the look-ahead until the point is visible; failing that, goes back along the path. A
+/// robot that sees no point at all aims at its progress and looks again at the next tick.
 Pursuit::Aim Pursuit::look(const Vec2& position_m, const World& world) {
   const double length = path_.length_m();
   const double most_m = options_->radius_m + std::max(kLeast_m, options_->keep_clearance_m);
   const double own_clearance =
       std::max(0.0, world.distance_up_to_m(position_m, most_m + kTouch_m) - kTouch_m);
+  // As wide as the clearance planned for the stretch, but no wider than the room at the robot.
   const auto visible = [&](double s) {
     const double planned = planned_clearance_m(std::min(s_m_, s), std::max(s_m_, s));
     const double wanted = std::max(options_->radius_m + kLeast_m, planned);

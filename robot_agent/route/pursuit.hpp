@@ -12,33 +12,35 @@
 
 namespace swarm::agent {
 
+/// How far a pursuit looks ahead, and how wide.
 struct PursuitOptions {
   double look_ahead_m = 12.0;
   double radius_m = 0.2;
-  double passed_m = 0.7;          ///< a point of the way this near counts as passed
+  double passed_m = 0.7;          ///< a point of the path this near counts as passed
   double keep_clearance_m = 2.0;  ///< planned surface clearance up to this is kept by short cuts
   std::uint32_t look_every = 5;   ///< ticks between two looks for a farther aim
 };
 
 /// Follows a path up to a carrot on it: progress s moves on when the robot has passed the point at
 /// s, and the aim is the farthest of s + L, s + L/2, s + L/4 … before the carrot that is in line of
-/// sight. If even
-/// s is hidden (the robot was pushed around a corner), the aim falls back along the way to the last
-/// point it sees.
+/// sight. If even s is hidden (the robot was pushed around a corner), the aim falls back along the
+/// path to the last visible point.
 ///
 /// A short cut keeps the risk that was planned: its line of sight is as wide as the smallest
-/// clearance of the stretch of the way it replaces (up to keep_clearance_m), so a robot never gets
-/// nearer to an obstacle than its own way does there, and short cuts are taken where there is room.
+/// clearance of the stretch of path it replaces (up to keep_clearance_m), so a robot never gets
+/// nearer to an obstacle than its own path does there, and short cuts are taken where there is
+/// room.
 class Pursuit {
  public:
   Pursuit() = default;
   Pursuit(Polyline path, const World& world, Shared<PursuitOptions> options);
 
+  /// The point to head for, and what is left of the path.
   struct Aim {
     Vec2 point_m = Vec2::Zero();
     double left_m = 0.0;  ///< of the path: straight to the aim, from there along it to its end
     double rest_m = 0.0;  ///< of it from the aim to the carrot
-    double past_m = 0.0;  ///< > 0: the robot is past the carrot by so much
+    double past_m = 0.0;  ///< > 0: the robot is past the carrot by this distance
     bool visible = false;
   };
 
@@ -65,14 +67,14 @@ class Pursuit {
   Polyline path_;
   Shared<PursuitOptions> options_;
   double s_m_ = 0.0;
-  Polyline::Segment segment_;  // that s_m_ is on; the others are far off in memory
+  Polyline::Segment segment_;  // the one s_m_ is on, kept here as the path is far off in memory
   Polyline::Position here_;       // at s_m_
   double carrot_m_ = 0.0;      // of the last update
   double aim_s_m_ = 0.0;       // of the last visible aim
   Vec2 aim_m_ = Vec2::Zero();
   std::uint32_t looks_in_ = 0;  // ticks until the next look
   std::vector<float>
-      clearance_m_;  // of the way's centre line, every kSample_m, least of each piece
+      clearance_m_;  // least clearance of each piece of kSample_m of the path
 };
 
 }  // namespace swarm::agent

@@ -17,13 +17,14 @@
 namespace swarm::agent {
 namespace {
 
-/// A Gaussian that a robot passes, and its own point in it.
+/// A Gaussian that a robot passes, and its own point in it: y in docs/notation.md.
 struct Station {
   Gaussian gaussian;
   double time_s = 0.0;
   Vec2 offset_m = Vec2::Zero();  // from the mean, as transported
 };
 
+/// Limits an offset to a Mahalanobis distance: a robot far from the Gaussian enters it at its edge.
 Vec2 clamp_offset(const Gaussian& g, const Vec2& offset, double offset_max) {
   const double d = std::sqrt(g.mahalanobis_squared(g.mean_m() + offset));
   return d > offset_max ? Vec2(offset * (offset_max / d)) : offset;
@@ -43,7 +44,9 @@ std::uint32_t follow(const FlowPlan& plan, std::uint32_t node, double share,
   }
 }
 
-/// How far each station's offset may stay: 1 as planned, 0 on the mean.
+/// The robot's point in each station. An offset whose point is too near to an obstacle shrinks
+/// towards the mean by bisection; then both ends of each leg that is not free shrink, in the last
+/// two passes down to the means.
 std::vector<Vec2> free_vertices(const std::vector<Station>& stations, const World& world,
                                 const RouteOptions& options) {
   const Box inside{world.bounds_m().min_m.array() + options.radius_m,
@@ -83,13 +86,16 @@ std::vector<Vec2> free_vertices(const std::vector<Station>& stations, const Worl
   return vertices;
 }
 
+/// Completes the stations to a sink and turns them into path and schedule: each station's plan time
+/// belongs to the arc length of its vertex, detours around bodies included.
 Route finish(const FlowPlan& plan, std::uint32_t node, double share, std::vector<Station> stations,
              const World& world, const RouteOptions& options,
              std::optional<Vec2> begin_m = std::nullopt) {
   const std::uint32_t last = follow(plan, node, share, stations);
   const auto sink = std::find(plan.sinks().begin(), plan.sinks().end(), last);
   SWARM_ASSERT(sink != plan.sinks().end());
-  // Fallen robots are small against a plan: their bodies bend a path, they do not narrow the swarm.
+  // Bodies of fallen robots are small against a plan: they bend single paths, but do not shrink
+  // offsets.
   const std::vector<Vec2> own_m = free_vertices(stations, world.without_bodies(), options);
   const DetourOptions detour{.radius_m = options.radius_m, .touch_m = options.leg_clearance_m};
   std::vector<Vec2> vertices;
@@ -118,6 +124,7 @@ Route finish(const FlowPlan& plan, std::uint32_t node, double share, std::vector
 
 }  // namespace
 
+/// The source is drawn by the robot's share; the path begins at the robot's offset in it.
 Route route_from_start(const FlowPlan& plan, double share, const Vec2& position_m,
                        const World& world, const RouteOptions& options) {
   const std::uint32_t node = plan.sources()[draw_source(plan, share)];
@@ -127,6 +134,7 @@ Route route_from_start(const FlowPlan& plan, double share, const Vec2& position_
   return finish(plan, node, share, {{g, from.time.count(), offset}}, world, options);
 }
 
+/// The path begins at the robot and leads into the named source.
 Route route_from_source(const FlowPlan& plan, std::uint32_t source, double share,
                         const Vec2& position_m, const World& world, const RouteOptions& options) {
   const std::uint32_t node = plan.sources()[source];
@@ -136,6 +144,9 @@ Route route_from_source(const FlowPlan& plan, std::uint32_t source, double share
                 position_m);
 }
 
+/// Enters at the Gaussian along any leg that is nearest in squared Mahalanobis distance plus
+/// squared time difference in units of kJoin_s; one in line of sight goes before any other. O(17 ·
+/// legs).
 Route route_from_here(const FlowPlan& plan, double share, const Vec2& position_m,
                       const World& world, const RouteOptions& options,
                       std::optional<double> plan_time_s) {
@@ -155,6 +166,7 @@ Route route_from_here(const FlowPlan& plan, double share, const Vec2& position_m
       const double time_s = (from.time + along * (to.time - from.time)).count();
       const double off_s = plan_time_s ? (time_s - *plan_time_s) / kJoin_s : 0.0;
       const double d = g.mahalanobis_squared(position_m) + off_s * off_s;
+      // Lines of sight are costly: only candidates that can win are checked.
       if (best_visible && d >= best) continue;
       const bool visible = world.segment_is_free(position_m, g.mean_m(), options.radius_m);
       if ((visible && !best_visible) || (visible == best_visible && d < best)) {

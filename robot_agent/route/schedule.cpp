@@ -11,13 +11,14 @@ namespace {
 
 constexpr double kFlat_m = 1e-6;  // per segment: the plan waits
 
-/// Where a line through two entries is at `x`, both named by the caller.
+/// The line through (x0, y0) and (x1, y1) at x, clamped to between them; y1 if x0 = x1.
 double interpolate(double x, double x0, double x1, double y0, double y1) {
   return x1 > x0 ? y0 + (y1 - y0) * std::clamp((x - x0) / (x1 - x0), 0.0, 1.0) : y1;
 }
 
 }  // namespace
 
+/// The mean speed leaves waits out: it converts path before the schedule's begin into time.
 Schedule::Schedule(std::vector<Entry> entries) : entries_(std::move(entries)) {
   SWARM_ASSERT(!entries_.empty());
   double moving_s = 0.0;
@@ -32,6 +33,7 @@ Schedule::Schedule(std::vector<Entry> entries) : entries_(std::move(entries)) {
   if (moving_s > 0.0 && moved_m > kFlat_m) mean_speed_mps_ = moved_m / moving_s;
 }
 
+/// Linear search from the segment found last, as plan time moves on slowly.
 std::size_t Schedule::segment_at(double plan_time_s) const {
   std::size_t i = near_;
   while (i + 2 < entries_.size() && entries_[i + 1].time_s <= plan_time_s) ++i;
@@ -48,6 +50,8 @@ double Schedule::at_m(double plan_time_s) const {
   return interpolate(plan_time_s, a.time_s, b.time_s, a.at_m, b.at_m);
 }
 
+/// τ minus the time at which l* passes the arc length. While l* waits there, any time of the wait
+/// has lag 0: a robot that waits with the plan is in time.
 double Schedule::lag_s(double plan_time_s, double at_m) const {
   const Entry& first = entries_.front();
   if (at_m < first.at_m) {
@@ -66,7 +70,7 @@ double Schedule::lag_s(double plan_time_s, double at_m) const {
   const double from_s = at_start ? first.time_s : time_in(i);
   while (i + 1 < entries_.size() && entries_[i + 1].at_m <= at_m + kFlat_m) ++i;
   const bool at_end = i + 1 == entries_.size();
-  if (at_end) return std::min(0.0, plan_time_s - from_s);  // it stays there for good
+  if (at_end) return std::min(0.0, plan_time_s - from_s);  // the end: no lag however late
   const double to_s = std::max(from_s, time_in(i));
   if (plan_time_s < from_s) return at_start ? 0.0 : plan_time_s - from_s;
   return std::max(0.0, plan_time_s - to_s);

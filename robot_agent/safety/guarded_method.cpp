@@ -6,6 +6,8 @@
 
 namespace swarm::agent {
 
+/// Calls the method unless it has failed before. The first exception is kept as the fault; from
+/// then on every call returns `otherwise`, so a robot with a broken method stays where it is.
 template <class T, class Call>
 T GuardedMethod::guarded(T otherwise, Call call) const {
   if (!fault_.empty()) return otherwise;
@@ -19,12 +21,14 @@ T GuardedMethod::guarded(T otherwise, Call call) const {
   return otherwise;
 }
 
+/// Comparisons with NaN are false, so the safety filter would not limit one: it is caught here.
 Vec2 GuardedMethod::checked(const Vec2& velocity_mps) {
   if (velocity_mps.allFinite()) return velocity_mps;
   fault_ = "the control method returned a velocity that is not finite";
   return Vec2::Zero();
 }
 
+/// Goals first: a method may need them to begin a route.
 void GuardedMethod::begin(const FlowPlan& plan, const Route& route, const World& world) {
   guarded(0, [&](ControlMethod& m) {
     m.set_goals(plan);

@@ -10,9 +10,9 @@
 
 namespace swarm::agent {
 
-/// A control method behind a fence: what it throws ends here, and a velocity that is not finite is
-/// not passed on. After either the method is not called again and fault() has the reason; the
-/// answers are then those of a robot that stays where it is.
+/// Isolates the robot from faults of its control method: exceptions end here, and a velocity that
+/// is not finite is not passed on. After either the method is not called again and fault() has the
+/// reason; the results are then those of a robot that stays where it is.
 class GuardedMethod {
  public:
   explicit GuardedMethod(ControlSlot method) : method_(std::move(method)) {}

@@ -8,13 +8,16 @@
 namespace swarm::agent {
 namespace {
 
+// Tolerance for rounding, far below any speed that matters.
 constexpr double kSlack_mps = 1e-9;
 
-/// The point of the line n·u = b nearest to `desired_velocity` that the disc and the earlier half-planes allow.
+/// The point of the line n·u = b nearest to `desired_velocity` that the disc and the earlier
+/// half-planes allow.
 std::optional<Vec2> nearest_on_line(const Vec2& desired_velocity, std::span<const HalfPlane> earlier,
                                     const HalfPlane& line, double speed_max) {
   const double half_chord_squared = speed_max * speed_max - line.bound_mps * line.bound_mps;
   if (half_chord_squared < 0.0) return std::nullopt;  // the line misses the disc
+  // The line is foot + t along; disc and half-planes bound t to [low, high].
   const Vec2 foot = line.bound_mps * line.normal;
   const Vec2 along(-line.normal.y(), line.normal.x());
   double high = std::sqrt(half_chord_squared);
@@ -22,6 +25,7 @@ std::optional<Vec2> nearest_on_line(const Vec2& desired_velocity, std::span<cons
   for (const HalfPlane& other : earlier) {
     const double slope = other.normal.dot(along);
     const double room = other.bound_mps - other.normal.dot(foot);
+    // Parallel lines: the other half-plane contains all of this line or nothing of it.
     if (std::abs(slope) < 1e-12) {
       if (room < -kSlack_mps) return std::nullopt;
       continue;
@@ -40,6 +44,8 @@ std::optional<Vec2> nearest_on_line(const Vec2& desired_velocity, std::span<cons
 
 }  // namespace
 
+/// Seidel: adds one half-plane at a time. While the optimum so far lies within it, nothing changes;
+/// otherwise the new optimum lies on its line, a problem in one dimension.
 std::optional<Vec2> nearest_velocity(const Vec2& desired_mps, std::span<const HalfPlane> constraints,
                                      double speed_max_mps) {
   const double desired = desired_mps.norm();

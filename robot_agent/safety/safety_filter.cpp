@@ -13,25 +13,25 @@ namespace swarm::agent {
 namespace {
 
 constexpr int kBisections = 8;    // of the least violation: to 1 % of the speed
-constexpr double kBlocked = 0.1;  // less than this share of the wish is left: blocked
-constexpr std::array kTurns_rad{0.4, 0.9, 1.4};  // to the right, while blocked, until that is …
-constexpr double kFree = 0.3;                    // … faster than this share of the wish
-constexpr double kFollowMargin = 0.9;            // share of the margin that following may give up
-constexpr double kEvade = 1.0 / 3.0;             // of the margin: kept to who does not keep off
-constexpr double kFollows = 3.5;       // periods: who is known from before may have turned
-constexpr double kFresh = 1.01;        // periods: known at once, but for rounding
-constexpr double kWithdraw = 0.9;      // of the largest speed: out of an obstacle
-constexpr double kStopped_m2ps = 1e-9;  // does not leave anybody
+constexpr double kBlocked = 0.1;  // less than this share of the desired speed is left: blocked
+constexpr std::array kTurns_rad{0.4, 0.9, 1.4};  // to the right, tried in turn while blocked, …
+constexpr double kFree = 0.3;                    // … until this share of the desired speed is left
+constexpr double kFollowMargin = 0.9;            // share of the margin that following may use up
+constexpr double kEvade = 1.0 / 3.0;             // share of the margin kept to any other robot
+constexpr double kFollows = 3.5;       // periods: a robot whose state is older may have turned
+constexpr double kFresh = 1.01;        // periods: up to this age states are fresh (rounding)
+constexpr double kWithdraw = 0.9;      // share of the largest speed, out of an obstacle
+constexpr double kStopped_m2ps = 1e-9;  // slower does not move away from a neighbour
 constexpr double kNever_m2 = 1e9;
-constexpr double kLeastDesired_mps = 0.1;  // slower wishes are not worth a detour
+constexpr double kLeastDesired_mps = 0.1;  // slower desired velocities are not worth a turn
 
 }  // namespace
 
-/// The lines of one call: all robots that a thread ticks in turn share the memory, and it stays in
-/// the cache.
+/// The half-planes of one call. All robots that a thread ticks in turn share the buffers, which
+/// stay in the cache.
 struct SafetyFilter::Lines {
   std::vector<HalfPlane> buffer;
-  std::size_t obstacles = 0;  // the first ones
+  std::size_t obstacles = 0;  // the first of them belong to obstacles and bounds
   std::size_t count = 0;
   std::vector<HalfPlane> relaxed;
 
@@ -44,13 +44,17 @@ struct SafetyFilter::Lines {
 SafetyFilter::SafetyFilter(const World& world, Shared<SafetyOptions> options)
     : world_(world), options_(std::move(options)), fresh_(pace(0.0)) {}
 
+/// A half-plane for each convex part in reach and for the four bounds of the world: the surface gap
+/// above the margin may be closed within the 2Δt that a command lasts, plus the lag.
 void SafetyFilter::collect_obstacles(const Vec2& position_m, Lines& lines) const {
   const double horizon_s = 2.0 * to_seconds(options_->period) + options_->lag_s;
+  // Farther surfaces cannot bound the velocity: their bound would be above v_max.
   const double reach_m = options_->speed_max_mps * horizon_s + options_->obstacle_margin_m;
   const auto keep_off = [&](const Vec2& towards, double surface_gap_m, double coming_mps = 0.0) {
     if (surface_gap_m > reach_m + coming_mps * horizon_s) return;
     const double bound = (surface_gap_m - options_->obstacle_margin_m) / horizon_s - coming_mps;
-    // One inside withdraws as fast as it can; to ask for more would freeze it.
+    // A robot inside the margin withdraws at 0.9 v_max: a half-plane that asks for more might not
+    // meet the disc ‖u‖ ≤ v_max, and without a solution the robot would stop.
     lines.make_room(1);
     lines.buffer[lines.count++] = {towards, std::max(bound, -kWithdraw * options_->speed_max_mps)};
   };
@@ -69,7 +73,8 @@ void SafetyFilter::collect_obstacles(const Vec2& position_m, Lines& lines) const
   lines.obstacles = lines.count;
 }
 
-/// The time in which a neighbour's half of the gap may be closed, and what follows from it.
+/// Closing rate γ/(2T) and follow share β towards a neighbour whose information is this old, with
+/// T = Δt + γλ + a max(0, τ − Δt).
 SafetyFilter::Pace SafetyFilter::pace(double information_age_s) const {
   const double period_s = to_seconds(options_->period);
   const double time_s = period_s + options_->gap_share * options_->lag_s +
@@ -77,7 +82,7 @@ SafetyFilter::Pace SafetyFilter::pace(double information_age_s) const {
   const double given_up_m = options_->speed_max_mps * std::max(information_age_s, period_s);
   return {
       .closing_hz = options_->gap_share / (2.0 * time_s),
-      // If it stops at once …
+      // Following a robot that stops at once uses up β v_max τ: at most 0.9 of the margin.
       .follow = information_age_s > kFollows * period_s
                     ? 0.0
                     : std::min(options_->follow_share,
@@ -85,6 +90,8 @@ SafetyFilter::Pace SafetyFilter::pace(double information_age_s) const {
   };
 }
 
+/// The half-planes of the neighbours: first and second line as one, the tighter bound of the two,
+/// and the third where the neighbour moves away and may have stopped within reach. O(neighbours).
 void SafetyFilter::collect_neighbours(const Vec2& position_m, std::span<const Neighbour> neighbours,
                                       Lines& lines) const {
   const double period_s = to_seconds(options_->period);
@@ -100,18 +107,20 @@ void SafetyFilter::collect_neighbours(const Vec2& position_m, std::span<const Ne
     const double sum_m = options_->radius_m + n.radius_m;
     const Vec2 offset = n.position_m - position_m;
     const double distance = offset.norm();
-    // Robots believed to be in the same spot part to opposite sides by chance.
+    // Two robots estimated at the same position: any direction will do.
     const Vec2 towards = distance > 1e-9 ? Vec2(offset / distance) : Vec2(1.0, 0.0);
     const double gap = distance - sum_m;
     const double leaving = towards.dot(n.velocity_mps);
-    // Who comes or leaves, and who bounds us, are coin tosses: no branches.
+    // Which neighbours approach and which bound us is unpredictable: no branches.
     const double away_mps = positive_part(leaving);
     const double coming_mps = away_mps - leaving;
     const double share = late.closing_hz * (gap - margin_m) + late.follow * away_mps;
     const double evade = evading_hz * (gap - kEvade * margin_m) - coming_mps;
     const double bound = std::min(share, evade);
+    // Always written, kept only if it bounds us.
     *next = {towards, std::max(bound, -v_max)};
     next += bound < v_max;
+    // How much nearer the neighbour is if it stopped as early as it may have.
     const double left_behind_m = n.possible_stop_age_s * leaving;
     if (std::min(left_behind_m, possible_stop_reach_m + left_behind_m - gap) > 0.0) {
       if (const auto line = off_possible_stop(position_m, n, sum_m)) *next++ = *line;
@@ -120,21 +129,26 @@ void SafetyFilter::collect_neighbours(const Vec2& position_m, std::span<const Ne
   lines.count = static_cast<std::size_t>(next - lines.buffer.data());
 }
 
-/// Keeps off where the neighbour is if it stalled when that is worst for us: the nearest place of
-/// its way since. One that stands does not come nearer, so neither must we: no more is asked.
+/// The third line: keeps off the neighbour in case it stopped unnoticed, at the worst point for us,
+/// which is the nearest point of the segment it has been extrapolated along since it may have
+/// stopped. A stopped robot does not approach, so not closing in is enough: the bound is never
+/// negative.
 std::optional<HalfPlane> SafetyFilter::off_possible_stop(const Vec2& position_m, const Neighbour& n,
                                                    double sum_m) const {
   const Vec2 back = -n.possible_stop_age_s * n.velocity_mps;
   const double share = (position_m - n.position_m).dot(back) / back.squaredNorm();
   const Vec2 offset = n.position_m + std::clamp(share, 0.0, 1.0) * back - position_m;
   const double distance = offset.norm();
-  if (distance < 1e-9) return std::nullopt;  // we are where it would be: it went on
+  if (distance < 1e-9) return std::nullopt;  // we are where it would be: it drove on
   const double bound = (distance - sum_m - kEvade * options_->neighbour_margin_m) /
                        (2.0 * to_seconds(options_->period) + options_->lag_s);
   if (bound >= options_->speed_max_mps) return std::nullopt;
   return HalfPlane{offset / distance, std::max(bound, 0.0)};
 }
 
+/// The time without a state after which the first follower brakes: for each neighbour that this
+/// robot moves away from, the third line seen from there. All gaps are multiplied by the distance,
+/// which saves the division of each direction.
 Listeners SafetyFilter::listeners(const Vec2& position_m, const Vec2& velocity_mps,
                                   std::span<const Neighbour> neighbours) const {
   const double horizon_s = 2.0 * to_seconds(options_->period) + options_->lag_s;
@@ -146,19 +160,21 @@ Listeners SafetyFilter::listeners(const Vec2& position_m, const Vec2& velocity_m
     const double gap_m = distance - options_->radius_m - n.radius_m;
     found.nearest_gap_m = std::min(found.nearest_gap_m, gap_m);
     const double leaving_m2ps = offset.dot(velocity_mps);
-    // Who comes and whom it leaves are coin tosses: no branches.
+    // Which neighbours approach and which are left behind is unpredictable: no branches.
     const double coming_m2ps = positive_part(offset.dot(n.velocity_mps));
     const double spare_m2 = positive_part((gap_m - kept_m) * distance - horizon_s * coming_m2ps);
     const double never_m2 = leaving_m2ps > 0.0 ? 0.0 : kNever_m2;
     found.timeout_s =
         std::min(found.timeout_s, (spare_m2 + never_m2) / std::max(leaving_m2ps, kStopped_m2ps));
   }
+  // The follower takes a stop for possible only two periods after the state.
   found.timeout_s += horizon_s - options_->lag_s;
   return found;
 }
 
-/// All who are too near give in by the same speed, the least that leaves a common point. Nobody
-/// comes nearer for it.
+/// Where the half-planes have no common point: relaxes those of neighbours that ask to withdraw by
+/// the same speed, the least that leaves a common point, found by bisection. No bound is relaxed
+/// above 0, so no gap closes for it; obstacles are not relaxed.
 Vec2 SafetyFilter::least_violation(const Vec2& desired_mps, Lines& lines) const {
   const std::span<const HalfPlane> all = lines.all();
   lines.relaxed.assign(all.begin(), all.end());
@@ -172,7 +188,8 @@ Vec2 SafetyFilter::least_violation(const Vec2& desired_mps, Lines& lines) const 
   double low = 0.0;
   double high = 0.0;
   for (const HalfPlane& line : all.subspan(lines.obstacles)) high = std::max(high, -line.bound_mps);
-  // Standing still breaks nothing by more than this, unless an obstacle comes.
+  // Relaxed by `high`, all these half-planes contain u = 0; only an approaching obstacle can still
+  // leave no solution.
   std::optional<Vec2> best = relax(high);
   if (!best) return Vec2::Zero();
   for (int i = 0; i < kBisections; ++i) {
@@ -187,11 +204,15 @@ Vec2 SafetyFilter::least_violation(const Vec2& desired_mps, Lines& lines) const 
   return *best;
 }
 
+/// The velocity nearest to the desired one, by relaxed half-planes if there is none by the exact
+/// ones.
 Vec2 SafetyFilter::nearest(const Vec2& desired_mps, Lines& lines) const {
   if (auto u = nearest_velocity(desired_mps, lines.all(), options_->speed_max_mps)) return *u;
   return least_violation(desired_mps, lines);
 }
 
+/// Solves for the desired velocity first. Where that leaves a robot blocked, it tries the desired
+/// velocity turned to the right by growing angles and takes the first that lets it move.
 Vec2 SafetyFilter::filter(const Vec2& position_m, const Vec2& desired_mps,
                           std::span<const Neighbour> neighbours, bool gives_way) const {
   static thread_local Lines lines;

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-// CPU per delivered state: real processes that all hear each other at 10 Hz, by each channel and by
-// plain UDP with a waiting thread, one after the other in one run. JSON on stdout.
+// CPU per delivered state: real processes that all receive each other at 10 Hz, by each channel and
+// by plain UDP with a waiting thread, one after the other in one run. JSON on stdout.
 #include <array>
 #include <atomic>
 #include <chrono>
@@ -40,7 +40,7 @@ struct Case {
   std::uint32_t robots_each;
 };
 
-/// What children tell the parent, in memory they share.
+/// What child processes report to the parent, in shared memory.
 struct Board {
   std::atomic<std::uint32_t> ready = 0;
   std::atomic<bool> go = false;
@@ -58,11 +58,11 @@ double cpu_s() {
          1e-6 * static_cast<double>(used.ru_utime.tv_usec + used.ru_stime.tv_usec);
 }
 
-/// How one process speaks and hears.
+/// How one process sends and receives.
 class Sender {
  public:
   virtual ~Sender() = default;
-  /// Says the states of this process. Returns how many states arrived since the last call.
+  /// Sends the states of this process. Returns how many states arrived since the last call.
   virtual std::uint64_t tick(std::span<const link::RobotStateMessage> states) = 0;
 };
 
@@ -90,7 +90,7 @@ class ChannelSender final : public Sender {
   std::vector<link::CellStatesMessage> received_;
 };
 
-/// One datagram to each peer, a thread that waits for theirs.
+/// Plain UDP: one datagram to each peer, and a thread that waits for theirs.
 class UdpSender final : public Sender {
  public:
   UdpSender(std::uint32_t self, std::uint32_t processes)
@@ -188,7 +188,7 @@ nlohmann::ordered_json run(const Case& c, std::uint32_t domain, Duration measure
   if (memory == MAP_FAILED) std::abort();
   Board& board = *new (memory) Board;
   link::Meeting meeting{.domain = domain};
-  // The server lives in a process of its own: a library with threads must not be forked.
+  // The server runs in a process of its own: a library with threads must not be forked.
   std::array<int, 2> pipe{};
   if (::pipe(pipe.data()) != 0) std::abort();
   const pid_t server = ::fork();
@@ -238,7 +238,7 @@ int main(int argc, char** argv) {
   std::uint32_t processes = 50, domain = 200, rounds = 3;
   app.add_option("--seconds", seconds, "Of each case");
   app.add_option("--processes", processes)->check(CLI::Range(2U, kMaxProcesses));
-  app.add_option("--rounds", rounds, "All cases in turn, so many times");
+  app.add_option("--rounds", rounds, "Rounds, each of all cases in turn");
   app.add_option("--domain", domain, "DDS domain");
   CLI11_PARSE(app, argc, argv);
 

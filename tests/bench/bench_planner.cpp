@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-// The planner's parts beside what they are to be compared with, in one program on one map:
+// The planner's parts, each with a naive version for comparison, on one map:
 //   build/bench/bin/bench_planner
 #include <algorithm>
 #include <cmath>
@@ -29,7 +29,7 @@
 
 namespace {
 
-// What operator new has handed out and not got back, and the most there was of it.
+// Bytes allocated by operator new and not freed yet, and their maximum.
 bool counting = false;
 std::size_t heap_now = 0;
 std::size_t heap_peak = 0;
@@ -67,7 +67,7 @@ const Mission& demo() {
   return mission;
 }
 
-// Bodies are not known: neither speed nor density of a plan is limited.
+// Without bodies, neither speed nor density of a plan is limited.
 SwarmPrmOptions demo_options() {
   SwarmPrmOptions options = swarmprm_options({.mission = demo(), .limits = {}});
   options.cap_is_automatic = false;
@@ -117,7 +117,7 @@ void BM_PlanRawGrowth(benchmark::State& state) {
   std::uint64_t seed = 1;
   for (auto _ : state) plan_once(options, seed++, state);
   state.SetComplexityN(state.range(0));
-  // Once more with a look at the heap: everything a plan holds at its fullest moment.
+  // Once more, to measure the heap: the largest memory that a plan needs.
   heap_now = heap_peak = 0;
   counting = true;
   plan_once(options, 1, state);
@@ -143,7 +143,7 @@ void BM_Neighbours(benchmark::State& state) {
 }
 BENCHMARK(BM_Neighbours)->Arg(500)->Arg(8000)->Unit(benchmark::kMicrosecond);
 
-// The naive one: all pairs.
+// The naive version: all pairs.
 void BM_NeighboursAllPairs(benchmark::State& state) {
   const auto nodes = some_nodes(static_cast<std::size_t>(state.range(0)));
   const double radius_m = prm_star_radius_m(static_cast<double>(nodes.size()));
@@ -160,7 +160,7 @@ void BM_NeighboursAllPairs(benchmark::State& state) {
 }
 BENCHMARK(BM_NeighboursAllPairs)->Arg(500)->Arg(8000)->Unit(benchmark::kMicrosecond);
 
-// Pebbles all over the map, as many as asked for.
+// A number of small obstacles all over the map.
 std::vector<Box> pebbles(std::size_t count) {
   Rng rng(1);
   std::vector<Box> boxes;
@@ -195,7 +195,7 @@ void BM_BoxQuery(benchmark::State& state) {
 }
 BENCHMARK(BM_BoxQuery)->Arg(6)->Arg(11)->Arg(16)->Arg(24)->Arg(50)->Arg(100)->Arg(10'000);
 
-// The naive one: every box, every time.
+// The naive version: all boxes at each query.
 void BM_BoxScan(benchmark::State& state) {
   const auto boxes = pebbles(static_cast<std::size_t>(state.range(0)));
   query_boxes(state, [&](const Box& place) {
@@ -208,7 +208,7 @@ void BM_BoxScan(benchmark::State& state) {
 }
 BENCHMARK(BM_BoxScan)->Arg(6)->Arg(11)->Arg(16)->Arg(24)->Arg(50)->Arg(100)->Arg(10'000);
 
-// The demo's blocks made of pebbles.
+// The blocks of the demo, made of small obstacles.
 World pebble_world(std::size_t count) {
   const World& blocks = demo().world;
   const double spacing_m = std::sqrt(10'525.0 / static_cast<double>(count));
@@ -256,7 +256,7 @@ World with_circle(double y) {
   return World::make(demo().world.bounds_m(), std::move(obstacles)).value();
 }
 
-// An obstacle wanders along the main passage, half a metre a step; a roadmap for the search after
+// An obstacle moves along the main passage, half a metre a step; a roadmap for the search after
 // every step.
 void BM_RoadmapRepaired(benchmark::State& state) {
   Rng rng(1);
@@ -273,7 +273,7 @@ void BM_RoadmapRepaired(benchmark::State& state) {
 }
 BENCHMARK(BM_RoadmapRepaired)->Arg(500)->Arg(8000)->Unit(benchmark::kMicrosecond);
 
-// The naive one: built anew.
+// The naive version: builds the roadmap again.
 void BM_RoadmapRebuilt(benchmark::State& state) {
   Rng rng(1);
   std::size_t step = 0;
@@ -302,7 +302,7 @@ std::vector<std::pair<Gaussian, Gaussian>> some_edges() {
   return edges;
 }
 
-// Proven between the samples.
+// With a bound that holds between the samples.
 void BM_EdgeCheck(benchmark::State& state) {
   const auto edges = some_edges();
   EdgeChecker checker(demo().world, demo_options().risk);
@@ -314,7 +314,7 @@ void BM_EdgeCheck(benchmark::State& state) {
 }
 BENCHMARK(BM_EdgeCheck);
 
-// The naive one: a fixed number of points, nothing known in between.
+// The naive version: a fixed number of points, without a bound in between.
 void BM_EdgeCheckFixedSteps(benchmark::State& state) {
   const auto edges = some_edges();
   const RiskLimit risk = demo_options().risk;
@@ -376,8 +376,8 @@ BENCHMARK(BM_OmplPrm500)->Unit(benchmark::kMillisecond);
 }  // namespace swarm::planner
 
 int main(int argc, char** argv) {
-  // Memory stays with the process, for all that is measured: from 1024 samples on, half of the time
-  // would be the kernel's, which hands out and takes back the same pages plan after plan.
+  // Freed memory stays with the process: otherwise, from 1024 samples on, the kernel would take
+  // half of the measured time to map and unmap the same pages, plan after plan.
   ::mallopt(M_MMAP_THRESHOLD, 1 << 30);
   ::mallopt(M_TRIM_THRESHOLD, 1 << 30);
   ::mallopt(M_TOP_PAD, 64 << 20);

@@ -39,7 +39,7 @@ double wall_ms() {
   return std::chrono::duration<double, std::milli>(now).count();
 }
 
-// CPU time of this thread: what other processes take from it does not count.
+// CPU time of this thread, which does not contain that of other processes.
 double cpu_ms() {
   timespec t{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
@@ -61,7 +61,7 @@ double mean_path_m(const swarm::FlowPlan& plan) {
   return sum_m;
 }
 
-// Cheapest assignment of the means along shortest ways around the obstacles.
+// Cheapest assignment of the means along shortest paths around the obstacles.
 double mean_bound_m(const Mission& mission) {
   std::vector<swarm::Vec2> from, to;
   std::vector<double> supplies, demands;
@@ -128,7 +128,7 @@ int run(const std::string& file, const Settings& settings) {
   auto planned = rover->plan(mission->start);
   if (!planned) return fail(file, planned.error());
 
-  // Again step by step, as online.
+  // Once more, step by step, as in a run.
   std::vector<double> cpu, wall, iterations, pivots, columns;
   double step_cvar_m = -std::numeric_limits<double>::infinity();
   for (int r = 0; r < settings.repeat; ++r) {

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-// What control costs: a control period of a whole swarm in mid-flight, of 500 robots on
-// the SwarmPRM map and of any number on an open one. And who hears whom, by cells and by looking at
-// everybody.
+// Cost of control: a control period of a whole swarm in mid-flight, of 500 robots on the SwarmPRM
+// map and of any number on an open one. And cost of reception: states by cells, compared with a
+// scan of all states.
 //   build/bench/bin/bench_simulation
 #include <cmath>
 #include <numbers>
@@ -19,15 +19,15 @@ namespace {
 
 constexpr double kIntoFlight_s = 40.0;
 
-/// The SwarmPRM map with as many robots as its paper has at most.
+/// The SwarmPRM map with the largest number of robots in the paper.
 Mission standin_mission() {
   Mission mission = load_mission(SWARM_SOURCE_DIR "/deploy/missions/swarmprm_standin.yaml").value();
   mission.robots.count = 500;
   return mission;
 }
 
-/// A swarm that flies across an open map, as dense whatever their number: what is around a robot is
-/// the same, but for the rim.
+/// A swarm that crosses an open map, at the same density for any number of robots: except at the
+/// rim, the neighbourhood of a robot is the same.
 Mission open_mission(std::uint32_t robots) {
   constexpr double kAreaEach_m2 = 2.0, kPath_m = 150.0;
   Mission mission = standin_mission();
@@ -50,7 +50,7 @@ Mission open_mission(std::uint32_t robots) {
   return mission;
 }
 
-// Time per iteration: of one control period of all robots. `per_agent` is that for one robot.
+// Time per iteration is that of one control period of all robots; `per_agent`, that of one robot.
 void fly_on(benchmark::State& state, const Mission& mission, std::size_t threads) {
   Recording nothing(mission, Simulation::begin_utc(), Recording::kFirstAndLast);
   SimulationObserver no_observer;
@@ -98,7 +98,7 @@ BENCHMARK(BM_OpenMapByAllCores)
     ->UseRealTime()
     ->Complexity();
 
-/// Robots that all speak, as densely as a swarm in flight.
+/// Robots that all publish, as densely as a swarm in flight.
 std::vector<agent::NeighbourReport> reports_of(std::uint32_t robots, double side_m) {
   Rng rng(1);
   std::vector<agent::NeighbourReport> sent(robots);
@@ -109,7 +109,7 @@ std::vector<agent::NeighbourReport> reports_of(std::uint32_t robots, double side
   return sent;
 }
 
-// Without cells there is one for all, so that everybody is looked at.
+// Without cells there is one for all, so that all states are scanned.
 void receive_all(benchmark::State& state, bool cells) {
   constexpr double kRange_m = 4.0, kArea_m2 = 2.0;
   const auto robots = static_cast<std::uint32_t>(state.range(0));

@@ -35,7 +35,7 @@ std::vector<double> random_weights(std::size_t count, Rng& rng) {
   return weights;
 }
 
-// Shortest text that reads back as the same number; what has no solution is null.
+// Shortest text that reads back as the same number; a problem without a solution is null.
 std::string number(double value) {
   return std::isfinite(value) ? fmt::format("{}", value) : "null";
 }
@@ -63,8 +63,8 @@ void print_transport(Rng& rng) {
              list(supplies), list(demands), list(costs_m), number(best));
 }
 
-// A roadmap on the stand-in scene with edges that are all proven finely, so that both solvers see
-// the same ones.
+// A roadmap on the stand-in scene with all edges checked finely, so that both solvers have the
+// same ones.
 Roadmap random_roadmap(const Mission& mission, std::size_t samples, EdgeChecker& checker,
                        Rng& rng) {
   const PlannerSpec& spec = mission.planner;
@@ -104,7 +104,7 @@ std::string arcs_of(const Roadmap& roadmap) {
   return fmt::format("[{}]", fmt::join(texts, ","));
 }
 
-// False when the roadmap joins too little for a horizon.
+// False when the roadmap has too few edges for a horizon.
 bool print_flow(const Mission& mission, bool timed, Rng& rng) {
   const PlannerSpec& spec = mission.planner;
   EdgeChecker checker(mission.world, {.alpha = spec.risk_alpha, .delta_m = spec.risk_delta_m});

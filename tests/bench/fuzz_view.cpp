@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
 // Throws hostile frames at the live view's server: fuzz_view [frames] [seed]. Counted are the
-// frames that reach a session, not those behind a broken one. To be run with sanitizers. Says how
-// much memory it took, and ends with 0 if the server is still there for a client that means well.
+// frames that reach a session, not those behind a broken one. To be run with sanitizers. Prints
+// how much memory it took, and ends with 0 if the server still serves a well-behaved client.
 #include <array>
 #include <chrono>
 #include <cstdlib>
@@ -75,14 +75,14 @@ class Attack {
         foxglove_(seed + 1, kFoxgloveValid),
         clients_(kClients) {}
 
-  /// One client does one thing.
+  /// One action of a random client.
   void strike() {
     const std::size_t which = mutator_.below(clients_.size());
     const bool page = which < clients_.size() / 2;
     auto& client = clients_[which];
     if (client) client->read();
     if (!client || !client->open()) return connect(client, page);
-    if (mutator_.chance(0.01) || given_up(*client)) return client.reset();  // without a word
+    if (mutator_.chance(0.01) || given_up(*client)) return client.reset();  // without a close frame
     if (mutator_.chance(0.3)) client->input.clear();
     if (mutator_.chance(0.01)) {
       ++counts.garbage;
@@ -116,7 +116,7 @@ class Attack {
     }
   }
 
-  /// The server said that it has heard enough: close, 1008.
+  /// Whether the server has closed the connection: close frame, code 1008.
   static bool given_up(const ViewClient& client) {
     return client.input.find("\x88\x02\x03\xF0") != std::string::npos;
   }
@@ -163,11 +163,11 @@ class Attack {
   ViewServer& server_;
   FrameMutator page_;
   FrameMutator foxglove_;
-  FrameMutator& mutator_ = page_;                     // for all other dice
-  std::vector<std::unique_ptr<ViewClient>> clients_;  // the first half speaks the page's protocol
+  FrameMutator& mutator_ = page_;                     // for all other random choices
+  std::vector<std::unique_ptr<ViewClient>> clients_;  // the first half uses the page's protocol
 };
 
-/// Somebody who only wants to see a picture.
+/// A client that only wants to see a frame.
 bool still_serves(ViewServer& server) {
   ViewClient client(server.port());
   client.upgrade("/ws", "swarmflow.view.v1");

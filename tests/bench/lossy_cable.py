@@ -43,12 +43,12 @@ def main():
     ns_a, if_a, ns_b, if_b, loss, delay_ms = sys.argv[1:7]
     ends = [tap(ns_a, if_a), tap(ns_b, if_b)]
     loss, delay = float(loss), float(delay_ms) / 1000
-    ways = {ends[0]: (ends[1], collections.deque()), ends[1]: (ends[0], collections.deque())}
+    queues = {ends[0]: (ends[1], collections.deque()), ends[1]: (ends[0], collections.deque())}
     print("ready", flush=True)
     chance = random.Random(1)
     while True:
         now = time.monotonic()
-        due = min((way[0][0] for _, way in ways.values() if way), default=now + 1)
+        due = min((queue[0][0] for _, queue in queues.values() if queue), default=now + 1)
         ready, _, _ = select.select([0, *ends], [], [], max(0.0, due - now))
         now = time.monotonic()
         for fd in ready:
@@ -58,18 +58,18 @@ def main():
                     return
                 loss = float(line)
                 continue
-            way = ways[fd][1]
+            queue = queues[fd][1]
             for _ in range(256):
                 try:
                     frame = os.read(fd, FRAME)
                 except BlockingIOError:
                     break
-                if chance.random() >= loss and len(way) < WAITING:
-                    way.append((now + delay, frame))
-        for to, way in ways.values():
-            while way and way[0][0] <= now:
+                if chance.random() >= loss and len(queue) < WAITING:
+                    queue.append((now + delay, frame))
+        for to, queue in queues.values():
+            while queue and queue[0][0] <= now:
                 try:
-                    os.write(to, way.popleft()[1])
+                    os.write(to, queue.popleft()[1])
                 except OSError:
                     pass  # the other end is down: lost
 

@@ -27,9 +27,9 @@ same = all([data for _, data in first[topic]] == [data for _, data in second[top
 begin_first = min(topic[0][0] for topic in first.values())
 begin_second = min(topic[0][0] for topic in second.values())
 errors = []
-for topic, said in first.items():
+for topic, sent in first.items():
     last = 0
-    for (at, _), (again, _) in zip(said, second[topic]):
+    for (at, _), (again, _) in zip(sent, second[topic]):
         last = max(last, at)  # a writer's clock that steps back stands still
         errors.append(abs((again - begin_second) - (last - begin_first)) / 1e6)
 errors.sort()

@@ -34,7 +34,7 @@ for file in files:
         b_ub=right_side[~equality] if not equality.all() else None,
         method="highs",
     )
-    assert answer.status == 0, f"{file}: HiGHS says {answer.message}"
+    assert answer.status == 0, f"{file}: HiGHS: {answer.message}"
     off = abs(answer.fun - lp["optimum"]) / (1.0 + abs(answer.fun))
     worst = max(worst, off)
     if off > TOLERANCE:

@@ -5,11 +5,12 @@
 namespace swarm::agent {
 namespace {
 
-constexpr double kAtRest_m = 0.1;  // from the end point: stay
-constexpr double kBehind_m = 1.0;  // less than this behind its reference no robot is stuck
+constexpr double kAtRest_m = 0.1;  // arrived robots this near to their end point rest
+constexpr double kBehind_m = 1.0;  // a robot less behind its reference does not count as stuck
 
 }  // namespace
 
+/// A new plan keeps the arrival watch if the end point is the same, so that arrived robots stay so.
 void Apf::begin(const Route& route, const World& world) {
   sink_ = route.sink;
   pursuit_ = Pursuit(route.path, world, options_.part(&ApfOptions::pursuit));
@@ -25,23 +26,28 @@ bool Apf::has_arrived(const ControlView& view) {
   return watch_.has_arrived(view.now, view.position_m);
 }
 
+/// The repulsive part w₂U_rep of eq. 14, of neighbours and of the nearest obstacle.
 Vec2 Apf::repulsion(const ControlView& view) const {
   return neighbour_repulsion(view.position_m, view.close, options_->neighbour_repulsion) +
          obstacle_repulsion(view.position_m, view.world, options_->obstacle_repulsion);
 }
 
+/// Only while under way: an arrived robot keeps its slot, whatever the density.
 Vec2 Apf::attraction_to_density(const ControlView& view, bool arrived) const {
   if (arrived || view.planned_density == nullptr) return Vec2::Zero();
   return density_attraction(view.position_m, *view.planned_density, view.neighbours,
                             options_->density);
 }
 
+/// Attraction to an intermediate target of an escape, slower in proportion to the distance left.
 Vec2 Apf::attraction_to(const Vec2& escape_m, const ControlView& view) const {
   const PaceOptions& pace = options_->pace;
   return attraction(view.position_m, escape_m,
                     free_speed(0.0, pace.approach_gain_hz, pace.cruise_mps));
 }
 
+/// Attraction that keeps the plan's time: aims at most at the carrot c = l*(τ + τ̇T), at the speed
+/// that pace.hpp gives. Its arc length s is c less the distance still to drive to the carrot.
 Vec2 Apf::attraction_in_time(const ControlView& view, bool arrived, Rng& rng) {
   const PaceOptions& pace = options_->pace;
   const Pace::Now now = pace_.at(*view.plan_time, pace);
@@ -53,6 +59,7 @@ Vec2 Apf::attraction_in_time(const ControlView& view, bool arrived, Rng& rng) {
   const auto escape = escape_.update(view, pursuit_.progress_m(), !arrived && is_behind, rng);
   if (escape) return attraction_to(*escape, view);
   if (arrived && aim.left_m < kAtRest_m) return Vec2::Zero();
+  // Ahead of the carrot: far ahead it returns slowly, otherwise it waits for the carrot.
   if (aim.past_m > Pace::kPast_m) {
     return attraction(view.position_m, aim.point_m,
                       free_speed(aim.rest_m, pace.approach_gain_hz, Pace::kReturn_mps));
@@ -62,6 +69,8 @@ Vec2 Apf::attraction_in_time(const ControlView& view, bool arrived, Rng& rng) {
          attraction_to_density(view, arrived);
 }
 
+/// Without a clock (tracking: free, or no heartbeat yet): along the path at cruise speed. Any lack
+/// of progress counts as stuck.
 Vec2 Apf::attraction_at_will(const ControlView& view, bool arrived, Rng& rng) {
   const PaceOptions& pace = options_->pace;
   const Pursuit::Aim aim = pursuit_.update(view.position_m, view.world);
@@ -80,6 +89,7 @@ Vec2 Apf::desired_velocity(const ControlView& view, bool arrived, Rng& rng) {
          repulsion(view);
 }
 
+/// No attraction, so held robots only give way to those that press. Time held is no time stuck.
 Vec2 Apf::hold(const ControlView& view) {
   escape_.forget();
   return repulsion(view);

@@ -18,6 +18,7 @@
 
 namespace swarm::agent {
 
+/// The parameters of the method and of its terms.
 struct ApfOptions {
   bool keeps_time = true;  ///< follows the plan's clock when there is one
   PursuitOptions pursuit;
@@ -72,7 +73,7 @@ class Apf final : public ControlMethod {
   DiffusionEscape escape_;
   GoalWatch watch_;
   std::uint32_t sink_ = 0;
-  /// Of the last tick in which it kept time.
+  /// The state of tracking at the last tick that kept the plan's time.
   struct InTime {
     PlanTime time;
     double reference_m = 0.0;  // arc length of its reference

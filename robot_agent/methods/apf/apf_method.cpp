@@ -10,7 +10,7 @@
 namespace swarm::agent {
 namespace {
 
-/// What a mission may set of apf.
+/// The keys of a mission's control section that apf reads.
 struct ApfKeys : PathKeys, ObstacleKeys {
   std::string tracking = "plan";
   double pace_gain_hz = 0.3;
@@ -43,6 +43,7 @@ const OptionTable<ApfKeys>& apf_keys() {
   return table;
 }
 
+/// Translates keys, mission and body into options. No robot cruises faster than its body can.
 ApfOptions apf_options(const ApfKeys& c, const Mission& mission, const BodySpec& body) {
   const double cruise_mps = std::min(mission.control.cruise_mps, body.speed_max_mps);
   return {.keeps_time = c.tracking == "plan",
@@ -66,6 +67,8 @@ ApfOptions apf_options(const ApfKeys& c, const Mission& mission, const BodySpec&
                      .radius_m = body.radius_m}};
 }
 
+/// The reach covers every neighbour that a term depends on: d₀ of the repulsion between surfaces,
+/// and the kernel of the density estimate between centres.
 Result<PreparedControl> prepare_apf(const ControlContext& context) {
   const ApfKeys keys = apf_keys().read(context.options());
   const double bodies_m = context.body.radius_m + largest_radius_m(context.mission.robots);

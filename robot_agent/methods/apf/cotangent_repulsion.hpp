@@ -9,15 +9,16 @@
 
 namespace swarm::agent {
 
+/// The repulsion's parameters.
 struct CotangentOptions {
   double strength_m2 = 0.01;  ///< G₀
   double range_m = 1.0;       ///< R, from centre to centre
   /// The slope fades to 0 over this share of R below R; 0: exact, with a corner there. Robots at
-  /// rest need it: over a corner pairs step to and fro for ever.
+  /// rest need it: at a corner, pairs oscillate for ever.
   double fade_share = 0.0;
 };
 
-/// Repulsion of a robot by those it senses [intermittent diffusion, eq. 7 and section 5]:
+/// Repulsion of a robot by its neighbours [intermittent diffusion, eq. 7 and section 5]:
 ///
 ///   G = G₀ Σⱼ cot θⱼ,   θ = πd²/(2R²) for d < R
 ///   ∂G/∂x = −G₀ Σⱼ csc²θⱼ (π/R²) (x − xⱼ)

@@ -11,29 +11,30 @@
 
 namespace swarm::agent {
 
+/// When a robot counts as stuck, and how far it escapes.
 struct EscapeOptions {
-  double progress_m = 0.3;  ///< less than this on the way …
-  Duration stuck_after{};   ///< … in this time is stuck
-  Duration duration{};      ///< longest way to an intermediate target
+  double progress_m = 0.3;  ///< less progress than this along the path …
+  Duration stuck_after{};   ///< … in this time: stuck
+  Duration duration{};      ///< longest time under way to an intermediate target
   double spread_m = 4.0;    ///< largest standard deviation per axis of the targets
   double radius_m = 0.2;
 };
 
 /// Frees a robot from a local minimum of whatever it follows, by one period of intermittent
-/// diffusion: gradient flow alone until the robot is stuck, then a virtual diffusion from its place
-/// to an intermediate target in line of sight (virtual_diffusion.hpp), flow (14) towards it until
-/// it is reached or time is up, then gradient flow again. An escape that gained nothing is followed
-/// by one that spreads twice as far, up to four times.
+/// diffusion: gradient flow alone until the robot is stuck, then a virtual diffusion from its
+/// position to an intermediate target in line of sight (virtual_diffusion.hpp), flow (14) towards
+/// it until it is reached or time is up, then gradient flow again. An escape that gained nothing is
+/// followed by one that spreads twice as far, up to four times.
 class DiffusionEscape {
  public:
   explicit DiffusionEscape(Shared<EscapeOptions> options) : options_(std::move(options)) {}
 
-  /// Where to go instead of following the way; empty unless the robot is escaping. `progress_m`
-  /// grows along the way. `wants_to_move` false (waiting, arrived) forgets everything.
+  /// The target to go to instead of following the path; empty unless the robot is escaping.
+  /// `progress_m` grows along the path. `wants_to_move` false (waiting, arrived) resets the state.
   std::optional<Vec2> update(const ControlView& view, double progress_m, bool wants_to_move,
                              Rng& rng);
 
-  /// The way is another one: its progress is not to be compared with the last one's.
+  /// Resets the state, as when the path is replaced: progress on different paths is not comparable.
   void forget();
 
   std::uint32_t escapes() const { return escapes_; }

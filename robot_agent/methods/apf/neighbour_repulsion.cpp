@@ -6,6 +6,7 @@
 
 namespace swarm::agent {
 
+/// The sum of the pushes p (1 − gap/d₀), at most p each, also where bodies overlap.
 Vec2 neighbour_repulsion(const Vec2& position_m, std::span<const Neighbour> neighbours,
                          const NeighbourRepulsionOptions& options) {
   const double gap_m = std::max(options.gap_m, 1e-9);
@@ -15,7 +16,8 @@ Vec2 neighbour_repulsion(const Vec2& position_m, std::span<const Neighbour> neig
     const Vec2 away = position_m - n.position_m;
     const double distance = away.norm();
     const double gap = distance - options.radius_m - n.radius_m;
-    // Who is near is unpredictable: no branch, which clamping to constants would be.
+    // Which neighbours are near is unpredictable: min and max, since std::clamp compiles to a
+    // branch.
     const double strength = per_m * (gap_m - std::min(std::max(gap, 0.0), gap_m));
     push += strength / std::max(distance, 1e-9) * away;
   }

@@ -8,6 +8,7 @@
 
 namespace swarm::agent {
 
+/// Range and strength of the push.
 struct NeighbourRepulsionOptions {
   double radius_m = 0.2;
   double gap_m = 0.6;     ///< d0

@@ -8,9 +8,10 @@
 
 namespace swarm::agent {
 
+/// Range and strength of the push.
 struct ObstacleRepulsionOptions {
   double radius_m = 0.2;
-  double gap_m = 0.5;
+  double gap_m = 0.5;     ///< s0
   double push_mps = 1.0;  ///< at contact
 };
 

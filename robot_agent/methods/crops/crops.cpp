@@ -12,7 +12,7 @@
 namespace swarm::agent {
 namespace {
 
-constexpr double kLastSteps_m = 0.25;  // the approach is no slower than from here
+constexpr double kLastSteps_m = 0.25;  // nearer, the approach does not slow down any further
 
 }  // namespace
 
@@ -28,6 +28,8 @@ bool Crops::has_arrived(const ControlView& view) {
   return slot_.has_arrived(view.now, view.position_m);
 }
 
+/// The superposition of the fields towards the present intermediate goal. Its length scales the
+/// speed only below full_strength: where fields cancel the robot slows down.
 Vec2 Crops::desired_velocity(const ControlView& view, bool arrived, Rng& rng) {
   const Vec2& x = view.position_m;
   if (arrived) {
@@ -39,14 +41,14 @@ Vec2 Crops::desired_velocity(const ControlView& view, bool arrived, Rng& rng) {
   const bool at_end = guide_.is_last();
   const Vec2 aim_m = at_end ? slot_.aim_m() : point_m;
   remaining_m_ = at_end ? slot_.left_m(x) : guide_.remaining_m(x);
-  // There is no room in a full goal unless one presses; where even that is in vain, regardless of
-  // who is nearer: those have arrived.
+  // Arrived robots make room in a full goal only for one that presses, so separation is off near
+  // it. Where the robot is blocked all the same, it no longer gives way either: the robots nearer
+  // to the goal have arrived.
   const bool into_goal = at_end || slot_.is_in_goal(point_m);
   const bool is_blocked = into_goal && slot_.is_blocked();
   const bool presses = is_blocked || (into_goal && slot_.is_beside(x));
   const Vec2 escape = escape_.update(x, rng);
-  // A stuck robot dares to go where walls are near, as in the paper's code; the safety filter minds
-  // them.
+  // A stuck robot may go near walls, as in the paper's code; the safety filter keeps it off them.
   const double wall_share = escape_.is_stuck() ? options_->stuck_wall_share : 1.0;
   const std::array<Vec2, 6> fields{
       wall_share * obstacle_field(x, view.world, options_->obstacle),
@@ -65,6 +67,8 @@ Vec2 Crops::desired_velocity(const ControlView& view, bool arrived, Rng& rng) {
   return speed_mps / std::max(strength, options_->full_strength) * sum;
 }
 
+/// A held robot gives way to neighbours by the repulsion of apf. The time does not count as stuck
+/// or blocked.
 Vec2 Crops::hold(const ControlView& view) {
   escape_.forget();
   slot_.wait(view.now);

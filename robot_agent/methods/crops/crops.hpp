@@ -15,11 +15,12 @@
 
 namespace swarm::agent {
 
+/// The parameters of the motion and of its fields.
 struct CropsOptions {
   double cruise_mps = 1.45;
-  double approach_gain_hz = 0.8;  ///< slower near the end of the way
-  double full_strength = 0.3;     ///< of all fields together from which on it goes at cruise speed
-  double stuck_wall_share = 0.1;  ///< of the obstacles' field while the robot is stuck
+  double approach_gain_hz = 0.8;  ///< speed per metre left, near the end of the path
+  double full_strength = 0.3;     ///< strength of all fields together for cruise speed
+  double stuck_wall_share = 0.1;  ///< share of the obstacles' field while stuck
   GuidePointsOptions guide{};
   GoalSlotOptions slot{};
   ObstacleFieldOptions obstacle{};
@@ -32,13 +33,13 @@ struct CropsOptions {
 
 /// Combined roadmaps and potentials, the motion of CRoPS: a robot goes from one intermediate goal
 /// of the guide to the next (guide_points.hpp) in the direction of the superposition of its fields
-/// (crops_fields/), at cruise speed.
+/// (fields/), at cruise speed.
 ///
 /// What differs from the paper, because bodies may not overlap here:
-///   - who is nearer to the goal goes first (crops_fields/give_way_field.hpp);
-///   - the end of the way is the robot's own place in the goal, and those that have arrived make
-///     room (goal_slot.hpp); there robots do not keep apart, they press;
-///   - where the fields cancel, a robot stands instead of shaking at full speed.
+///   - the robot nearer to the goal goes first (fields/give_way_field.hpp);
+///   - the path ends at the robot's own slot in the goal, and robots that have arrived make room
+///     (goal_slot.hpp); there robots press instead of keeping apart;
+///   - where the fields cancel, a robot stops instead of oscillating at full speed.
 class Crops final : public ControlMethod {
  public:
   explicit Crops(Shared<CropsOptions> options)

@@ -11,12 +11,13 @@
 namespace swarm::agent {
 namespace {
 
-/// The guide's goals are the planner's, and so is the key of their radius.
+/// The radius of intermediate goals: a key of the planner, which makes the guide.
 double goal_radius_m(const Mission& mission) {
   return mission.planner.options.number("crops_goal_radius_m")
       .value_or(GuidePointsOptions{}.goal_radius_m);
 }
 
+/// Times of the mission become ticks, since the stuck test counts positions.
 CropsOptions crops_options(const Mission& mission, const BodySpec& body) {
   const PathKeys c = path_keys().read(mission.control.options);
   const double cruise_mps = std::min(mission.control.cruise_mps, body.speed_max_mps);
@@ -39,6 +40,7 @@ CropsOptions crops_options(const Mission& mission, const BodySpec& body) {
   };
 }
 
+/// Of the fields that read all neighbours: separation and headings.
 double reach_m() {
   const HeadingFieldOptions heading;
   constexpr double kSigmas = 2.5;  // farther headings weigh less than 5 %

@@ -14,12 +14,13 @@ namespace swarm::agent {
 namespace {
 
 constexpr double kChiSquared2Dof90 = 4.605170185988091;
-constexpr double kReachShare = 0.05;  // of the distance to the nearest neighbour
-constexpr double kArrive = 0.99;      // of the tolerance; once arrived all of it
+constexpr double kReachShare = 0.05;  // s, longest step, of the distance to the nearest neighbour
+constexpr double kArrive = 0.99;      // of the tolerance, to arrive; all of it to stay arrived
 constexpr double kFadeAtRest = 0.1;   // of the range, see CotangentOptions
-constexpr double kRoom = 0.9;         // of the tolerance: here a robot under way may stay
+constexpr double kRoom = 0.9;         // of the tolerance: here a robot under way to a target stays
 constexpr double kTargetReached = 1.0;      // radii from the target
 
+/// Whether a mixture has a component with this mean.
 bool is_goal_of(const Mixture& mixture, const Gaussian& g) {
   constexpr double kSame_m = 1e-6;
   return std::any_of(mixture.components().begin(), mixture.components().end(), [&](const auto& c) {
@@ -29,6 +30,7 @@ bool is_goal_of(const Mixture& mixture, const Gaussian& g) {
 
 }  // namespace
 
+/// Polygons of the ellipses μ + √χ²₂(0.9) L (cos φ, sin φ), with L the Cholesky factor of Σ.
 ShapeField shape_of(const std::vector<WeightedGaussian>& components) {
   constexpr int kCorners = 32;
   std::vector<Polygon> ellipses;
@@ -57,12 +59,14 @@ void IntermittentDiffusion::set_goals(const FlowPlan& plan) {
     goals_.push_back({node.mass, node.gaussian});
     drawn = drawn && is_goal_of(options_->goal, node.gaussian);
   }
-  // Another goal than the mission's is known by its mixture alone.
+  // The drawn shape belongs to the mission's goal. A goal set later has only its mixture: then the
+  // ellipses of that are the shape.
   shape_ = drawn ? options_->shape : std::make_shared<const ShapeField>(shape_of(goals_));
   weigh_goals();
 }
 
-/// Logarithms are for far from all goals, so that they still differ.
+/// log(w/√det Σ) of each goal component. As logarithms, densities differ even far from all goals,
+/// where they underflow to 0.
 void IntermittentDiffusion::weigh_goals() {
   log_weights_.clear();
   for (const WeightedGaussian& g : goals_) {
@@ -95,6 +99,8 @@ std::uint32_t IntermittentDiffusion::goal(const Vec2& position_m) const {
   return static_cast<std::uint32_t>(best);
 }
 
+/// The longest step s of this tick: for the bound of curvature, no pair comes nearer than 0.9 of
+/// its distance if both make it.
 double IntermittentDiffusion::reach_m(const ControlView& view) const {
   double nearest_squared = options_->repulsion.range_m * options_->repulsion.range_m;
   for (const Neighbour& n : view.neighbours) {
@@ -103,6 +109,7 @@ double IntermittentDiffusion::reach_m(const ControlView& view) const {
   return kReachShare * std::sqrt(nearest_squared);
 }
 
+/// F and G at this tick; computed once, as has_arrived() and desired_velocity() both need them.
 const IntermittentDiffusion::NeighboursInRange& IntermittentDiffusion::find_in_range(const ControlView& view) {
   if (in_range_ && in_range_->at == view.now) return *in_range_;
   const double reach = reach_m(view);
@@ -115,6 +122,8 @@ const IntermittentDiffusion::NeighboursInRange& IntermittentDiffusion::find_in_r
   return *in_range_;
 }
 
+/// Velocity −k∇V with k·Δt ≤ 1/L (Th. 6.3), no faster than cruise speed and no farther than s in a
+/// control period.
 Vec2 IntermittentDiffusion::descend(const Potential& potential, double reach_m) const {
   const double period_s = to_seconds(options_->period);
   const double gain_hz = std::min(options_->gain_hz, 1.0 / (potential.curvature * period_s));
@@ -129,16 +138,19 @@ bool IntermittentDiffusion::has_arrived(const ControlView& view) {
   return arrived_;
 }
 
+/// Begins a phase and draws the time at which it ends.
 void IntermittentDiffusion::enter(Phase phase, const ControlView& view, Rng& rng) {
   phase_ = phase;
   begun_ = true;
   const double flow_s = to_seconds(options_->flow_time);
-  // Robots of a crowd must not leave it all at once; on the way there is time to give way.
+  // Random flow times keep the robots of a dense region from leaving it all at once. The time to a
+  // target is twice that of a straight drive, plus one flow time to yield to others.
   until_ = view.now + from_seconds(phase == Phase::kShape
                                        ? uniform(rng, 0.2, 1.0) * flow_s
                                        : flow_s + 2.0 * target_.width_m / options_->cruise_mps);
 }
 
+/// Eq. 11: draws an intermediate target by a virtual diffusion, and heads for it by (14).
 void IntermittentDiffusion::diffuse(const ControlView& view, Rng& rng) {
   const DiffusionPotential potential{shape_.get(), view.neighbours, options_->repulsion};
   const Vec2 end_m =
@@ -148,6 +160,7 @@ void IntermittentDiffusion::diffuse(const ControlView& view, Rng& rng) {
   enter(Phase::kTarget, view, rng);
 }
 
+/// The phases of Alg. 1 and the changes between them, then one step of (10) or (14).
 Vec2 IntermittentDiffusion::desired_velocity(const ControlView& view, bool, Rng& rng) {
   const NeighboursInRange& in_range = find_in_range(view);
   if (!begun_) enter(Phase::kShape, view, rng);
@@ -175,6 +188,7 @@ Vec2 IntermittentDiffusion::desired_velocity(const ControlView& view, bool, Rng&
          obstacle_repulsion(view.position_m, view.world, options_->obstacles);
 }
 
+/// Only repulsion acts. The next phase begins anew.
 Vec2 IntermittentDiffusion::hold(const ControlView& view) {
   begun_ = false;
   const NeighboursInRange& in_range = find_in_range(view);

@@ -17,9 +17,10 @@
 
 namespace swarm::agent {
 
+/// The parameters of Alg. 1, and the shape to form.
 struct IntermittentDiffusionOptions {
   std::shared_ptr<const ShapeField> shape;  ///< S; null: the goals' ellipses
-  Mixture goal;                             ///< that `shape` is the drawing of
+  Mixture goal;                             ///< the mixture that `shape` was drawn for
   CotangentOptions repulsion;
   DiffusionOptions diffusion;  ///< time_s = 0: plain gradient descent
   ObstacleRepulsionOptions obstacles;
@@ -38,9 +39,9 @@ struct IntermittentDiffusionOptions {
 ///   (14)  x' = −k ∇(K + G)    towards it; then (10) again
 ///
 /// The paper diffuses all robots together. Here only one whose own F + G stays above tolerance
-/// does, after a random time, so that of a crowd some leave and the others find room, and on its
-/// way it stays wherever F + G is within tolerance. Arrived robots stay on (10): they yield to
-/// whoever passes, and once (10) is through they do not feel the corner of g at R, so that they
+/// does, after a random time, so that some robots leave a dense region and the others find room.
+/// Under way it stays wherever F + G is within tolerance. Arrived robots stay on (10), so they
+/// yield to robots that pass. Once (10) has run its time for them, g is smoothed at R, so that they
 /// come to rest.
 ///
 /// Step bound (Th. 6.3, h ≤ 1/L, here with a bound of its own for every robot): k·dt ≤ 1/Lᵢ with
@@ -48,7 +49,7 @@ struct IntermittentDiffusionOptions {
 /// nearest neighbour. A pair's Hessian [H −H; −H H] is at most diag(2H, 2H), so the Hessian of the
 /// whole swarm's potential is at most diag(Lᵢ), and when all robots make such a step at once
 /// V = ΣF + ½ΣG decreases. The corner of g at R alone may add to it, |G₀ cot θ| for a pair that
-/// crosses R. Obstacles push aside from this (obstacle_repulsion.hpp), and the safety filter may
+/// crosses R. Obstacles push in addition (obstacle_repulsion.hpp), and the safety filter may
 /// shorten or turn a step.
 class IntermittentDiffusion final : public ControlMethod {
  public:
@@ -68,8 +69,9 @@ class IntermittentDiffusion final : public ControlMethod {
   double energy_m2() const { return energy_m2_; }
 
  private:
+  /// On (10) or on (14).
   enum class Phase { kShape, kTarget };
-  /// What it feels at a tick: asked by has_arrived() and wish(), taken once.
+  /// The potentials at one tick, for has_arrived() and desired_velocity().
   struct NeighboursInRange {
     SteadyTime at;
     double reach_m = 0.0;
@@ -87,14 +89,14 @@ class IntermittentDiffusion final : public ControlMethod {
   Shared<IntermittentDiffusionOptions> options_;
   std::shared_ptr<const ShapeField> shape_;
   std::vector<WeightedGaussian> goals_;
-  std::vector<double> log_weights_;  // of each, over the root of its determinant
+  std::vector<double> log_weights_;  // log of weight over √det Σ, for each goal
   Phase phase_ = Phase::kShape;
-  bool begun_ = false;  // a phase is on
+  bool begun_ = false;  // a phase is running
   SteadyTime until_;    // of the phase
   Target target_;
   std::optional<NeighboursInRange> in_range_;
   bool arrived_ = false;
-  bool resting_ = false;  // arrived, and (10) is through
+  bool resting_ = false;  // arrived, and (10) has run its time
   double energy_m2_ = 0.0;
   double remaining_m_ = 0.0;
   std::uint32_t diffusions_ = 0;

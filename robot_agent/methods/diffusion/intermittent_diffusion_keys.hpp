@@ -6,7 +6,7 @@
 
 namespace swarm::agent {
 
-/// What a mission may set of intermittent_diffusion, Alg. 1 of its paper.
+/// The keys of a mission's control section that intermittent_diffusion reads.
 struct IntermittentDiffusionKeys : ObstacleKeys {
   double strength_m2 = 0.01;
   double range_m = 0.0;
@@ -16,11 +16,13 @@ struct IntermittentDiffusionKeys : ObstacleKeys {
   double noise_mps05 = 3.0;
   double time_s = 10.0;
 
+  /// R of eq. 7; the paper's robots have a range of ten radii.
   double range_or_default_m(double radius_m) const {
     return range_m > 0.0 ? range_m : 10.0 * radius_m;
   }
 };
 
+/// Names, ranges and docs of the keys.
 inline const OptionTable<IntermittentDiffusionKeys>& intermittent_diffusion_keys() {
   using Keys = IntermittentDiffusionKeys;
   static const auto table =

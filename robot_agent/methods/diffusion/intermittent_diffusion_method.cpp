@@ -30,6 +30,7 @@ IntermittentDiffusionOptions intermittent_diffusion_options(const Mission& missi
 
 namespace {
 
+/// Leaves the reach infinite: the virtual diffusion reads all neighbours.
 Result<PreparedControl> prepare_diffusion(const ControlContext& context) {
   const Shared<IntermittentDiffusionOptions> options =
       intermittent_diffusion_options(context.mission, context.body);

@@ -7,8 +7,9 @@
 namespace swarm::agent {
 namespace {
 
-constexpr double kNone_per_m2 = 1e-9;  // neither robots nor a plan for any
+constexpr double kNone_per_m2 = 1e-9;  // neither robots here nor planned here
 
+/// Kernel estimate ρ̂ of the neighbours' density and its gradient; the robot itself does not count.
 PlannedDensity::Value estimate(const Vec2& position_m, std::span<const Neighbour> neighbours,
                                double kernel_m) {
   const double h2 = kernel_m * kernel_m;
@@ -35,6 +36,7 @@ double density_potential(const Vec2& position_m, const PlannedDensity& planned,
   return options.push_mps * options.kernel_m * (real - wanted) / (real + wanted);
 }
 
+/// Cut to p, since the gradient grows without bound where both densities are small.
 Vec2 density_attraction(const Vec2& position_m, const PlannedDensity& planned,
                         std::span<const Neighbour> neighbours,
                         const DensityAttractionOptions& options) {

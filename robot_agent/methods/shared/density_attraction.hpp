@@ -9,6 +9,7 @@
 
 namespace swarm::agent {
 
+/// The strength and the kernel.
 struct DensityAttractionOptions {
   double push_mps = 0.0;  ///< p; 0 = off
   double kernel_m = 2.0;  ///< h
@@ -22,7 +23,8 @@ struct DensityAttractionOptions {
 ///   U(x) = p h (ρ̂ − ρ*) / (ρ̂ + ρ*)         [m²/s], in [−p h, p h]
 ///   ρ̂(x) = Σⱼ K(‖x − xⱼ‖)      K(d) = 3/(πh²) (1 − d²/h²)² for d < h: a kernel estimate from the
 ///                               neighbours received, without a root or an exponential
-///   ρ*(x)                       the whole mixture at the plan's time, seen through the same kernel
+///   ρ*(x)                       the whole mixture at the plan's time, smoothed by a Gaussian as
+///   wide
 ///
 /// −∂U/∂x leads from where the swarm is denser than planned to where it is less dense.
 double density_potential(const Vec2& position_m, const PlannedDensity& planned,

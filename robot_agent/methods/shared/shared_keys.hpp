@@ -7,7 +7,7 @@
 /// Keys of the mission's control section that more than one built-in method reads.
 namespace swarm::agent {
 
-/// Of methods that follow a path.
+/// Keys of methods that follow a path.
 struct PathKeys {
   double look_ahead_s = 6.0;
   double approach_gain_hz = 0.8;
@@ -23,10 +23,10 @@ inline OptionTable<PathKeys> path_keys() {
               "speed per metre to the aim point near the end")
       .number("stuck_after_s", &PathKeys::stuck_after_s, positive(3600),
               "no progress for this long: diffusion to a place nearby")
-      .number("escape_s", &PathKeys::escape_s, between(0, 600), "longest way to such a place");
+      .number("escape_s", &PathKeys::escape_s, between(0, 600), "longest time to such a place");
 }
 
-/// Of methods that obstacles push.
+/// Keys of methods with a repulsion from obstacles.
 struct ObstacleKeys {
   double obstacle_gap_m = 0.5;
   double obstacle_push_mps = 1.0;

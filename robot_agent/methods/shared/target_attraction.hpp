@@ -9,19 +9,19 @@
 
 namespace swarm::agent {
 
-/// An intermediate place to go to.
+/// An intermediate target.
 struct Target {
   Vec2 end_m = Vec2::Zero();
   double width_m = 1.0;  ///< w
 };
 
-/// \pre radius_m > 0
+/// The target at `end_m` for a robot at `start_m`. \pre radius_m > 0
 inline Target target_from(const Vec2& start_m, const Vec2& end_m, double radius_m) {
   return {end_m, std::max((end_m - start_m).norm(), radius_m)};
 }
 
 /// Attraction to an intermediate target [intermittent diffusion, eq. 13], in the form of the
-/// official code, a Gaussian well as wide as the way is long, w = max(‖end − start‖, r):
+/// official code, a Gaussian well as wide as the distance to it, w = max(‖end − start‖, r):
 ///
 ///   K(x) = w² (1 − e),  ∇K = e (x − end),  e = exp(−‖x − end‖²/(2w²))
 inline Potential target_attraction(const Vec2& position_m, const Target& target) {

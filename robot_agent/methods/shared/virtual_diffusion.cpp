@@ -12,9 +12,10 @@ namespace swarm::agent {
 namespace {
 
 constexpr std::size_t kSteps = 128;
+// The last 24 steps have no noise, so that the path ends near a minimum.
 constexpr std::size_t kNoisySteps = 104;
 
-// Back into [low, high], as often as it takes.
+// Reflects x at low and high until it is within; the midpoint if the interval is empty.
 double mirrored(double x, double low, double high) {
   if (!(low < high)) return 0.5 * (low + high);
   const double period = 2.0 * (high - low);
@@ -43,6 +44,7 @@ Vec2 virtual_diffusion(const Vec2& from_m, const DiffusionPotential& potential, 
   const Vec2 sigma = options.noise_mps05 * Vec2(uniform01(rng), uniform01(rng));
   const double step_s = options.time_s * uniform01(rng) / static_cast<double>(kNoisySteps);
   const Vec2 spread_m = std::sqrt(step_s) * sigma;
+  // On the stack: the control loop does not allocate.
   std::array<Vec2, kSteps> path_m;
   Vec2 x = from_m;
   for (std::size_t i = 0; i < kSteps; ++i) {
@@ -55,6 +57,7 @@ Vec2 virtual_diffusion(const Vec2& from_m, const DiffusionPotential& potential, 
     path_m[i] = x;
   }
   if (!in_sight) return x;
+  // Backwards from the end: the last position in line of sight.
   const auto last = std::find_if(path_m.rbegin(), path_m.rend(), [&](const Vec2& p) {
     return world.segment_is_free(from_m, p, options.clearance_m);
   });

@@ -11,13 +11,14 @@
 
 namespace swarm::agent {
 
+/// Noise, duration and clearance.
 struct DiffusionOptions {
   double noise_mps05 = 3.0;  ///< largest σ [m/√s]; each run and axis draws its own from U(0, 1)
   double time_s = 10.0;      ///< largest duration, drawn as well
   double clearance_m = 0.1;  ///< kept to obstacles and the border
 };
 
-/// What a robot knows of the potential it diffuses in.
+/// The potential F + G that a robot diffuses in.
 struct DiffusionPotential {
   const ShapeField* shape = nullptr;  ///< null: no attraction
   std::span<const Neighbour> neighbours;
@@ -25,14 +26,14 @@ struct DiffusionPotential {
 };
 
 /// Where a robot that is stuck at `from_m` would be after diffusing for a while [intermittent
-/// diffusion, eq. 11, 12 and 16]: computed only, nobody walks this path.
+/// diffusion, eq. 11, 12 and 16]: computed only, no robot drives this path.
 ///
 ///   dX = −∇(F + G) dt + σ dW,     then σ = 0 for the last fifth of the steps
 ///
 /// by Euler–Maruyama, mirrored at the border of the world; a step that would hit an obstacle is not
-/// made, as a mirror would have it on average. Neighbours stand where they are received now. If
-/// `in_sight`, the last place of the path is taken that can be reached straight. 128 steps, about
-/// 20 µs; does not allocate.
+/// made, which is what reflection does on average. Neighbours stay at their present estimates. If
+/// `in_sight`, the result is the last position of the path that can be reached straight. 128 steps,
+/// about 20 µs; does not allocate.
 Vec2 virtual_diffusion(const Vec2& from_m, const DiffusionPotential& potential, const World& world,
                        bool in_sight, const DiffusionOptions& options, Rng& rng);
 

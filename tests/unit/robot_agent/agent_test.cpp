@@ -135,7 +135,7 @@ TEST(Agent, ChangesOverToAnotherPlanWithoutAJump) {
     sut.agents[i].accept_plan(plan_over_the_block(), sut.positions[i]);
   for (int step = 0; step < 80; ++step) sut.tick(MissionPhase::kRunning, true);
 
-  // By the planner's word or, for every third, on its own: the way begins where the robot is.
+  // By the planner's entry or, for every third, without one: the path begins where the robot is.
   for (std::size_t i = 0; i < sut.agents.size(); ++i) {
     std::optional<PlanEntry> entry;
     if (i % 3 != 0) entry = PlanEntry{static_cast<std::uint32_t>(i % 2), 0.5};

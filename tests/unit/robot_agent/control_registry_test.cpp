@@ -28,7 +28,7 @@ const OptionTable<DriftOptions>& drift_table() {
   return table;
 }
 
-/// Goes east, whatever the plan is.
+/// A method that drives east and ignores the plan.
 class Drift final : public ControlMethod {
  public:
   explicit Drift(const DriftOptions& options) : options_(options) {}
@@ -108,7 +108,7 @@ Flown fly(const std::string& more) {
   return flown;
 }
 
-TEST(ControlRegistry, FliesAMethodOfSomebodyElse) {
+TEST(ControlRegistry, RunsAMethodAddedByAUser) {
   const Flown flown = fly("");
   EXPECT_EQ(flown.output.mode, RobotMode::kMoving);
   EXPECT_EQ(flown.output.velocity_mps, Vec2(0.75, 0));

@@ -46,7 +46,7 @@ TEST(DriverRegistry, GivesEachRobotTheOptionsOfItsGroup) {
   EXPECT_EQ(port(1), 7.0);
 }
 
-TEST(Driver, StopsByAZeroCommandUnlessItKnowsBetter) {
+TEST(Driver, StopsByAZeroCommandByDefault) {
   const DriverRegistry registry = builtin();
   const Mission mission;
   const auto driver = *registry.find("single_integrator")

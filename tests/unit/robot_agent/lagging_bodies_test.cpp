@@ -28,8 +28,8 @@ BodySpec body(const std::string& model) {
   return b;
 }
 
-/// Robots that all want to where others are, under the filter that knows their lag, on bodies that
-/// have it. Returns the least surface gaps ever: of two robots, and of a robot and an obstacle.
+/// Robots that all head for positions of others, with bodies that have a lag and a filter set to
+/// it. Returns the least surface gaps of the run: between two robots, and to an obstacle.
 std::pair<double, double> fly(const BodySpec& spec, const World& world, std::vector<Vec2> positions,
                               const std::vector<Vec2>& goals) {
   const SafetyOptions options{.radius_m = spec.radius_m,
@@ -85,7 +85,7 @@ TEST(LaggingBodies, DoNotMeetWhenTheySwapPositions) {
   for (const std::string model : {"double_integrator", "unicycle"}) {
     const auto [gap_m, obstacle_m] = fly(body(model), world, starts, goals);
 
-    // A turning unicycle leaves its line by centimetres; what has inertia only, keeps the margins.
+    // A turning unicycle leaves its line by centimetres; bodies with inertia only keep the margins.
     const double leaves_m = model == "unicycle" ? 0.04 : 1e-6;
     EXPECT_GT(gap_m, 0.25 - leaves_m) << model;
     EXPECT_GT(obstacle_m, 0.05 - leaves_m) << model;

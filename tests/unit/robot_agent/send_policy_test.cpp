@@ -37,7 +37,7 @@ TEST(SendPolicy, SendsBeforeATurnInvalidatesTheExtrapolation) {
   SendPolicy sut(options());
   sut.record_sent(state(0, {0, 0}, {1, 0}));
 
-  EXPECT_FALSE(sut.must_send(state(100, {0.1, 0}, {1, 0.4})));  // 4 cm until it can speak again
+  EXPECT_FALSE(sut.must_send(state(100, {0.1, 0}, {1, 0.4})));  // 4 cm until it can publish again
   EXPECT_TRUE(sut.must_send(state(100, {0.1, 0}, {1, 0.6})));
 }
 

@@ -62,7 +62,7 @@ TEST(ChooseKilled, DrawsEveryRobotAboutAsOften) {
   for (const int times : often) EXPECT_NEAR(times, 500, 97);
 }
 
-TEST(ChooseKilled, LooksInsideTheBoxAlone) {
+TEST(ChooseKilled, ChoosesInsideTheBoxOnly) {
   const Kill kill{.count = 3, .in_m = Box{{2.5, 0}, {7.5, 1}}};
   for (const RobotId robot : choose(kill, row(20), 5)) {
     EXPECT_GE(robot.value(), 3U);
@@ -71,7 +71,7 @@ TEST(ChooseKilled, LooksInsideTheBoxAlone) {
   EXPECT_EQ(choose(kill, row(5), 5), std::vector({RobotId(3), RobotId(4)})) << "there are but two";
 }
 
-TEST(ChooseKilled, TakesTheIdsThatStillLive) {
+TEST(ChooseKilled, TakesTheIdsThatAreStillAlive) {
   EXPECT_EQ(choose({.robots = {RobotId(4), RobotId(1), RobotId(30)}}, row(20), 5),
             std::vector({RobotId(1), RobotId(4)}));
 }

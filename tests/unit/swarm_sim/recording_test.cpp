@@ -7,7 +7,7 @@
 namespace swarm::launcher {
 namespace {
 
-/// The places, in metres, that are kept of a robot which is at k m in period k.
+/// The positions, in metres, that a recording keeps of a robot that is at k m in period k.
 std::vector<double> kept_m(std::uint64_t every, std::uint32_t periods) {
   Mission mission;
   mission.robots.count = 1;

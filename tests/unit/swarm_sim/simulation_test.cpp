@@ -148,7 +148,7 @@ TEST(SimulatedNetwork, LosesItsShareAndDeliversTheRestOnceAndInTime) {
   EXPECT_NEAR(received, 0.75 * kSent, 0.03 * kSent);
 }
 
-TEST(SimulatedNetwork, IsBadOnlyWhenItIsToBe) {
+TEST(SimulatedNetwork, IsFaultyOnlyInTheInterval) {
   const LinkFaults faults{
       .loss = 1.0, .from = std::chrono::seconds(10), .until = std::chrono::seconds(20)};
   const SteadyTime begin{std::chrono::seconds(1)};

@@ -9,6 +9,7 @@
 namespace swarm::agent {
 namespace {
 
+// The walk's steps grow up to this multiple of the first.
 constexpr std::size_t kStrongest = 4;
 
 }  // namespace
@@ -22,6 +23,8 @@ void EscapeWalk::forget() {
   stuck_ = false;
 }
 
+/// The ring past_m_ holds the last ℓ positions; next_ is the oldest, the one to compare with. A
+/// direction is kept for `step` ticks, also if the robot comes free meanwhile.
 Vec2 EscapeWalk::update(const Vec2& position_m, Rng& rng) {
   const bool was_stuck = stuck_;
   stuck_ = seen_ >= past_m_.size() && (position_m - past_m_[next_]).norm() < options_.moved_min_m;

@@ -10,6 +10,7 @@
 
 namespace swarm::agent {
 
+/// The stuck test's and the walk's parameters.
 struct EscapeWalkOptions {
   std::size_t window = 40;   ///< ℓ, in ticks
   double moved_min_m = 0.3;  ///< Δ_stuck
@@ -23,9 +24,9 @@ struct EscapeWalkOptions {
 ///   PF_escape = stuck(b) s min(n, 4) (r_x, r_y)      (r_x, r_y) the walk's n-th random direction
 ///
 /// The code's robots make 1.5 m a tick and draw at every tick; ours make 0.15 m, so a direction is
-/// kept for some ticks: steps of a walk as long as the code's. Steps grow while they are in vain,
-/// so that what other fields hold in balance ends some time. A walk ends with the first step after
-/// which the robot is not stuck.
+/// kept for some ticks, which gives the walk steps as long as the code's. Steps grow while the
+/// robot stays stuck, so that they outgrow a balance of the other fields. A walk ends with the
+/// first step after which the robot is not stuck.
 class EscapeWalk {
  public:
   explicit EscapeWalk(const EscapeWalkOptions& options);
@@ -33,7 +34,7 @@ class EscapeWalk {
   /// One tick; returns PF_escape. No allocation.
   Vec2 update(const Vec2& position_m, Rng& rng);
 
-  /// Time before now is no time stuck (the robot was held, has arrived, has another way).
+  /// Starts the stuck test anew (the robot was held, has arrived, has another path).
   void forget();
 
   bool is_stuck() const { return stuck_; }
@@ -41,7 +42,7 @@ class EscapeWalk {
 
  private:
   EscapeWalkOptions options_;
-  std::vector<Vec2> past_m_;  // ring of the last ℓ places
+  std::vector<Vec2> past_m_;  // ring of the last ℓ positions
   std::size_t seen_ = 0;
   std::size_t next_ = 0;
   std::size_t step_left_ = 0;

@@ -8,6 +8,7 @@
 
 namespace swarm::agent {
 
+/// The sigmoid's parameters, by the paper's code.
 struct GoalFieldOptions {
   double floor = 0.75;            ///< strength that remains at the goal: 60 of 80 in the code
   double rise = 0.25;             ///< of the sigmoid

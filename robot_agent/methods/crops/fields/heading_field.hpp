@@ -9,10 +9,11 @@
 
 namespace swarm::agent {
 
+/// Which neighbours count, and how much.
 struct HeadingFieldOptions {
   double mean_m = 1.2;      ///< μ: not too near …
   double sigma_m = 0.5;     ///< σ: … nor too far
-  double moving_mps = 0.3;  ///< slower ones are stuck, and have no say
+  double moving_mps = 0.3;  ///< slower neighbours count as stuck and are left out
   double strength = 0.6;    ///< of all headings together
 };
 

@@ -6,6 +6,8 @@
 
 namespace swarm::agent {
 
+/// The sum is over obstacles, not over the convex parts they are split into: only the nearest part
+/// of each counts, or cutting an obstacle in two would double its force.
 Vec2 obstacle_field(const Vec2& position_m, const World& world,
                     const ObstacleFieldOptions& options) {
   const std::vector<ConvexObstacle>& parts = world.convex_obstacles();
@@ -16,6 +18,7 @@ Vec2 obstacle_field(const Vec2& position_m, const World& world,
   const auto add = [&] {
     if (obstacle == parts.size()) return;
     const double gap_m = std::max(options.gap_min_m, nearest.distance_m - options.radius_m);
+    // x − c_o is the unit gradient times the distance, here no less than the radius.
     const double potential = options.gain_m / (gap_m * gap_m);
     sum += nearest.gradient * std::max(nearest.distance_m, options.radius_m) * potential;
   };

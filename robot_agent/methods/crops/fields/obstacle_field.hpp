@@ -6,6 +6,7 @@
 
 namespace swarm::agent {
 
+/// Range and strength of the field.
 struct ObstacleFieldOptions {
   double radius_m = 0.2;
   double reach_m = 1.0;     ///< Δ_obst, of the surface gap

@@ -9,6 +9,7 @@
 
 namespace swarm::agent {
 
+/// Range and strength of the field.
 struct SeparationFieldOptions {
   double reach_m = 2.4;          ///< Δ_sep, between centres: 48 px
   double steepness_per_m = 2.0;  ///< δ_sep

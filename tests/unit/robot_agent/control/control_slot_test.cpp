@@ -12,7 +12,7 @@
 namespace swarm::agent {
 namespace {
 
-/// Counts how many of it there are; `Room` decides whether a slot has room for it.
+/// A method that counts its instances; `Room` decides whether one fits into a slot.
 template <std::size_t Room>
 class Counted final : public ControlMethod {
  public:
@@ -55,7 +55,7 @@ TYPED_TEST(ControlSlotOf, KeepsItsMethodWhereverItIsMoved) {
   EXPECT_EQ(alive, 0);
 }
 
-TEST(ControlSlot, TakesAMethodThatSomebodyElseMade) {
+TEST(ControlSlot, TakesAMethodFromTheHeap) {
   int alive = 0;
   {
     const ControlSlot slot = ControlSlot::of(std::make_unique<Counted<8>>(alive, 3.0));

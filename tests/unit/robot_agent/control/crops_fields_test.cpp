@@ -99,14 +99,14 @@ TEST(HeadingField, FollowsThoseThatMoveAtTheRightDistance) {
   const HeadingFieldOptions o{.mean_m = 1.2, .sigma_m = 0.5, .moving_mps = 0.3, .strength = 0.6};
   const std::vector<Neighbour> neighbours{at({1.2, 0}, {0, 1.4}),       // at μ
                                           at({-1.7, 0}, {1.4, 0}),      // one σ off
-                                          at({0, 1.2}, {-0.29, 0.0})};  // stuck: has no say
+                                          at({0, 1.2}, {-0.29, 0.0})};  // stuck: does not count
   const double weight = std::exp(-0.5);
 
   const Vec2 field = heading_field({0, 0}, neighbours, o);
 
   EXPECT_NEAR(field.y(), 0.6 / (1.0 + weight), 1e-12);
   EXPECT_NEAR(field.x(), 0.6 * weight / (1.0 + weight), 1e-12);
-  EXPECT_EQ(heading_field({50, 0}, neighbours, o), Vec2::Zero());  // nobody near
+  EXPECT_EQ(heading_field({50, 0}, neighbours, o), Vec2::Zero());  // no neighbour near
 }
 
 TEST(Superposition, GivesTheStrongestTheMostInfluence) {
@@ -148,7 +148,7 @@ TEST(EscapeWalk, EndsWithItsStepOnceTheRobotMoves) {
   EXPECT_EQ(sut.update(position, rng), Vec2::Zero());
 }
 
-TEST(EscapeWalk, DoesNotTroubleARobotThatMoves) {
+TEST(EscapeWalk, DoesNotDisturbARobotThatMoves) {
   EscapeWalk sut({.window = 20, .moved_min_m = 0.3, .step = 5, .strength = 1.0});
   Rng rng(1);
 

@@ -169,8 +169,8 @@ TEST(Forces, DensityAttractionIsTheGradientOfItsPotential) {
   EXPECT_GT(compared, 100);
 }
 
-/// The density of a mixture is that of all its legs, seen through the kernel: against a sum over a
-/// grid.
+/// The density of a mixture is that of all its legs, smoothed by the kernel; compared with a sum
+/// over a grid.
 TEST(Forces, PlannedDensityIsTheWholeMixtureThroughTheKernel) {
   const double kernel_sigma_m = 0.7;
   PlannedDensity sut;

@@ -40,7 +40,7 @@ struct Body {
   Vec2 velocity = Vec2::Zero();
 };
 
-/// Everyone knows everyone as of the last tick.
+/// Each robot knows all others as of the last tick.
 void step(std::vector<Body>& bodies, std::vector<SafetyFilter>& filters) {
   std::vector<Vec2> commanded(bodies.size(), Vec2::Zero());
   for (std::size_t i = 0; i < bodies.size(); ++i) {
@@ -80,7 +80,7 @@ Vec2 random_place(Rng& rng, double half_m) {
   return {uniform(rng, -half_m, half_m), uniform(rng, -half_m, half_m)};
 }
 
-/// Least gap between robots that obey, and of them to obstacles, over ten seconds.
+/// Least gap between robots that use the filter, and from them to obstacles, over ten seconds.
 double fly(std::vector<Body> bodies, const World& world) {
   std::vector<SafetyFilter> filters(bodies.size(), SafetyFilter(world, options()));
   double least_m = 1e9;
@@ -110,7 +110,7 @@ TEST(SafetyScenes, NoContactsInDenseGroupsCornersAndCrossings) {
     for (int tries = 0; tries < 60 && bodies.size() < 10; ++tries) {
       const Vec2 p = random_place(rng, 5);
       if (!room_for(p, bodies, world)) continue;
-      // Some swap places, some cross at random, one in ten stands dead.
+      // Some swap positions, some cross at random, one in ten does not move.
       const Vec2 goal = uniform01(rng) < 0.5 ? Vec2(-p) : random_place(rng, 5);
       bodies.push_back({p, goal, uniform01(rng) < 0.1 ? Kind::kFrozen : Kind::kObeys});
     }
@@ -118,7 +118,7 @@ TEST(SafetyScenes, NoContactsInDenseGroupsCornersAndCrossings) {
   }
 }
 
-TEST(SafetyScenes, OneWhoRamsAtFullSpeedIsEvadedInTheOpen) {
+TEST(SafetyScenes, ARobotThatRamsAtFullSpeedIsEvadedInTheOpen) {
   const World world = *World::make({{-100, -100}, {100, 100}}, {});
   Rng rng(12);
   for (int scene = 0; scene < scenes(); ++scene) {
@@ -128,7 +128,7 @@ TEST(SafetyScenes, OneWhoRamsAtFullSpeedIsEvadedInTheOpen) {
                                 {from, -20.0 * from, Kind::kRams}};
     std::vector<SafetyFilter> filters(2, SafetyFilter(world, options()));
     for (int k = 0; k < 100; ++k) {
-      if (scene % 2 == 0) bodies[1].goal = bodies[0].position + 5 * bodies[0].velocity;  // hunts
+      if (scene % 2 == 0) bodies[1].goal = bodies[0].position + 5 * bodies[0].velocity;  // pursuit
       step(bodies, filters);
       ASSERT_GT((bodies[0].position - bodies[1].position).norm(), 2 * kRadius_m)
           << "scene " << scene << " step " << k;

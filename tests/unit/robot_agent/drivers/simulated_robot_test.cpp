@@ -91,7 +91,7 @@ TEST(SimulatedRobot, AddsMotionNoiseToEveryStepUnderCommand) {
   EXPECT_EQ(sut.measure(at(100 * kSteps + 2000)).position_m, stopped);
 }
 
-TEST(SimulatedRobot, MeasuresWithNoiseAndKnowsBetter) {
+TEST(SimulatedRobot, MeasuresWithNoiseAndReportsItsTruePosition) {
   SimulatedRobot sut(at(0), SingleIntegrator(Vec2(3, 4)), {.position_m = 0.2}, 7);
   constexpr int kSteps = 20'000;
   double sum = 0.0;

@@ -31,7 +31,7 @@ constexpr std::uint64_t kSeed = 5;
 constexpr int kTicks = 130;
 constexpr Duration kPeriod = std::chrono::milliseconds(100);
 
-/// Noise in motion and measurement; all robots hear each other all the time.
+/// Noise in motion and measurement; all robots receive each other all the time.
 Mission noisy_mission() {
   auto mission = load_mission(fs::path(SWARM_SOURCE_DIR) / "deploy/missions/small.yaml");
   EXPECT_TRUE(mission.has_value());
@@ -43,7 +43,7 @@ Mission noisy_mission() {
   return *std::move(mission);
 }
 
-/// What the planner and the launcher of a run send, with the simulation's words.
+/// What the planner and the launcher of a run send, with the content of the simulation.
 class Ground final : public launcher::SimulationObserver {
  public:
   explicit Ground(link::InprocBus& bus) : participant_(bus.make_participant()) {

@@ -51,7 +51,7 @@ TEST(NeighbourTable, ReportsThePossibleStopAge) {
   EXPECT_NEAR(sut.at(at(500), Vec2::Zero()).all[0].position_m.x(), 1.5, 1e-12);
 }
 
-/// Hears robot 3, one metre away, ten times a second; the first `lost` of them do not come.
+/// Receives robot 3, one metre away, ten times a second; `lost` messages after the first are lost.
 void receive_at_every_tick(NeighbourTable& sut, int count, int lost) {
   static std::uint32_t sequence = 0;
   for (int i = 0; i < count; ++i) {
@@ -69,7 +69,7 @@ TEST(NeighbourTable, RatesALinkDegradedWhileUpdatesAreMissing) {
   receive_at_every_tick(sut, 20, 0);
   EXPECT_FALSE(sut.link().poor);
   receive_at_every_tick(sut, 10, 1);
-  EXPECT_FALSE(sut.link().poor) << "one word may get lost";
+  EXPECT_FALSE(sut.link().poor) << "one message may get lost";
   receive_at_every_tick(sut, 10, 3);
   EXPECT_TRUE(sut.link().poor);
   receive_at_every_tick(sut, 200, 0);
@@ -124,9 +124,9 @@ TEST(NeighbourTable, DropsRobotsThatLeaveTheCommunicationRadiusBetweenUpdates) {
   sut.take(report(3, 1, 0, {5.9, 0}, {1, 0}), Vec2::Zero());
   sut.take(report(4, 1, 0, {5.9, 0}), Vec2::Zero());
 
-  EXPECT_EQ(sut.at(at(200), Vec2::Zero()).all.size(), 1U);   // it went
-  EXPECT_EQ(sut.at(at(200), Vec2(-0.2, 0)).all.size(), 0U);  // I went
-  EXPECT_EQ(sut.at(at(200), Vec2::Zero()).all.size(), 0U);   // and must hear it again
+  EXPECT_EQ(sut.at(at(200), Vec2::Zero()).all.size(), 1U);   // it left
+  EXPECT_EQ(sut.at(at(200), Vec2(-0.2, 0)).all.size(), 0U);  // we left
+  EXPECT_EQ(sut.at(at(200), Vec2::Zero()).all.size(), 0U);   // and must receive it again
 }
 
 TEST(NeighbourTable, RefusesOldAndRepeatedUpdates) {
@@ -169,7 +169,7 @@ TEST(NeighbourTable, PositionsAreExactToMicrometresFarAwayAndLateInAMission) {
   }
 }
 
-/// What the table is to believe, by looking at everybody.
+/// The expected estimates, by a scan of all robots.
 class Naive {
  public:
   void take(const NeighbourReport& r, const Vec2& own_m) {
@@ -247,7 +247,7 @@ TEST(NeighbourTable, ReportsCloseNeighboursFirst) {
   for (const Neighbour& n : fresh.close) EXPECT_LE(n.position_m.y(), 1.5);
   EXPECT_EQ(fresh.close.data(), fresh.all.data());
 
-  // Who is silent for 0.2 s too long may be 0.4 m nearer by now.
+  // A robot silent for 0.2 s longer than expected may be 0.4 m nearer by now.
   const Neighbourhood old = sut.at(at(900), Vec2::Zero());
   EXPECT_EQ(old.all.size(), 29U);
   EXPECT_EQ(old.close.size(), 12U);

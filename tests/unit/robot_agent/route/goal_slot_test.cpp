@@ -31,7 +31,7 @@ Vec2 keep(GoalSlot& place, const Vec2& position_m, const std::vector<Vec2>& othe
 TEST(GoalSlot, IsReachedInTheGoalNearTheOwnSlot) {
   GoalSlot sut(kGoal, {11, 10}, {});
 
-  EXPECT_FALSE(sut.has_arrived(at(0), {7.5, 10}));  // inside, and far from the place
+  EXPECT_FALSE(sut.has_arrived(at(0), {7.5, 10}));  // inside, but far from the slot
   EXPECT_TRUE(sut.has_arrived(at(100), {10.5, 10}));
   EXPECT_FALSE(sut.has_arrived(at(200), {13.1, 10}));  // pushed out
   EXPECT_EQ(sut.aim_m(), Vec2(11, 10));
@@ -77,7 +77,7 @@ TEST(GoalSlot, IsKeptWhileThereIsRoom) {
 TEST(GoalSlot, PassesPressureFromOutsideOn) {
   GoalSlot sut(kGoal, {12, 10}, {});
 
-  // Between one who is still outside (13.05, 0.7 m away) and one farther in: inwards.
+  // Between a robot still outside (13.05, 0.7 m away) and one farther in: inwards.
   const Vec2 desired_velocity = keep(sut, {12.35, 10}, {{13.05, 10}, {11.65, 10}});
 
   EXPECT_LT(desired_velocity.x(), -0.2);

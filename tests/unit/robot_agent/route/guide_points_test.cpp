@@ -7,7 +7,7 @@
 namespace swarm::agent {
 namespace {
 
-// A wall that the way goes around:
+// A wall that the path goes around:
 //
 //   12   . 1 ------ 2 .
 //   10       ####

@@ -42,7 +42,7 @@ TEST(Polyline, ASegmentHoldsItsBeginAndNotItsEnd) {
   EXPECT_EQ(second.position(13.0).tangent, Vec2(0, 1));
 }
 
-TEST(Polyline, OfOnePointIsThere) {
+TEST(Polyline, OfOnePointHasNoLengthAndNoTangent) {
   const Polyline point({{3, 4}});
 
   EXPECT_EQ(point.length_m(), 0.0);

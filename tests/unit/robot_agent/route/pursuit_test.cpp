@@ -10,7 +10,7 @@ namespace {
 //   y
 //   │        ┌── 20,20
 //   │  wall  │
-//   └────────┘ 20,0         way: (0,0) → (20,0) → (20,20), wall inside the corner
+//   └────────┘ 20,0         path: (0,0) → (20,0) → (20,20), wall inside the corner
 World corner_world() {
   return *World::make({{-10, -10}, {40, 40}},
                       {*Polygon::make({{2, 2}, {18, 2}, {18, 30}, {2, 30}})});
@@ -44,7 +44,7 @@ TEST(Pursuit, ReachesTheEndAroundTheCorner) {
   }
 
   EXPECT_LT((robot - Vec2(20, 20)).norm(), 0.05);
-  EXPECT_LT(walked, 40.0);  // it may cut the corner, never walk more than the way
+  EXPECT_LT(walked, 40.0);  // it may cut the corner, but drives no farther than the path
 }
 
 TEST(Pursuit, FallsBackToThePathWhenPushedAroundACorner) {
@@ -53,7 +53,7 @@ TEST(Pursuit, FallsBackToThePathWhenPushedAroundACorner) {
   for (double x = 0; x <= 20; x += 0.5) sut.update({x, 0}, world);
   for (double y = 0; y <= 10; y += 0.5) sut.update({20, y}, world);
 
-  const auto aim = sut.update({10, 0}, world);  // thrown back behind the wall
+  const auto aim = sut.update({10, 0}, world);  // pushed back behind the wall
 
   EXPECT_TRUE(aim.visible);
   EXPECT_TRUE(world.segment_is_free({10, 0}, aim.point_m, 0.2));

@@ -50,7 +50,7 @@ TEST(Schedule, WaitingIsNoLag) {
   EXPECT_DOUBLE_EQ(sut.lag_s(9, 10), -1);
   EXPECT_DOUBLE_EQ(sut.lag_s(22, 10), 2);
   EXPECT_DOUBLE_EQ(sut.lag_s(0, 0), 0);    // before the start
-  EXPECT_DOUBLE_EQ(sut.lag_s(40, 20), 0);  // at the end, for good
+  EXPECT_DOUBLE_EQ(sut.lag_s(40, 20), 0);  // at the end
   EXPECT_DOUBLE_EQ(sut.lag_s(24, 20), -2);
 }
 
@@ -81,7 +81,7 @@ TEST(Schedule, LagIsTheDistanceToTheNearestTimeAtThatPoint) {
         nearest = tau - t;
       }
     }
-    // The last point is kept for good, the first one was held since ever.
+    // Before its first entry and after its last one the schedule is constant.
     if (at_m >= entries.back().at_m - 1e-9) nearest = std::min(nearest, 0.0);
     EXPECT_NEAR(sut.lag_s(tau, at_m), nearest, 0.02) << "round " << round;
   }

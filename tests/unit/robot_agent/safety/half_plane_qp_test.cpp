@@ -23,7 +23,7 @@ double worst_violation(const Vec2& u, const std::vector<HalfPlane>& constraints)
 }
 
 /// Squared distance of the best feasible point, found by trying every candidate an optimum can be:
-/// the wish, its projections on lines and the circle, all intersections.
+/// the desired velocity, its projections on lines and the circle, all intersections.
 double brute_force(const Vec2& desired_velocity, const std::vector<HalfPlane>& constraints, double speed_max) {
   std::vector<Vec2> candidates = {desired_velocity};
   if (desired_velocity.norm() > 0) candidates.push_back(desired_velocity * (speed_max / desired_velocity.norm()));
@@ -64,7 +64,7 @@ TEST(HalfPlaneQp, EqualsTheBestOfAllCandidatePoints) {
 
     const double best = brute_force(desired_velocity, constraints, 1.5);
     if (!u) {
-      // Scenes that only rounding can tell from infeasible ones may go either way.
+      // Scenes that differ from infeasible ones by rounding only may go either way.
       EXPECT_TRUE(std::isinf(best) || worst_violation(Vec2::Zero(), constraints) > 0) << round;
       continue;
     }

@@ -40,8 +40,8 @@ double least_gap(const std::vector<Body>& bodies) {
   return gap;
 }
 
-/// A crowd in lock-step that knows its neighbours as they were `delay` steps ago, extrapolated,
-/// with a share of the messages lost. Returns the least gap ever.
+/// A dense group in lock-step that knows its neighbours as they were `delay` steps ago,
+/// extrapolated, with a share of the messages lost. Returns the least gap of the run.
 double fly_dense_region(std::vector<Body>& bodies, const World& world, int steps, std::size_t delay,
                  double loss, Rng& rng) {
   std::vector<SafetyFilter> filters(bodies.size(), SafetyFilter(world, options()));
@@ -223,9 +223,9 @@ TEST(SafetyFilter, DoesNotFollowOntoOneThatMayHaveStopped) {
   const double margin_m = options().neighbour_margin_m / 3.0;
   EXPECT_NEAR(sut.filter(Vec2::Zero(), desired_velocity, {&ahead, 1}).x(),
               (0.6 - 2.0 * kRadius_m - margin_m) / (2.0 * kPeriod_s), 1e-9);
-  ahead.possible_stop_age_s = 0.8;  // it would be upon us: it is not, but we come no nearer
+  ahead.possible_stop_age_s = 0.8;  // stopped then, it would touch us: no nearer
   EXPECT_NEAR(sut.filter(Vec2::Zero(), desired_velocity, {&ahead, 1}).x(), 0.0, 1e-9);
-  // One that comes nearer is where it is believed, or farther.
+  // One that comes nearer is at the estimated position, or farther.
   ahead.velocity_mps = {-0.1, 0.0};
   EXPECT_GT(sut.filter(Vec2::Zero(), desired_velocity, {&ahead, 1}).x(), 0.1);
 }

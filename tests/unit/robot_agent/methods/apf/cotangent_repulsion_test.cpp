@@ -25,7 +25,7 @@ TEST(CotangentRepulsion, IsTheExactCotangentAndItsSquaredCosecant) {
   const Potential g = cotangent_repulsion(Vec2::Zero(), one, kOptions);
 
   EXPECT_NEAR(g.energy_m2, 0.01 / std::tan(theta), 1e-15);
-  // cot·csc in the place of csc² would be off by cos θ = 0.84.
+  // cot·csc instead of csc² would be off by cos θ = 0.84.
   EXPECT_NEAR(g.gradient_m.x(), 0.01 * std::numbers::pi * 0.6 / std::pow(std::sin(theta), 2),
               1e-14);
   EXPECT_EQ(g.gradient_m.y(), 0.0);
@@ -65,7 +65,7 @@ TEST(CotangentRepulsion, GradientAndCurvatureAreThoseOfDifferences) {
     std::vector<Neighbour> others;
     for (int i = 0; i < 12; ++i) {
       const Vec2 p(uniform(rng, -1.2, 1.2), uniform(rng, -1.2, 1.2));
-      // Not across the corner of g at R, and not where third differences rule.
+      // Not across the corner of g at R, and not where third differences dominate.
       if (p.norm() > 0.25 && std::abs(p.norm() - 1.0) > 1e-3) others.push_back(at(p));
     }
     const auto energy = [&](const Vec2& p) {

@@ -54,13 +54,13 @@ TEST(DiffusionEscape, FreesARobotFromAU) {
   EXPECT_GT(escape.escapes(), 0U);
 }
 
-TEST(DiffusionEscape, IsWhatFreesIt) {
+TEST(DiffusionEscape, ARobotStaysInAUWithoutIt) {
   Trapped robot;
 
   EXPECT_FALSE(robot.arrives(nullptr));
 }
 
-TEST(DiffusionEscape, LeavesRobotsAloneThatComeOnOrDoNotWantTo) {
+TEST(DiffusionEscape, IgnoresRobotsThatProgressOrDoNotWantToMove) {
   const World world = *World::make({{-10, -10}, {10, 10}}, {});
   DiffusionEscape escape(options());
   Rng rng(1);

@@ -12,7 +12,7 @@
 namespace swarm::agent {
 namespace {
 
-/// A wall with a door that one robot at a time gets through, and a goal that is just large enough:
+/// A wall with a gap that one robot at a time gets through, and a goal that is just large enough:
 ///
 ///   20   . . . . # . . . .
 ///   10   S S S     G G G
@@ -48,7 +48,7 @@ struct Swarm {
   std::vector<Vec2> velocities;
   std::vector<AgentOutput> outputs;
   std::uint32_t sequence = 0;
-  Vec2 error_m = Vec2::Zero();  // of what is measured
+  Vec2 error_m = Vec2::Zero();  // of the measured position
   SteadyTime now{std::chrono::seconds(1000)};
 
   explicit Swarm(std::uint32_t robots) : spec(through_a_door(robots)) {
@@ -143,7 +143,7 @@ TEST(Crops, IsAtRestWhereItGoesNowhereWhateverItsNoise) {
   }
 
   EXPECT_GT(at_rest, 100);
-  EXPECT_GT(sut.outputs[0].velocity_mps.norm(), 0.05);  // though it is not standing
+  EXPECT_GT(sut.outputs[0].velocity_mps.norm(), 0.05);  // although it still moves
 }
 
 TEST(Crops, OnlyKeepsOffWhileItIsHeld) {

@@ -29,7 +29,7 @@ Mission letter_q() {
                        "deploy/missions/diffusion_q.yaml");
 }
 
-/// A whole swarm in lock step: all hear all within R, as of the same moment.
+/// A whole swarm in lock step: all receive all within R, as of the same moment.
 class Swarm {
  public:
   Swarm(const Mission& mission, std::uint64_t seed, bool filtered = true)
