@@ -27,16 +27,17 @@ struct WeightRow {
 /// renewed or appended, so that each program starts from the basis of the one before.
 ///
 /// A step has thousands of columns, of which a few dozen carry mass. Those that lie on nearly
-/// cheapest ways are in the program at first; the rest is priced after each solve and joins when
-/// its reduced cost is negative, together with the cheapest way on from where it leads, which gives
-/// components that no column has met yet their price. The optimum is that of all columns.
+/// cheapest paths are in the program at first; the rest is priced after each solve and joins when
+/// its reduced cost is negative (column generation), together with the cheapest path onward from
+/// its end, which gives components that no column has met yet their price. The optimum is that of
+/// all columns.
 class HorizonProgram {
  public:
   /// Cost of a unit of excess: more than any detour is worth.
   static constexpr double kExcessCost = 1e5;
 
   /// Keeps a reference to the network. `likely` are columns to begin with, besides those near
-  /// cheapest ways: those of a plan made a step ago admit a feasible one now.
+  /// cheapest paths: those of a plan made a step ago admit a feasible one now.
   HorizonProgram(const HorizonNetwork& network, std::span<const std::size_t> likely);
 
   /// `x` of the solution is by column of the network.
@@ -46,7 +47,7 @@ class HorizonProgram {
   LinearProgram whole(std::span<const WeightRow> rows);
 
  private:
-  // The rows that ask for a vertex or an arc of one step, grouped by it.
+  // The weight rows in which a vertex or an arc of one step has a coefficient, grouped by it.
   struct Ask {
     std::uint32_t row = 0;
     double coefficient = 0.0;
@@ -57,7 +58,8 @@ class HorizonProgram {
   template <class Visit>
   void visit_column(std::size_t column, Visit visit) const;
   LinearProgram program(std::span<const std::size_t> columns) const;
-  // Where to go on from rows that are not met yet, and columns worth to enter, at these prices.
+  // At given row prices: the cheapest column onward from each row that no column of the program has
+  // yet, and the columns with negative reduced cost.
   struct Offers {
     std::vector<std::size_t> path_on;  // column by row, columns() where it is met or a dead end
     std::vector<std::size_t> columns;

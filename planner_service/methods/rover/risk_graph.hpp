@@ -18,7 +18,8 @@ namespace swarm::planner {
 struct RiskGraphOptions {
   CollocationOptions collocation{};
   double transport_radius_m = 22.5;  ///< of Assumption 2, in W₂: here 20 directions and waiting
-  /// Means and their ways keep this from obstacles: robots near one ride on the mean's way.
+  /// Distance that means and the segments between them keep from obstacles: robots near the mean
+  /// follow its path.
   double mean_clearance_m = 1.0;
   double risk_weight = 1.0;  ///< κ of the arc lengths below
   /// (11g) is kept at this many times between two steps too, evenly spread: a step is long enough
@@ -27,14 +28,16 @@ struct RiskGraphOptions {
   RiskLimit risk{};  ///< δ is ROVER's ε
 };
 
-/// The directed graph G of ROVER, sec. III-A, and what of the world the FTMPC needs, made once
-/// (offline): vertices are the goal's components, then the collocation set but for members whose
-/// mean is too near an obstacle. Arcs join vertices within the transport radius (Assumption 2) when
-/// the mean's way is clear; every vertex has an arc to itself, which is waiting. The lengths
+/// The directed graph G of ROVER, sec. III-A, and the distances to obstacles that the FTMPC needs,
+/// made once (offline): vertices are the goal's components, then the collocation set but for
+/// members whose mean is too near an obstacle. Arcs join vertices within the transport radius
+/// (Assumption 2) when the segment between the means is clear; every vertex has an arc to itself,
+/// which is waiting. The lengths
 ///
 ///   W₂(i, j) (1 + κ (rᵢ + rⱼ)/2),   r = max(0, CVaR_α(−sd) − ε) / (k(α) σ_max)
 ///
-/// of the Gaussians' own risk lead the shortest ways to the target around narrow places.
+/// with r the risk of a single Gaussian, lead the shortest paths to the goal around narrow
+/// passages.
 class RiskGraph {
  public:
   struct Arc {
@@ -73,7 +76,7 @@ class RiskGraph {
   std::span<const Arc> arcs() const { return arcs_; }
   std::uint32_t first_arc_of(std::uint32_t vertex) const { return arc_offset_[vertex]; }
 
-  /// Length of the shortest way from a vertex to a goal component [m], +∞ when there is none: the
+  /// Length of the shortest path from a vertex to a goal component [m], +∞ when there is none: the
   /// root of Q(m, n) of (11a). Dijkstra from every goal, once.
   double to_goal_m(std::uint32_t vertex, std::size_t goal) const {
     return to_goal_m_[vertex * goals_ + goal];

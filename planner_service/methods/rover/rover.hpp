@@ -12,6 +12,7 @@
 
 namespace swarm::planner {
 
+/// Parameters of ROVER: its graph, its FTMPC, and the time scale of its steps.
 struct RoverOptions {
   RiskGraphOptions graph{};
   FtmpcOptions mpc{};
@@ -35,6 +36,7 @@ struct RoverStep {
   HorizonPlan horizon;
 };
 
+/// A whole mission: the flow, and the steps it was made of.
 struct RoverMission {
   FlowPlan plan;
   std::vector<RoverStep> steps;
@@ -55,9 +57,9 @@ class Rover {
 
   /// The whole mission from `start`, step by step, as one flow: FlowPlan::sources()[i] is start
   /// component i, sinks()[j] goal component j, with the weights of `goal`, which are otherwise
-  /// those of make(). (11g) holds at every step, start included, else kInfeasible says what to
-  /// loosen. With FtmpcOptions::soften the start, and the steps it takes to mend it, may break it:
-  /// for a swarm that flies already.
+  /// those of make(). (11g) holds at every step, start included, else kInfeasible names the
+  /// parameter to loosen. With FtmpcOptions::soften the start, and the steps it takes to mend it,
+  /// may break it: for a swarm that flies already.
   Result<RoverMission> plan(const Mixture& start, const Mixture& goal);
   Result<RoverMission> plan(const Mixture& start) { return plan(start, goal_); }
 

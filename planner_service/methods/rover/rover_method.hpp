@@ -29,8 +29,8 @@ class RoverMethod final : public PlanningMethod {
   void set_risk(const RiskLimit& risk) override;
   PlanningTraits traits() const override;
   std::optional<Duration> replan_period() const override { return replan_period_; }
-  /// The robots of a leg are a group. From the first call on plans may break (11g) where the swarm
-  /// does so already: the way out of that comes first.
+  /// The robots of a leg are a group. From the first call on a plan may violate (11g) where the
+  /// swarm does so already; such a plan first reduces the violation.
   Result<std::vector<RobotGroup>> measure(const MeasuredSwarm& swarm) override;
   /// Weights as whole numbers of robots.
   Mixture goal_from(const MeasuredSwarm& swarm) const override;
