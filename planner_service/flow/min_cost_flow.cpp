@@ -19,7 +19,7 @@ namespace {
 using Units = std::int64_t;
 using Graph = lemon::SmartDigraph;
 
-// The whole supply in units. Sums of two supplies stay well below 2⁶³.
+// The whole supply in units. Sums of supplies stay far below 2⁶³.
 constexpr Units kMassUnits = Units{1} << 50;
 // The solver starts from potentials of 2⁶² and adds costs along paths of at most all nodes to them.
 constexpr double kPathUnits = 0x1p60;

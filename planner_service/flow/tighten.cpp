@@ -42,7 +42,8 @@ Waypoints resampled(const Waypoints& waypoints, double spacing_m) {
 
 }  // namespace
 
-// Gauss-Seidel relaxation of the route length, with the squeeze as projection onto free space.
+// Gauss-Seidel relaxation of the route length: each move is pushed and squeezed back into free
+// space.
 void tighten(Waypoints& waypoints, const World& world, const RiskLimit& risk,
              const TightenOptions& options, EdgeChecker& checker) {
   if (waypoints.size() < 3) return;
@@ -60,7 +61,7 @@ void tighten(Waypoints& waypoints, const World& world, const RiskLimit& risk,
         const Gaussian middle = Geodesic(before, after).at(0.5);
         const Geodesic move(fine[i], middle);
         const double now_m = wasserstein2(before, fine[i]) + wasserstein2(fine[i], after);
-        // A whole step may cost more shape than it saves way; half of it often does not.
+        // A whole step may cost more in shape than it saves in path; half of it often does not.
         for (const double step : kTightenSteps) {
           const std::optional<Gaussian> moved = squeeze_into_free(
               push_out(move.at(step), world, room_m), world, k, risk.delta_m, options.sigma_min_m);

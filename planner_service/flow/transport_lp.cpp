@@ -18,6 +18,8 @@ namespace {
 // not remove its shipment.
 constexpr double kLeastMass = 1e-9;
 
+// Raises masses below the least one; the largest component gives what they gain, so that the sum
+// stays.
 std::vector<double> lifted(std::span<const double> masses) {
   std::vector<double> lifted(masses.begin(), masses.end());
   double lent = 0.0;

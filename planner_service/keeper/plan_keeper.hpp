@@ -20,8 +20,8 @@ namespace swarm::planner {
 
 /// Keeps a plan for the scene as it is: the first one, and a new one when the scene changes, while
 /// obstacles move, at the period of the planning method, and where robots are stuck and the method
-/// knows another route. It also owns the plan's clock. Pure: what was received and the time in,
-/// plans and clock readings out; the program around it owns bus and files. One thread.
+/// finds another route. It also owns the plan's clock. Pure: received messages and the time go in,
+/// plans and clock readings come out; the program around it owns bus and files. One thread.
 class PlanKeeper {
  public:
   /// `planner`: for this mission. \pre the mission outlives the keeper
@@ -30,7 +30,7 @@ class PlanKeeper {
   /// The plan of the mission file. The same mission and seed give the same flow.
   Result<void> plan_first();
 
-  /// The keeper is on the bus from now on: what it has not received yet may still come.
+  /// The keeper is on the bus from now on. Timeouts for the scene and the robots begin here.
   void begin(SteadyTime now) { begun_at_ = now; }
 
   void set_phase(MissionPhase phase) { phase_ = phase; }
