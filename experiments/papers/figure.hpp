@@ -10,12 +10,14 @@
 
 namespace swarm::launcher {
 
+/// A curve of a chart with its name in the legend.
 struct Line {
   std::string name;
   std::vector<Vec2> points;  ///< x ascending
   bool dots = false;         ///< mark the points: measured at these x alone
 };
 
+/// Title and axes of a chart.
 struct Axes {
   std::string title, x, y;
   bool log_y = false;  ///< values below 1e-6 of the largest are drawn there

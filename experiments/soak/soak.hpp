@@ -12,6 +12,7 @@
 
 namespace swarm::launcher {
 
+/// Options of the command line.
 struct SoakOptions {
   std::uint32_t processes = 100;
   std::uint32_t per_process = 1;
@@ -26,8 +27,8 @@ struct SoakOptions {
   bool json = false;
 };
 
-/// `swarm_launcher soak`: a swarm that keeps moving for a given time, and what its link and its
-/// processes did in the meantime. Result on stdout, soak.json and soak.html in the run directory.
+/// `swarm_launcher soak`: keeps a swarm moving for a given time and measures its link and its
+/// processes. Result on stdout, soak.json and soak.html in the run directory.
 Result<ExitCode> soak(const SoakOptions& options);
 
 }  // namespace swarm::launcher

@@ -11,7 +11,7 @@
 
 namespace swarm::launcher {
 
-/// One look at a running swarm.
+/// One sample of a running swarm.
 struct SoakSample {
   double time_s = 0.0;       ///< of the mission
   double cpu_share = 0.0;    ///< cores used since the last sample, all processes of the run
@@ -27,7 +27,7 @@ struct SoakSample {
 /// What a soak measured while its mission ran.
 struct SoakMeasurements {
   std::vector<SoakSample> samples{};
-  std::optional<link::StreamMeter::Counts> received{};  ///< empty: nobody can listen to this channel
+  std::optional<link::StreamMeter::Counts> received{};  ///< empty: the channel has no listener
   Histogram latency{};                               ///< written → received by a waiting listener
   link::StreamMeter::Worst worst{};
   Histogram use_latency{};        ///< written → used by a neighbour's controller

@@ -16,7 +16,7 @@ namespace {
 
 constexpr Duration kSampleEvery = std::chrono::seconds(1);
 constexpr Duration kListenFor =
-    std::chrono::milliseconds(100);  // until it is looked whether to end
+    std::chrono::milliseconds(100);  // longest wait before the thread checks whether to end
 
 }  // namespace
 
@@ -32,6 +32,8 @@ void SoakWatch::listen(std::unique_ptr<link::GroupTap> tap) {
   listener_ = std::thread([this] { receive_all(); });
 }
 
+/// The thread of the listener. States count while the mission runs only; a batch gets one time of
+/// reception, taken before the lock.
 void SoakWatch::receive_all() {
   std::vector<link::CellStatesMessage> batches;
   while (!ended_) {
@@ -45,6 +47,9 @@ void SoakWatch::receive_all() {
   }
 }
 
+/// Keeps the first and the newest counters of each robot: their difference is the count of the
+/// soak. A
+/// robot whose process was restarted begins anew.
 void SoakWatch::on_status(const link::StatusMessage& status) {
   if (!running_) return;
   for (const link::RobotStatusMessage& now : status.robots) {
@@ -57,6 +62,9 @@ void SoakWatch::on_status(const link::StatusMessage& status) {
   if (!status.state_age.empty()) ages_[status.process_id] = status.state_age;
 }
 
+/// Called by the flight at every step: marks begin and end of the measurement, and takes a sample
+/// when
+/// one is due.
 void SoakWatch::on_step(const Flight& flight, SteadyTime now) {
   const bool running = flight.supervisor().stage() == Supervisor::Stage::kRunning;
   if (running && !running_) {
@@ -69,6 +77,9 @@ void SoakWatch::on_step(const Flight& flight, SteadyTime now) {
   if (now - sampled_at_ >= kSampleEvery) sample(flight, now);
 }
 
+/// Rates are differences to the last sample. CPU counts all processes of the run, memory and
+/// threads the
+/// agents alone.
 void SoakWatch::sample(const Flight& flight, SteadyTime now) {
   SoakSample s{.time_s = flight.supervisor().mission_time(now).count()};
   double cpu_s = 0.0;
@@ -97,7 +108,7 @@ void SoakWatch::sample(const Flight& flight, SteadyTime now) {
   s.cpu_share = std::max(0.0, cpu_s - cpu_s_) / passed_s;
   s.switches_hz = static_cast<double>(switches - std::min(switches, switches_)) / passed_s;
   s.received_hz = static_cast<double>(received - received_) / passed_s;
-  // Rates of the first look would be those since the processes began.
+  // The rates of the first sample would be those since the processes began.
   if (cpu_s_ > 0.0) samples_.push_back(s);
   cpu_s_ = cpu_s;
   switches_ = switches;

@@ -11,8 +11,8 @@
 namespace swarm::planner {
 namespace {
 
-// The launcher publishes the scene when the planner joins. If it does not arrive within this time,
-// the planner publishes its plan without it.
+// The launcher's scene is expected right after a start. If it does not arrive within this time, the
+// planner publishes its plan without it.
 constexpr Duration kSceneTimeout = std::chrono::seconds(3);
 // Robots that make no progress for this long are stuck: their own escape manoeuvres have failed by
 // then.
@@ -204,11 +204,11 @@ void PlanKeeper::catch_up(SteadyTime now) {
   if (*middle > governor_.plan_time_s() + kRobotsAhead_s) governor_.catch_up(*middle);
 }
 
-/// Events about the clock: robots that it no longer waits for, once per plan, and a clock that has
+/// Events about the clock: robots that it no longer waits for, once each, and a clock that has
 /// been
 /// slow for a while.
 void PlanKeeper::report_clock(SteadyTime now, Step& step) {
-  std::vector<RobotId> fresh;  // not reported before, for this plan
+  std::vector<RobotId> fresh;  // not reported before
   for (const RobotId robot : governor_.hopeless()) {
     if (hopeless_reported_.insert(robot).second) fresh.push_back(robot);
   }

@@ -14,6 +14,7 @@
 
 namespace swarm::planner {
 
+/// Readers of the topics that a planner subscribes to.
 struct Readers {
   link::ReaderPtr<link::CommandMessage> command;
   link::ReaderPtr<link::SceneMessage> scene;

@@ -12,6 +12,7 @@
 
 namespace swarm::planner {
 
+/// Options of the command line.
 struct ProcessOptions {
   std::filesystem::path run_dir;
   LinkFaults faults{};
@@ -20,13 +21,14 @@ struct ProcessOptions {
 };
 
 /// The program: plans, publishes the plan (kept for late joiners) and the heartbeat, and follows
-/// the mission's commands for its clock t0. When the scene changes it plans anew from where the
-/// robots say they are. The same mission and seed give the same first plan, so after a restart in
-/// an unchanged scene it publishes the same flow under a higher epoch and the swarm goes on where
-/// it was; in a changed one it plans anew.
+/// the mission's commands for its clock t0. When the scene changes it plans anew from the positions
+/// that the robots report. The same mission and seed give the same first plan, so after a restart
+/// in an unchanged scene it publishes the same flow under a higher epoch and the swarm goes on
+/// where it was; in a changed one it plans anew.
 class PlannerProcess {
  public:
-  /// Plans first, joins the bus second: a mission that cannot be planned ends here, saying why.
+  /// Plans first, joins the bus second: a mission that cannot be planned ends here, with the reason
+  /// as error.
   static Result<std::unique_ptr<PlannerProcess>> make(const ProcessOptions& options,
                                                       const PlanningRegistry& registry);
   ~PlannerProcess();

@@ -40,8 +40,7 @@ Vec2 HaltonMeans::next() {
                 fraction(radical_inverse(index_, 3) + shift_.y()));
 }
 
-// All random numbers are drawn before any test, so that the generator advances equally in every
-// case.
+// All random numbers are drawn before any test, so that the draws do not depend on the world.
 std::optional<Vec2> near_obstacle_mean(const World& world, double spread_m, double clearance_m,
                                        Rng& rng) {
   const Vec2 first = uniform_mean(world.bounds_m(), rng);

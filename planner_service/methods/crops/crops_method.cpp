@@ -12,7 +12,7 @@ namespace swarm::planner {
 
 namespace {
 
-/// What a mission may set of crops.
+/// Options of crops in a mission.
 struct CropsKeys : RoadmapKeys {
   double clearance_m = 0.5;
   double power = 3.0;

@@ -12,7 +12,7 @@
 
 namespace swarm::planner {
 
-/// The options of CRoPS that a mission asks for.
+/// The options of CRoPS in a mission.
 CropsOptions crops_options(const Mission& mission);
 
 /// The guide of CRoPS as a planning method. It keeps its graph while the map is the same, and with

@@ -32,7 +32,7 @@ std::vector<std::size_t> led_to(const MeasuredSwarm& swarm) {
   return led;
 }
 
-/// What a mission may set of rover.
+/// Options of rover in a mission.
 struct RoverKeys : CollocationKeys {
   std::uint32_t horizon = 3;
   double replan_period_s = 1.0;

@@ -13,7 +13,7 @@
 
 namespace swarm::planner {
 
-/// The options of ROVER that a mission asks for.
+/// The options of ROVER in a mission.
 RoverOptions rover_options(const Mission& mission);
 
 /// ROVER as a planning method: a plan from where the robots are at each period, in whole robots.
