@@ -21,7 +21,7 @@ namespace {
 /// What a subcommand does once its options are parsed.
 using Act = std::function<Result<ExitCode>()>;
 
-/// The options belong to the returned action, which outlives the parser.
+/// The returned action owns the options that the parser fills.
 Act add_table(CLI::App& program) {
   const auto o = std::make_shared<TableOptions>();
   CLI::App* const table = program.add_subcommand(

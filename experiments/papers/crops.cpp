@@ -22,6 +22,7 @@ constexpr std::array<Map, 4> kMaps{{
     {"crops_scene3", {"17/20, 6.3 s", "13/20, 16.9 s", "17/20, 32.5 s", ""}},
     {"crops_s", {"", "", "", ""}},
 }};
+// Swarm sizes; the authors published results for the first three.
 constexpr std::array<std::uint32_t, 4> kSwarmSizes{10, 30, 50, 100};
 
 /// R² of the least-squares line through the points: how linear wall time is in N.

@@ -39,7 +39,7 @@ struct Axis {
   double at(double value) const { return begin_px + (value - low) / (high - low) * length_px; }
 };
 
-/// Range of the values of all lines; y includes 0.
+/// Range of the values of all lines; y begins at 0 or below.
 struct Extent {
   double x_low = 0.0, x_high = 0.0, y_low = 0.0, y_high = 0.0;
 };

@@ -109,7 +109,7 @@ std::vector<double> energy_m2(const monitor::RecordedRun& run) {
 
 }  // namespace
 
-/// Simulates the mission in lock-step, then audits the recording exactly like that of a real run.
+/// Simulates the mission in lock-step, then audits the recording as that of a real run.
 Result<Flown> fly(const Mission& mission, const SimulationOptions& options, bool draw) {
   const auto begin = std::chrono::steady_clock::now();
   Recording recording(mission, Simulation::begin_utc(), periods_a_point(mission));

@@ -23,6 +23,7 @@ constexpr std::array<const char*, 3> kPublished{
     "5.44 / 198.67 / .62 / .76 | 44.51 / 279.70 / .23 / 7.00 | 116.76 / 162.09 / .02 / -6.57",
     "6.05 / 202.26 / .58 / .34 | 58.58 / 364.16 / .23 / 6.80 | 120.78 / 159.03 / .03 / -2.96"};
 
+// Risk levels α of the second table, with the published minutes and metres.
 constexpr std::array<std::pair<double, const char*>, 3> kAlphas{
     {{0.05, "5.50 / 191.0"}, {0.15, "4.20 / 174.6"}, {0.3, "3.81 / 173.2"}}};
 

@@ -114,7 +114,7 @@ Result<void> Rows::add_in_turns(const std::vector<Named>& named, std::span<const
   return {};
 }
 
-/// The rule below the head needs as many cells as the head has bars.
+/// The heads contain bars of their own: the rule below them has one cell more than there are bars.
 void Rows::add_published_rows(std::string_view head, std::string_view published_head) {
   const std::string columns = fmt::format("{} | {} | {}", head, published_head, kOurs);
   add_line("| " + columns + " |");
@@ -129,6 +129,7 @@ void Rows::add_published_rows(std::string_view head, std::string_view published_
 /// Prints the table first: it is not lost if a file cannot be written.
 Result<ExitCode> Rows::finish() const {
   std::fputs(text_.c_str(), stdout);
+  // The exit code is that of rows that must hold; others never fail a table.
   const bool good = std::all_of(rows_.begin(), rows_.end(), [](const Row& r) { return r.good(); });
   const ExitCode code = good ? ExitCode::kOk : ExitCode::kCriteriaNotMet;
   if (options_.out.empty()) return code;

@@ -29,7 +29,7 @@ struct Row {
     for (const Flown& f : flown) sum += of(f);
     return sum / static_cast<double>(flown.size());
   }
-  /// Standard deviation over the seeds, divided by n.
+  /// Standard deviation over the seeds, of the population (divided by n).
   template <class Of>
   double deviation(Of of) const {
     const double m = mean(of);
@@ -68,6 +68,7 @@ class Rows {
  public:
   explicit Rows(const TableOptions& options) : options_(options) {}
 
+  /// Whether the table is made with fewer robots and seeds.
   bool quick() const { return options_.quick; }
   /// A mission file of the missions folder, by its name without extension.
   Result<Mission> load(const std::string& name) const;
@@ -88,6 +89,7 @@ class Rows {
     for (std::size_t i = 0; i < count; ++i) rows_[rows_.size() - 1 - i].must_hold = false;
   }
 
+  /// Rows in the order in which they were added.
   const std::vector<Row>& all() const { return rows_; }
   const Row& newest() const { return rows_.back(); }
   std::span<const Row> newest(std::size_t count) const { return std::span(rows_).last(count); }

@@ -25,6 +25,7 @@ Result<void> add_ablations(Rows& rows, Mission mission) {
     names.push_back({fmt::format("{}, {}", robots, what), "| | |"});
     missions.push_back(m);
   };
+  // Each mission differs from the first in one respect, those without a cap from each other.
   add("cap 1.5", mission);
   Mission free = mission;
   free.control.options.set("tracking", "free");

@@ -15,7 +15,8 @@ namespace swarm::launcher {
 
 /// Flies the soak's own mission with real processes while SoakWatch measures, audits the recording,
 /// and
-/// compares all with the criteria. The listener needs a channel that a further process can join.
+/// compares all with the criteria. Only the group channel
+/// can be tapped by a listener.
 Result<ExitCode> soak(const SoakOptions& options) {
   become_urgent();
   const std::uint32_t robots = options.processes * options.per_process;

@@ -17,6 +17,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+/// Histograms count in microseconds, reports are in milliseconds.
 double to_ms(std::int64_t us) { return 1e-3 * static_cast<double>(us); }
 
 /// A share, 0 where there is nothing to share.
@@ -110,7 +111,7 @@ std::vector<std::string> complaints(const SoakResult& result, const SoakCriteria
   return found;
 }
 
-/// The format is read by other programs: keys stay.
+/// The content of soak.json. Values that were not measured are null.
 std::string to_json(const SoakResult& result, const std::vector<std::string>& complaints) {
   const SoakMeasurements& m = result.measured;
   const Growth rss = growth_of(m.samples, &SoakSample::rss_mb);
@@ -154,6 +155,7 @@ std::string to_json(const SoakResult& result, const std::vector<std::string>& co
   return json.dump(2) + "\n";
 }
 
+/// The summary for the terminal, which the page shows as well.
 std::string to_text(const SoakResult& result, const std::vector<std::string>& complaints) {
   const SoakMeasurements& m = result.measured;
   const Growth rss = growth_of(m.samples, &SoakSample::rss_mb);

@@ -34,6 +34,7 @@ struct SoakResult {
 /// A quantity at the start and the end of a soak, and its maximum.
 struct Growth {
   double start = 0.0, end = 0.0, max = 0.0;
+  /// Growth relative to the start [%]; 0 where nothing was measured at the start.
   double percent() const { return start > 0.0 ? 100.0 * (end - start) / start : 0.0; }
 };
 

@@ -37,7 +37,9 @@ class SoakWatch final : public FlightObserver {
   SoakMeasurements measurements() const;
 
  private:
+  /// The loop of the listener's thread.
   void receive_all();
+  /// Takes one sample of all processes.
   void sample(const Flight& flight, SteadyTime now);
 
   /// Counters of a robot when the mission began and now.

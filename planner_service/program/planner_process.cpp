@@ -220,8 +220,8 @@ void PlannerProcess::Impl::beat(UtcTime now) {
 PlannerProcess::PlannerProcess(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 PlannerProcess::~PlannerProcess() = default;
 
-// The epoch is the start time of the process: a later planner has a higher one, and robots prefer
-// it.
+// The epoch is the start time of the process, so that the plans of a restarted planner supersede
+// those before.
 Result<std::unique_ptr<PlannerProcess>> PlannerProcess::make(const ProcessOptions& options,
                                                              const PlanningRegistry& registry) {
   auto impl = std::make_unique<Impl>();
