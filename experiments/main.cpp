@@ -18,7 +18,7 @@
 namespace swarm::launcher {
 namespace {
 
-/// What a subcommand does once its options are parsed.
+/// The action of a subcommand, run after its options are parsed.
 using Act = std::function<Result<ExitCode>()>;
 
 /// The returned action owns the options that the parser fills.

@@ -27,7 +27,7 @@ struct Axes {
 std::string figure(const Axes& axes, std::span<const Line> lines);
 
 /// The shares of values that fall into bins of width `bin` from 0 to `high`, as a line with steps;
-/// what is beyond is in the last bin. \pre bin > 0, high > bin, some value
+/// values beyond are in the last bin. \pre bin > 0, high > bin, some value
 Line histogram_line(const std::string& name, std::span<const double> values, double bin,
                     double high);
 

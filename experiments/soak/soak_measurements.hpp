@@ -24,7 +24,7 @@ struct SoakSample {
   double p99_ms = 0.0;       ///< written → received, since the last sample
 };
 
-/// What a soak measured while its mission ran.
+/// Measurements of a soak while its mission ran.
 struct SoakMeasurements {
   std::vector<SoakSample> samples{};  ///< about one a second
   std::optional<link::StreamMeter::Counts> received{};  ///< empty: the channel has no listener

@@ -92,7 +92,7 @@ Cut smallest_cut(const Roadmap& roadmap, const Terminals& terminals, const Densi
   const auto flow = min_cost_flow(net.balance, net.arcs);
   SWARM_ASSERT(flow.has_value());
 
-  // What the unserved starts still reach in the residual network is one side of the cut.
+  // The nodes that the unserved starts reach in the residual network are one side of the cut.
   std::vector<std::vector<std::uint32_t>> residual(net.balance.size());
   for (std::size_t a = 0; a < bypasses; ++a) {
     const FlowArc& arc = net.arcs[a];
@@ -154,7 +154,7 @@ Error does_not_fit(const Roadmap& roadmap, const Terminals& terminals, const Den
                       cap.max_per_m2, 100.0 * fits, cap.robots, cure)};
 }
 
-// Takes the flow apart into routes: each follows what is left of it from a start to a goal and
+// Decomposes the flow into routes: each follows the remaining flow from a start to a goal and
 // takes as much as its thinnest arc carries, which empties an arc.
 class RouteTaker {
  public:

@@ -52,8 +52,8 @@ class DensityPart {
   double peak_per_m2_;
 };
 
-/// Means where the density is this far below what is of interest need no climb. The middle of a
-/// square of equal Gaussians has 1.3 times the density of its corners at most.
+/// Means where the density is below this share of the density of interest need no climb. The middle
+/// of a square of equal Gaussians has 1.3 times the density of its corners at most.
 inline constexpr double kWorthClimbing = 0.7;
 
 /// Follows the mean shift x ← (Σ wₖΣₖ⁻¹)⁻¹ Σ wₖΣₖ⁻¹μₖ, wₖ the density of part k at x, which never

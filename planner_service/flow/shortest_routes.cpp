@@ -85,7 +85,7 @@ ShortestRoutes::ShortestRoutes(const Roadmap& roadmap, std::uint32_t source,
     : length_m_(roadmap.nodes.size(), std::numeric_limits<double>::infinity()),
       previous_(roadmap.nodes.size(), source) {
   BucketQueue queue(bucket_width_m(roadmap));
-  std::vector<double> expanded_m(length_m_);  // the length a node's arcs were last looked at with
+  std::vector<double> expanded_m(length_m_);  // path length at the last expansion of each node
   std::size_t targets_left = targets.size();
   length_m_[source] = 0.0;
   queue.push(0, source);

@@ -226,7 +226,7 @@ class Straightener {
   bool try_move(std::uint32_t i) {
     const double enough = (1.0 - options_.worthwhile) * action(i, nodes_[i].gaussian);
     const Geodesic path(nodes_[i].gaussian, middle_of(i));
-    // A hair more than σ_min needs, so that the squeeze that follows does not end below it.
+    // Slightly more than σ_min needs, so that the squeeze that follows does not end below it.
     const double room_m = k_ * options_.sigma_min_m * (1.0 + 1e-6) - delta_m_;
     for (const double step : kStraightenSteps) {
       for (const double extra_m : kExtraRooms_m) {

@@ -48,7 +48,7 @@ void tighten(Waypoints& waypoints, const World& world, const RiskLimit& risk,
              const TightenOptions& options, EdgeChecker& checker) {
   if (waypoints.size() < 3) return;
   const double k = cvar_coefficient(risk.alpha);
-  // A hair more than σ_min needs, so that the squeeze that follows does not end below it.
+  // Slightly more than σ_min needs, so that the squeeze that follows does not end below it.
   const double room_m = k * options.sigma_min_m * (1.0 + 1e-6) - risk.delta_m;
   Waypoints fine = resampled(waypoints, options.spacing_m);
   for (std::uint32_t sweep = 0; sweep < options.sweeps; ++sweep) {

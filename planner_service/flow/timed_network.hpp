@@ -40,7 +40,8 @@ struct TimedDemand {
 
 /// The part of a roadmap that matters for one transport, unrolled over time: a copy of every node
 /// for every step, arcs that take as many steps as the leg needs at the given speed (rounded up),
-/// and arcs that wait for one. What is at a node at a step, moving or waiting, fits its capacity.
+/// and arcs that wait for one. The mass at a node at a step, moving or waiting, is within its
+/// capacity.
 ///
 /// Left out: legs off the near-shortest paths, legs not proven to kPlanTolerance_m, and copies that
 /// are too early to be reached or too late to reach a goal.

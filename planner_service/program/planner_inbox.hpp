@@ -21,8 +21,8 @@ struct Readers {
   link::ReaderPtr<link::StatusMessage> status;
 };
 
-/// What the planner receives: takes everything that arrived, has the gate check it, and hands on
-/// what passed. Not thread-safe.
+/// The messages that the planner receives: takes all that arrived, validates them at the gate, and
+/// hands on the valid ones. Not thread-safe.
 class PlannerInbox {
  public:
   PlannerInbox(Readers readers, const link::WireLimits& limits);

@@ -65,7 +65,7 @@ struct PlannerProcess::Impl {
   std::optional<PlannerInbox> inbox;
   std::uint64_t beats = 0;
   std::ofstream clock_file;
-  link::RefusalCounters reported;  // what was announced as an event already
+  link::RefusalCounters reported;  // counts already announced as events
 
   Result<void> plan_first();
   Result<void> join(const shell::RunInfo& run);

@@ -16,7 +16,7 @@ namespace swarm::planner {
 struct ProcessOptions {
   std::filesystem::path run_dir;
   LinkFaults faults{};
-  std::uint32_t parent_pid = 0;            ///< end when this process is gone; 0 = do not watch
+  std::uint32_t parent_pid = 0;            ///< end when this process has ended; 0 = do not watch
   std::uint32_t ownership_strength = 100;  ///< a stand-by planner has less
 };
 

@@ -49,10 +49,10 @@ class LiveRoadmap {
 
   const World& world() const { return *world_; }
 
-  /// What a search needs: its own copy, where it may close edges. Linear in the edges.
+  /// The roadmap as a copy, so that a search may close edges in it. Linear in the edges.
   Roadmap roadmap() const;
 
-  /// What the last call cost, the constructor included.
+  /// Work of the last call, the constructor included.
   struct Work {
     std::size_t edges_checked = 0;
     std::size_t samples_lost = 0;

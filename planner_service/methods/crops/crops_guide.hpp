@@ -74,9 +74,9 @@ class CropsGuide {
   /// and end at the components. For build_plan().
   const std::vector<Route>& routes() const { return routes_; }
 
-  /// What was searched, for drawings. Nodes: start components, goal components, samples, each as
-  /// the Gaussian of a path vertex in the open. `Arc::length_m` holds the guide's cost (m^(1−p)),
-  /// not metres.
+  /// The graph that was searched, for drawings. Nodes: start components, goal components, samples,
+  /// each as the Gaussian of a path vertex in the open. `Arc::length_m` holds the guide's cost
+  /// (m^(1−p)), not metres.
   const Roadmap& roadmap() const { return graph_; }
 
   /// Many robots of a route are stuck near this position: the edges of its path towards the

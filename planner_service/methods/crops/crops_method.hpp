@@ -29,7 +29,7 @@ class CropsMethod final : public PlanningMethod {
   PlanningTraits traits() const override {
     return {.risk_promise = RiskPromise::kEveryGaussian, .speed_mps = speed_.means_mps};
   }
-  /// The route that leads past there is searched again with costlier edges.
+  /// Searches the route nearest to the congestion again with costlier edges.
   bool on_congestion(const Vec2& at_m) override;
 
  private:

@@ -34,7 +34,8 @@ class Clusters {
     clusters_.push_back({std::move(members), shape});
   }
 
-  /// Divides what is too wide, or has its mean too near an obstacle, until one robot is left.
+  /// Divides groups that are too wide, or have their mean too near an obstacle, down to single
+  /// robots.
   void divide() {
     for (std::size_t i = 0; i < clusters_.size(); ++i) {
       // Halves at the median along the longer axis, so that both parts are narrower.
@@ -170,7 +171,7 @@ Mixture goal_in_robots(const Mixture& goal, std::span<const std::size_t> led, st
     const double exact = goal.components()[j].weight / total * static_cast<double>(robots);
     whole[j] = static_cast<std::size_t>(exact + 1e-9);
     left -= std::min(left, whole[j]);
-    // Those who are led there already come first.
+    // Components that are assigned more robots than that already come first.
     wanted[j] = exact - static_cast<double>(whole[j]) + (led[j] > whole[j] ? 1.0 : 0.0);
   }
   std::vector<std::size_t> order(count);
@@ -185,7 +186,7 @@ Mixture goal_in_robots(const Mixture& goal, std::span<const std::size_t> led, st
     std::vector<std::size_t> rounded = whole;
     for (std::size_t i = 0; i < count; ++i) rounded[order[i]] += more[i];
     for (std::size_t j = 0; j < count; ++j) {
-      if (rounded[j] == 0) return goal;  // too few robots for all of it
+      if (rounded[j] == 0) return goal;  // too few robots for all components
       components.push_back({static_cast<double>(rounded[j]) / static_cast<double>(robots),
                             goal.components()[j].gaussian});
     }

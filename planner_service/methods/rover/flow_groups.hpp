@@ -30,9 +30,9 @@ std::vector<RobotGroup> group_by_flow(std::span<const ReportedRobot> robots, con
                                       const Mixture& goal, const FlowGroupOptions& options);
 
 /// The goal with its weights as whole numbers of robots, each the next below or above its exact
-/// share: what has arrived stays, and no fraction of a robot has to move. `led` counts the robots
-/// led to each component; of the choices the one that changes fewest goals and keeps the limit
-/// (11g), else the goal as it is.
+/// share: robots that have arrived stay, and no fraction of a robot has to move. `led` counts the
+/// robots led to each component; of the roundings, the one that changes fewest goals and keeps the
+/// limit (11g), else the goal as it is.
 Mixture goal_in_robots(const Mixture& goal, std::span<const std::size_t> led, std::size_t robots,
                        const World& world, const RiskLimit& risk);
 

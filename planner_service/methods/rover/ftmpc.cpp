@@ -41,8 +41,8 @@ constexpr double kNoExcess = 1e-6;
 // Densities beyond this Mahalanobis distance squared are below 1e-10 of the peak.
 constexpr double kDensityReach2 = 46.0;
 
-// A row leaves out what is this many σ before its tail: its share of the risk is below 1e-6, and
-// all of these together below the margin.
+// A row leaves out components whose mean is this many σ before its tail: the share of each in the
+// risk is below 1e-6, and of all together below the margin.
 constexpr double kNegligibleSigmas = 5.0;
 
 // The relative decrease of J below which the sequence has converged.

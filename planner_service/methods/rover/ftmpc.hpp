@@ -23,14 +23,14 @@ struct FtmpcOptions {
   double robots = 0.0;
   double eta = 1e-5;  ///< of Alg. 1, on ‖F^v − F^{v−1}‖
   int max_iterations = 50;
-  /// A swarm that breaks a constraint already, and cannot mend that within the horizon, gets the
+  /// A swarm that violates a constraint already, and cannot satisfy it within the horizon, gets the
   /// plan with the least excess instead of kInfeasible.
   bool soften = false;
   bool keep_program = false;
 };
 
-/// What a step hands to the next: where the risk rows were linearised last, by step, part of it and
-/// obstacle, and the arcs of its plan.
+/// The state that one MPC step passes to the next: the last linearisation point of each risk row,
+/// by step, part of it and obstacle, and the arcs of the plan.
 class HorizonMemory {
  public:
   HorizonMemory() = default;
@@ -43,7 +43,7 @@ class HorizonMemory {
   /// Arcs that carried mass, as (from, to), by stage.
   std::vector<std::vector<std::pair<std::uint32_t, std::uint32_t>>>& arcs() { return arcs_; }
 
-  /// One step later: what was of step p + 1 is now of step p.
+  /// Moves everything one step ahead: values of step p + 1 become those of step p.
   void shift();
 
  private:
@@ -79,7 +79,7 @@ struct HorizonPlan {
 /// programs (as in the paper's third version; its τ = 10⁻³ is a tie-break).
 ///
 /// Only constraints that bind are rows: after each program every step and obstacle is tested in
-/// full and what is violated joins. Any linearisation (R) of tail_limit.hpp implies (11g), so a
+/// full and violated constraints join. Any linearisation (R) of tail_limit.hpp implies (11g), so a
 /// feasible start is not needed: excess is penalised exactly, the weights of each optimum give the
 /// next linearisation, and the penalised cost never rises. Stops when the flow or the cost has
 /// converged.

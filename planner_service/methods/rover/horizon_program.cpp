@@ -58,7 +58,7 @@ HorizonProgram::Offers HorizonProgram::offers(std::span<const double> row_price)
     if (is_met_[row] == 0) price[row] = kInfinity;
   }
   Offers offers{std::vector<std::size_t>(is_met_.size(), is_active_.size()), {}};
-  // From the last stage to the first: what a column leads to has its price when it is read.
+  // From the last stage to the first, so that the row a column leads to has its price already.
   for (std::size_t c = is_active_.size(); c-- > 0;) {
     if (is_active_[c] != 0) continue;
     const HorizonNetwork::Column& column = network_->columns()[c];

@@ -12,7 +12,7 @@
 namespace swarm::planner {
 
 /// A linear constraint on the weights of one step's mixture, Σ coefficient · weight ≤ 1 + s, whose
-/// excess s ≥ 0 is paid for. What is not named has coefficient 0.
+/// excess s ≥ 0 has a cost. Weights without an entry have coefficient 0.
 struct WeightRow {
   std::size_t step = 1;  ///< p of (11), 1 … h
   bool by_arc = false;   ///< on π of the stage before the step, else on ω at it
@@ -74,7 +74,7 @@ class HorizonProgram {
   std::vector<Asks> by_vertex_, by_arc_;    // [step − 1]
   std::vector<std::size_t> active_;         // columns in the program
   std::vector<std::uint8_t> is_active_;     // by column of the network
-  std::vector<std::uint8_t> column_basic_;  // by place in active_
+  std::vector<std::uint8_t> column_basic_;  // by position in active_
   std::vector<std::uint8_t> excess_basic_;  // by weight row
   std::vector<std::uint8_t> row_basic_;     // equality rows, then weight rows
   std::vector<std::uint8_t> is_met_;        // by equality row: some column in the program has it

@@ -53,11 +53,11 @@ class RiskGraph {
     LineComponent line;
   };
 
-  /// Beyond this many σ the tail is below 1e-9, and what it holds below that.
+  /// Beyond this many σ the tail has a probability below 1e-9 and an excess below that.
   static constexpr double kNearSigmas = 6.0;
 
   /// Keeps a reference to the world. O(vertices · (arcs + obstacles)) with boxes that rule most
-  /// out. kBadInput for options out of range; kInfeasible when a goal component stands too near an
+  /// out. kBadInput for options out of range; kInfeasible when a goal component is too near an
   /// obstacle.
   static Result<RiskGraph> make(const World& world, const Mixture& goal,
                                 const RiskGraphOptions& options);
@@ -82,8 +82,8 @@ class RiskGraph {
     return to_goal_m_[vertex * goals_ + goal];
   }
 
-  /// What a convex obstacle of the world has near it, by index. Part 0: vertices. Part f = 1 …
-  /// checks_between: arcs, at f/(checks_between + 1) of their W₂ geodesic.
+  /// The Gaussians near a convex obstacle of the world, by its index. Part 0: vertices. Part f = 1
+  /// … checks_between: arcs, at f/(checks_between + 1) of their W₂ geodesic.
   std::span<const Near> near(std::size_t part, std::size_t obstacle) const {
     return near_[part][obstacle];
   }
@@ -91,7 +91,7 @@ class RiskGraph {
   /// The vertex that equals a Gaussian to 1e-9, if any.
   std::optional<std::uint32_t> find(const Gaussian& g) const;
 
-  /// Adds a Gaussian the swarm is in without it being of C: arcs lead out of it, none in. They
+  /// Adds a Gaussian of the swarm that is not in C: arcs lead out of it, none in. They
   /// reach at least twice as far as to the nearest vertex, since its shape alone may be farther
   /// than a small radius. Nothing when its mean lies in an obstacle.
   std::optional<std::uint32_t> add_source(const Gaussian& g);

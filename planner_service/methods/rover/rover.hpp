@@ -58,7 +58,7 @@ class Rover {
   /// The whole mission from `start`, step by step, as one flow: FlowPlan::sources()[i] is start
   /// component i, sinks()[j] goal component j, with the weights of `goal`, which are otherwise
   /// those of make(). (11g) holds at every step, start included, else kInfeasible names the
-  /// parameter to loosen. With FtmpcOptions::soften the start, and the steps it takes to mend it,
+  /// parameter to loosen. With FtmpcOptions::soften the start, and the steps until it is satisfied,
   /// may break it: for a swarm that flies already.
   Result<RoverMission> plan(const Mixture& start, const Mixture& goal);
   Result<RoverMission> plan(const Mixture& start) { return plan(start, goal_); }

@@ -108,7 +108,7 @@ TEST(HardInputs, WorldThatIsFull) {
   }
 }
 
-TEST(HardInputs, ZeroAndTinyWeights) {
+TEST(HardInputs, InvalidAndTinyWeights) {
   const Gaussian a = round(20, 20, 3);
   const Gaussian b = round(20, 60, 3);
 
