@@ -28,6 +28,7 @@ std::optional<Passage> narrowest_passage(const FlowPlan& plan, const World& worl
 /// Of the mass that starts in one component, as a plan's means move it. Behind a node where routes
 /// meet it is mixed with the rest, as robots are.
 struct GroupTimes {
+  /// When the mass of a group passes an event.
   struct Span {
     MissionTime first{0};
     MissionTime half{0};  ///< when half of the mass is through

@@ -70,8 +70,7 @@ Line energy_line(const std::string& name, const Flown& flown) {
 }
 
 /// Draws E of the first seed for both methods, with the tolerance. The two newest rows are ours and
-/// plain
-/// gradient descent, in this order.
+/// plain gradient descent, in this order.
 void draw_energy(Rows& rows, std::size_t index, const Case& c) {
   const Flown& ours = rows.all()[rows.all().size() - 2].flown.front();
   const Flown& plain = rows.newest().flown.front();
@@ -89,8 +88,7 @@ void draw_energy(Rows& rows, std::size_t index, const Case& c) {
 }
 
 /// Each case with intermittent diffusion and, for comparison, with a diffusion time of 0, which is
-/// plain
-/// gradient descent.
+/// plain gradient descent.
 Result<void> experiment(Rows& rows, std::span<const Case> cases) {
   std::string lines;
   for (std::size_t i = 0; i < (rows.quick() ? 1 : cases.size()); ++i) {

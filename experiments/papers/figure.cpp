@@ -84,8 +84,7 @@ double to_axis(const Axes& axes, const Extent& extent, double y) {
 }
 
 /// Draws the grid of the y axis: multiples of a round step, or powers of ten. The axis ends at a
-/// grid line
-/// on both sides. Pixels grow downwards, hence the negative length.
+/// grid line on both sides. Pixels grow downwards, hence the negative length.
 Axis add_y_axis(std::string& out, const Axes& axes, const Extent& extent,
                 std::span<const Line> lines) {
   Axis y{extent.y_low, extent.y_high, kTop + kInnerHeight, -kInnerHeight};
@@ -96,6 +95,7 @@ Axis add_y_axis(std::string& out, const Axes& axes, const Extent& extent,
     for (double v = y.low; v <= y.high + 1e-9 * step; v += step) tick_y(out, y.at(v), v + 0.0);
     return y;
   }
+  // Logarithmic: whole decades from the largest value down to the smallest drawn one.
   y.high = std::ceil(std::log10(extent.y_high));
   y.low = y.high - 1.0;
   for (const Line& line : lines) {
@@ -120,6 +120,7 @@ std::string figure(const Axes& axes, std::span<const Line> lines) {
     tick_x(body, x.at(v), v + 0.0);
   }
   const Axis y = add_y_axis(body, axes, extent, lines);
+  // Each line as a polyline, its marked points, and its entry in the legend above the chart.
   for (std::size_t i = 0; i < lines.size(); ++i) {
     const char* colour = kColours[i % kColours.size()];
     fmt::format_to(out, "<polyline class=\"line\" stroke=\"{}\" points=\"", colour);
@@ -138,6 +139,7 @@ std::string figure(const Axes& axes, std::span<const Line> lines) {
                    "y=\"{}\">{}</text>\n",
                    colour, at, kTop - 18, at + 24, kTop - 14, monitor::escape_xml(lines[i].name));
   }
+  // Title and names of the axes.
   fmt::format_to(out, "<text x=\"{}\" y=\"20\" font-weight=\"bold\">{}</text>\n", kLeft,
                  monitor::escape_xml(axes.title));
   fmt::format_to(out, "<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">{}</text>\n",
@@ -159,6 +161,7 @@ Line histogram_line(const std::string& name, std::span<const double> values, dou
   const auto bins = static_cast<std::size_t>(std::ceil(high / bin - 1e-9));
   std::vector<double> shares(bins, 0.0);
   for (const double value : values) {
+    // The last bin is entered at its middle, so that rounding cannot leave the range.
     const double at = std::clamp(value / bin, 0.0, static_cast<double>(bins) - 0.5);
     shares[static_cast<std::size_t>(at)] += 1.0 / static_cast<double>(values.size());
   }

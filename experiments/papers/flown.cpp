@@ -124,6 +124,7 @@ Result<Flown> fly(const Mission& mission, const SimulationOptions& options, bool
               .outcome = (*simulation)->outcome(),
               .wall_s = to_seconds(std::chrono::steady_clock::now() - begin)};
   const Simulation::Cost cost = (*simulation)->cost();
+  // The audit knows plans, scenes, clock and tracks alone, nothing of the simulation.
   const monitor::AuditedRun audited = monitor::audit_recorded({.mission = mission,
                                                                .plans = plan.plans,
                                                                .begin = Simulation::begin_utc(),
@@ -155,8 +156,7 @@ Result<Flown> fly(const Mission& mission, const SimulationOptions& options, bool
 }
 
 /// Threads take the next flight from a common counter. Consecutive flights are of different
-/// missions, so
-/// that other load on the machine affects the wall times of all missions alike.
+/// missions, so that other load on the machine affects the wall times of all missions alike.
 Result<std::vector<std::vector<Flown>>> fly_in_turns(
     std::span<const Mission> missions, std::uint32_t seeds, const SimulationOptions& options,
     const std::function<void(const Flown&)>& done) {
@@ -167,12 +167,15 @@ Result<std::vector<std::vector<Flown>>> fly_in_turns(
     for (std::size_t i = next++; i < results.size() && shell::stop_requests() == 0; i = next++) {
       SimulationOptions own = options;
       own.seed = i / missions.size() + 1;
+      // Seeds begin at 1; the flight of seed 1 is drawn.
       results[i] = fly(missions[i % missions.size()], own, own.seed == 1);
       const std::lock_guard lock(output_mutex);
       if (*results[i]) done(**results[i]);
     }
   };
   {
+    // This thread works as well, hence one thread less than cores; jthread joins at the end of the
+    // block.
     std::vector<std::jthread> others;
     for (unsigned i = 1; i < std::thread::hardware_concurrency(); ++i) others.emplace_back(work);
     work();

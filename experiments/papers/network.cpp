@@ -69,8 +69,7 @@ Result<void> sweep(Rows& rows, const Mission& mission) {
 }  // namespace
 
 /// The sweep, then two swarm sizes with a perfect and a bad network, which must not fail, and last
-/// all
-/// faults together with clocks out of step and noisy positions.
+/// all faults together with clocks out of step and noisy positions.
 Result<void> network_experiment(Rows& rows) {
   auto mission = rows.load("swarmprm_standin");
   if (!mission) return tl::unexpected(mission.error());
@@ -94,6 +93,7 @@ Result<void> network_experiment(Rows& rows) {
       }
     }
   }
+  // All faults at once.
   SimulationOptions worst = bad;
   worst.faults.delay = std::chrono::milliseconds(300);
   worst.clocks_in_step = false;

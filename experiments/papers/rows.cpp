@@ -134,6 +134,7 @@ Result<ExitCode> Rows::finish() const {
   const ExitCode code = good ? ExitCode::kOk : ExitCode::kCriteriaNotMet;
   if (options_.out.empty()) return code;
 
+  // An existing directory is no error; a missing one shows when the first file is written.
   std::error_code error;
   std::filesystem::create_directories(options_.out, error);
   const auto write = [&](const std::string& suffix, const std::string& content) {

@@ -22,8 +22,7 @@ std::istringstream fields_of(const std::string& stat) {
 }  // namespace
 
 /// Field numbers are those of proc(5): 14 and 15 CPU ticks, 20 threads, 24 resident pages. A
-/// process that
-/// ends in between gives an incomplete file, hence an empty result.
+/// process that ends in between gives an incomplete file, hence an empty result.
 std::optional<ProcessSample> sample_process(pid_t pid) {
   const std::string folder = fmt::format("/proc/{}", pid);
   std::string stat;

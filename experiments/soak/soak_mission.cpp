@@ -22,8 +22,7 @@ constexpr double kAreaPerRobot_m2 = 8.0;
 }  // namespace
 
 /// Two Gaussians in a square without obstacles, between which the whole swarm goes back and forth.
-/// The
-/// mission is written as YAML, so that it takes the same path as every mission file.
+/// The mission is written as YAML, so that it takes the same path as every mission file.
 Result<Mission> soak_mission(std::uint32_t robots, double rate_hz, double duration_s) {
   // N robots of one Gaussian are densest in its middle: N / (2π σ²).
   const double variance_m2 = std::max(4.0, robots * kAreaPerRobot_m2 / (2.0 * std::numbers::pi));

@@ -26,8 +26,7 @@ double ratio(std::uint64_t part, std::uint64_t whole) {
 }
 
 /// The larger of two losses: at the listener, by sequence numbers, and at the robots, by the drops
-/// of the
-/// kernel.
+/// of the kernel.
 double loss_of(const SoakMeasurements& m) {
   const double at_listener = m.received ? ratio(m.received->lost, m.received->sent()) : 0.0;
   return std::max(at_listener, ratio(m.receive_drops, m.states_used + m.receive_drops));
@@ -75,6 +74,7 @@ std::string chart_of(const std::vector<SoakSample>& samples, double SoakSample::
 Growth growth_of(const std::vector<SoakSample>& samples, double SoakSample::*what) {
   if (samples.empty()) return {};
   const std::size_t tenth = std::max<std::size_t>(samples.size() / 10, 1);
+  // With fewer than two tenths of samples the second tenth is the last one.
   const std::size_t begin = std::min(tenth, samples.size() - tenth);
   const auto mean = [&](std::size_t from) {
     double sum = 0.0;
@@ -118,6 +118,7 @@ std::string to_json(const SoakResult& result, const std::vector<std::string>& co
   const auto received = [&](std::uint64_t link::StreamMeter::Counts::*count) {
     return m.received ? Json((*m.received).*count) : Json();
   };
+  // The robot with the largest latency; null without a listener.
   Json worst = nullptr;
   if (m.latency.count() > 0) {
     worst = {{"robot", m.worst.robot.value()}, {"max_ms", to_ms(m.worst.latency_us)}};

@@ -48,8 +48,7 @@ void SoakWatch::receive_all() {
 }
 
 /// Keeps the first and the newest counters of each robot: their difference is the count of the
-/// soak. A
-/// robot whose process was restarted begins anew.
+/// soak. A robot whose process was restarted begins anew.
 void SoakWatch::on_status(const link::StatusMessage& status) {
   if (!running_) return;
   for (const link::RobotStatusMessage& now : status.robots) {
@@ -63,8 +62,7 @@ void SoakWatch::on_status(const link::StatusMessage& status) {
 }
 
 /// Called by the flight at every step: marks begin and end of the measurement, and takes a sample
-/// when
-/// one is due.
+/// when one is due.
 void SoakWatch::on_step(const Flight& flight, SteadyTime now) {
   const bool running = flight.supervisor().stage() == Supervisor::Stage::kRunning;
   if (running && !running_) {
@@ -78,8 +76,7 @@ void SoakWatch::on_step(const Flight& flight, SteadyTime now) {
 }
 
 /// Rates are differences to the last sample. CPU counts all processes of the run, memory and
-/// threads the
-/// agents alone.
+/// threads the agents alone.
 void SoakWatch::sample(const Flight& flight, SteadyTime now) {
   SoakSample s{.time_s = flight.supervisor().mission_time(now).count()};
   double cpu_s = 0.0;
@@ -89,6 +86,7 @@ void SoakWatch::sample(const Flight& flight, SteadyTime now) {
     const auto one = sample_process(pid);
     if (!one) continue;
     cpu_s += one->cpu_s;
+    // The planner counts as CPU only: it holds no robots.
     if (process == kPlanner) continue;
     s.rss_mb += one->rss_mb;
     s.rss_max_mb = std::max(s.rss_max_mb, one->rss_mb);
@@ -133,6 +131,8 @@ SoakMeasurements SoakWatch::measurements() const {
     m.ticks += last.ticks - first.ticks;
     m.late_ticks += last.late_ticks - first.late_ticks;
   }
+  // Each status carries the whole histogram of its process so far, so that the newest ones are
+  // added.
   for (const auto& [process, bins] : ages_) {
     for (const link::HistogramBinMessage& bin : bins) m.use_latency.add_bin(bin.bin, bin.count);
   }

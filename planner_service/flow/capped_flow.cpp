@@ -42,8 +42,7 @@ struct SplitNetwork {
 };
 
 // The roadmap as a flow network with node capacities: splitting a node turns its capacity into that
-// of
-// an arc (the standard reduction). Closed edges are left out.
+// of an arc (the standard reduction). Closed edges are left out.
 SplitNetwork split_network(const Roadmap& roadmap, const Terminals& terminals,
                            const DensityCap& cap) {
   SplitNetwork net;
@@ -67,8 +66,8 @@ SplitNetwork split_network(const Roadmap& roadmap, const Terminals& terminals,
   return net;
 }
 
-// The minimum cut at one density: the mass that fits through at density ρ is at most
-// passed + ρ · per_density, with equality at the ρ the cut was found for.
+// The minimum cut at one density: the mass that fits through at density ρ is at most passed + ρ ·
+// per_density, with equality at the ρ the cut was found for.
 struct Cut {
   double unserved = 0.0;
   double passed = 0.0;
@@ -154,8 +153,8 @@ Error does_not_fit(const Roadmap& roadmap, const Terminals& terminals, const Den
                       cap.max_per_m2, 100.0 * fits, cap.robots, cure)};
 }
 
-// Decomposes the flow into routes: each follows the remaining flow from a start to a goal and
-// takes as much as its thinnest arc carries, which empties an arc.
+// Decomposes the flow into routes: each follows the remaining flow from a start to a goal and takes
+// as much as its thinnest arc carries, which empties an arc.
 class RouteTaker {
  public:
   RouteTaker(const Roadmap& roadmap, const Terminals& terminals, std::span<const double> flow,
@@ -188,9 +187,7 @@ class RouteTaker {
   };
 
   // Follows the arc with most mass at each node until a goal has demand left. Nothing when rounding
-  // left
-  // no arc to follow.
-  // Costs are positive, so an optimal flow has no cycles and the walk ends.
+  // left no arc to follow. Costs are positive, so an optimal flow has no cycles and the walk ends.
   std::optional<Route> next(std::size_t start, double left) {
     std::vector<std::uint32_t> nodes{static_cast<std::uint32_t>(start)};
     std::vector<Carrying*> taken;
@@ -225,8 +222,7 @@ class RouteTaker {
 };
 
 // The roadmap's edges are proven to a coarse tolerance. Those that carry mass are proven to that of
-// a
-// plan, and closed where that fails. False when an edge was closed.
+// a plan, and closed where that fails. False when an edge was closed.
 bool prove_used_edges(Roadmap& roadmap, std::span<const double> flow, std::span<const FlowArc> arcs,
                       EdgeChecker& checker) {
   bool proven = true;

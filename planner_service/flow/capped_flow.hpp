@@ -13,6 +13,7 @@
 
 namespace swarm::planner {
 
+/// The routes of a transport under a static density cap.
 struct CappedFlow {
   std::vector<Route> routes;  ///< several may join the same two components
   double cost_m = 0.0;        ///< Σ mass · W₂ length

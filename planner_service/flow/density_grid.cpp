@@ -40,8 +40,7 @@ DensityGrid::DensityGrid(const FlowPlan& plan, double robots, double step_s)
 }
 
 // The Gaussians of a leg at its times. A source at rest gets one for every later time as well, of
-// which
-// only those before its departure are used.
+// which only those before its departure are used.
 std::vector<DensityPart> DensityGrid::parts_of(const Leg& leg,
                                                const std::vector<PlanNode>& nodes) const {
   std::vector<DensityPart> parts;
@@ -60,8 +59,7 @@ std::vector<DensityPart> DensityGrid::parts_of(const Leg& leg,
 }
 
 // Whether the density keeps the limit when climbed to from the mean of the changed leg at each of
-// its
-// times. Only parts in sight count. The density at the mean decides first: above the limit is a
+// its times. Only parts in sight count. The density at the mean decides first: above the limit is a
 // violation, far below it needs no climb.
 bool DensityGrid::keeps(const Leg& changed, double limit_per_m2) {
   for (std::uint32_t at = 0; at < changed.parts.size(); ++at) {

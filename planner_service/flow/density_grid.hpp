@@ -26,6 +26,7 @@ class DensityGrid {
                   double limit_per_m2);
 
  private:
+  // A leg, or a source or sink at rest, with its Gaussian at each of its times.
   struct Leg {
     std::uint32_t from = 0;
     std::uint32_t to = 0;

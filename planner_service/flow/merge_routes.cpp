@@ -105,8 +105,7 @@ class MergedGraph {
 }  // namespace
 
 // Merges node by node, then paces the merged legs, then builds a plan of the representatives. The
-// node
-// numbering is that of MergedGraph: starts, goals, then inner waypoints route by route.
+// node numbering is that of MergedGraph: starts, goals, then inner waypoints route by route.
 Result<FlowPlan> build_merged_plan(std::span<const Route> routes, std::size_t starts,
                                    std::size_t goals, const LegSpeed& speed) {
   SWARM_ASSERT(speed.means_mps > 0.0 && speed.robots_mps > 0.0);

@@ -46,8 +46,7 @@ std::vector<Units> in_units(std::span<const double> supplies, double per_unit) {
 }  // namespace
 
 // Whole numbers make the network simplex exact: with floating point, rounding in potentials could
-// make
-// it cycle or stop early. Masses and costs are scaled to units, solved, and scaled back.
+// make it cycle or stop early. Masses and costs are scaled to units, solved, and scaled back.
 std::optional<std::vector<double>> min_cost_flow(std::span<const double> supplies,
                                                  std::span<const FlowArc> arcs) {
   double total = 0.0;

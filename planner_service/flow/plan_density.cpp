@@ -148,8 +148,7 @@ DensityPeak max_density(std::span<const Gaussian> components, std::span<const do
 }
 
 // The density smoothed by a Gaussian with the disc's covariance approximates the mean over the
-// disc,
-// and can be climbed; the disc at each of its peaks is then integrated.
+// disc, and can be climbed; the disc at each of its peaks is then integrated.
 DensityPeak densest_disc(const FlowPlan& plan, double robots, double radius_m, double step_s) {
   SWARM_ASSERT(radius_m > 0.0);
   DensityPeak highest;

@@ -19,6 +19,7 @@ struct DensityShare {
   double per_m2 = 0.0;
 };
 
+/// A peak of the density with the legs that contribute to it.
 struct SharedPeak {
   DensityPeak peak;
   std::vector<DensityShare> shares;

@@ -34,8 +34,7 @@ double mean_length_m(const Waypoints& waypoints) {
 }
 
 // W₂² is the squared path of the mean plus the mean square path about the mean. The leg takes the
-// time
-// of the longer of the two.
+// time of the longer of the two.
 double leg_duration_s(const Gaussian& from, const Gaussian& to, double speed_mps) {
   const double mean_path_m = (to.mean_m() - from.mean_m()).norm();
   const double squared = wasserstein2_squared(from, to);

@@ -19,10 +19,9 @@ double w2_length_m(const Waypoints& waypoints);
 /// Σ |Δμ| over the legs [m]: the path length of the mean.
 double mean_length_m(const Waypoints& waypoints);
 
-/// How long a leg takes when means move at `speed_mps` [s]. Robots also move
-/// where the mean is at rest and only the shape changes: then the leg lasts as long as their root
-/// mean square path takes at that speed. Never 0, legs must run forward in time even where nothing
-/// moves.
+/// How long a leg takes when means move at `speed_mps` [s]. Robots also move where the mean is at
+/// rest and only the shape changes: then the leg lasts as long as their root mean square path takes
+/// at that speed. Never 0, legs must run forward in time even where nothing moves.
 double leg_duration_s(const Gaussian& from, const Gaussian& to, double speed_mps);
 
 /// How fast a plan moves.

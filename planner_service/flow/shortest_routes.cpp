@@ -78,8 +78,7 @@ double bucket_width_m(const Roadmap& roadmap) {
 }  // namespace
 
 // Relaxes the arcs of the nodes in the order of buckets. A node may be expanded again when its
-// length
-// falls while its bucket is processed.
+// length falls while its bucket is processed.
 ShortestRoutes::ShortestRoutes(const Roadmap& roadmap, std::uint32_t source,
                                std::span<const std::uint32_t> targets)
     : length_m_(roadmap.nodes.size(), std::numeric_limits<double>::infinity()),

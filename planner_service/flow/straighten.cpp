@@ -28,7 +28,7 @@ constexpr std::array kStraightenSteps{1.0, 0.5, 0.25};
 constexpr std::array kExtraRooms_m{0.0, 0.4, 1.0};
 constexpr double kLater_s = 1e-9;    // rounding
 constexpr double kCoarser = 2.0;     // every second time, until the whole is checked
-constexpr double kStraightenBelowCap = 0.999;  // so that the check of the whole finds little to undo
+constexpr double kStraightenBelowCap = 0.999;  // leaves the check of the whole little to undo
 
 // √S = (S + √det I) / √(tr + 2√det), for a positive definite matrix of two rows.
 Mat2 root_of(const Mat2& s) {
@@ -81,8 +81,7 @@ SplitPlan split(const FlowPlan& plan, const std::vector<bool>& is_end, double lo
 }
 
 // Block coordinate descent on the action Σ mass · W₂² / time: one Gaussian moves at a time, all
-// times
-// and masses stay. Every accepted move keeps speed, risk limit and density cap.
+// times and masses stay. Every accepted move keeps speed, risk limit and density cap.
 class Straightener {
  public:
   Straightener(const SplitPlan& split, const World& world, const RiskLimit& risk,
@@ -185,8 +184,7 @@ class Straightener {
   }
 
   // Whether a leg between these Gaussians is no faster than allowed in the time it has. Legs at
-  // start
-  // and goal components are also timed for the robots of the 2σ ellipse.
+  // start and goal components are also timed for the robots of the 2σ ellipse.
   bool is_slow_enough(std::uint32_t l, const Gaussian& from, const Gaussian& to,
                       double duration_s) const {
     const double least_s = split_.is_end_leg[l]
@@ -221,8 +219,8 @@ class Straightener {
   }
 
   // Line search towards the mean of the neighbours. Each candidate is first made feasible (pushed
-  // out of
-  // obstacles, then squeezed); the cheap tests come before the proof of the edges and the density.
+  // out of obstacles, then squeezed); the cheap tests come before the proof of the edges and the
+  // density.
   bool try_move(std::uint32_t i) {
     const double enough = (1.0 - options_.worthwhile) * action(i, nodes_[i].gaussian);
     const Geodesic path(nodes_[i].gaussian, middle_of(i));

@@ -62,8 +62,7 @@ class Paths {
 
 // The directed edges that lie on a path no longer than detour times the shortest between some start
 // and goal, proven to the tolerance of a plan. An edge is proven once for both directions. All
-// other
-// edges are left out: the unrolled network is many times the roadmap.
+// other edges are left out: the unrolled network is many times the roadmap.
 std::vector<Leg> near_shortest(const Roadmap& roadmap, std::size_t starts, std::size_t goals,
                                const TimedNetworkOptions& options, EdgeChecker& checker) {
   const Paths paths(roadmap, starts, goals, options.detour);
@@ -150,8 +149,7 @@ std::vector<std::uint32_t> TimedNetwork::steps_from(const Arcs& arcs, std::size_
 }
 
 // The longest of the fastest paths: from a start to its nearest goal, and to a goal from its
-// nearest
-// start.
+// nearest start.
 std::optional<std::uint32_t> TimedNetwork::free_flow_steps() const {
   std::uint32_t longest = 0;
   for (std::size_t v = 0; v < starts_ + goals_; ++v) {
@@ -174,10 +172,8 @@ std::size_t TimedNetwork::arc_count(std::uint32_t horizon) const {
 // Builds the time-expanded network. A copy of node v exists for steps earliest[v] to horizon −
 // left[v]:
 // at others no mass could be there that also arrives in time. The arc between the two halves of a
-// copy
-// carries the capacity. Supplies enter at step 0, demands leave at the horizon; mass at a goal
-// waits
-// free of charge.
+// copy carries the capacity. Supplies enter at step 0, demands leave at the horizon; mass at a goal
+// waits free of charge.
 TimedNetwork::Unrolled TimedNetwork::unrolled(std::uint32_t horizon,
                                               const TimedDemand& demand) const {
   SWARM_ASSERT(demand.supplies.size() == starts_ && demand.demands.size() == goals_ &&

@@ -14,6 +14,7 @@
 
 namespace swarm::planner {
 
+/// Time grid and costs of a TimedNetwork.
 struct TimedNetworkOptions {
   LegSpeed speed{};            ///< ends are legs at a start or goal component
   double step_s = 0.0;         ///< the grid of times; 0 for half of the median leg
@@ -30,8 +31,8 @@ struct TimedMove {
   double mass = 0.0;
 };
 
-/// The transport a swarm has to carry out: masses of the start and goal components, each
-/// summing to 1, and what every node of the roadmap may hold at a time.
+/// The transport a swarm has to carry out: masses of the start and goal components, each summing to
+/// 1, and what every node of the roadmap may hold at a time.
 struct TimedDemand {
   std::span<const double> supplies;
   std::span<const double> demands;
@@ -69,6 +70,7 @@ class TimedNetwork {
   std::size_t arc_count(std::uint32_t horizon) const;
 
  private:
+  // A directed leg with its duration in whole steps.
   struct Arc {
     std::uint32_t to;
     std::uint32_t steps;

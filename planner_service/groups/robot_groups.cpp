@@ -81,8 +81,7 @@ RobotGroup group_of(Members members, const Gaussian& gaussian) {
 }  // namespace
 
 // Arrived robots first, by goal component, then clusters of the others. The sort along the axis
-// gives
-// neighbouring robots neighbouring ranks, hence neighbouring shares of the plan.
+// gives neighbouring robots neighbouring ranks, hence neighbouring shares of the plan.
 Result<std::vector<RobotGroup>> group_robots(const MeasuredSwarm& swarm, const RiskLimit& risk,
                                              const GroupOptions& options) {
   SWARM_ASSERT(!swarm.robots.empty());

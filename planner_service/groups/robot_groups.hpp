@@ -27,8 +27,8 @@ struct GroupOptions {
 /// in, with its Gaussian, so that they may stay.
 ///
 /// Means too near an obstacle are pushed out and shapes squeezed as far as the limit requires.
-/// kInfeasible names the position where no Gaussian keeps it. \pre some robots
-/// O(robots · groups) visibility tests.
+/// kInfeasible names the position where no Gaussian keeps it. \pre some robots O(robots · groups)
+/// visibility tests.
 Result<std::vector<RobotGroup>> group_robots(const MeasuredSwarm& swarm, const RiskLimit& risk,
                                              const GroupOptions& options);
 

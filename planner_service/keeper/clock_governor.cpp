@@ -22,8 +22,7 @@ void ClockGovernor::advance(SteadyTime now, bool runs) {
 }
 
 // The rate from the quantile of the lags, by linear interpolation between lag_free_s (full rate)
-// and
-// lag_stop_s. If all robots are hopeless, none remains to judge by, and the least rate applies.
+// and lag_stop_s. If all robots are hopeless, none remains to judge by, and the least rate applies.
 void ClockGovernor::judge(std::span<const RobotLag> robots) {
   lags_.clear();
   hopeless_.clear();

@@ -130,10 +130,8 @@ void PlanKeeper::try_again(SteadyTime now, UtcTime utc, Step& step) {
 }
 
 /// Decides whether to plan now: on a new scene, periodically while obstacles move or the last
-/// attempt
-/// failed, and at the period of the method. The plan made at the start is published as it is while
-/// the
-/// scene is the mission's own.
+/// attempt failed, and at the period of the method. The plan made at the start is published as it
+/// is while the scene is the mission's own.
 void PlanKeeper::keep_planned(SteadyTime now, UtcTime utc, Step& step) {
   if (!scene_received_ && now - begun_at_ < kSceneTimeout) return;
   const bool published = version_ > 0;
@@ -204,8 +202,7 @@ void PlanKeeper::catch_up(SteadyTime now) {
   if (*middle > governor_.plan_time_s() + kRobotsAhead_s) governor_.catch_up(*middle);
 }
 
-/// Events about the clock: robots that it no longer waits for, once each, and a clock that has
-/// been
+/// Events about the clock: robots that it no longer waits for, once each, and a clock that has been
 /// slow for a while.
 void PlanKeeper::report_clock(SteadyTime now, Step& step) {
   std::vector<RobotId> fresh;  // not reported before
@@ -241,8 +238,7 @@ void PlanKeeper::report_clock(SteadyTime now, Step& step) {
 }
 
 /// Sets the clock's rate from the reported lags once a second. A reading goes out when version or
-/// rate
-/// change, and after a jump; in between receivers extrapolate.
+/// rate change, and after a jump; in between receivers extrapolate.
 void PlanKeeper::keep_clock(SteadyTime now, UtcTime utc, Step& step) {
   if (version_ == 0) return;
   if (now - judged_at_ >= kJudgePeriod && phase_ == MissionPhase::kRunning) {

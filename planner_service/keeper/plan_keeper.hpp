@@ -48,6 +48,7 @@ class PlanKeeper {
     std::string code;
     std::string text;
   };
+  /// What the program has to publish after a step.
   struct Step {
     bool publish = false;  ///< newest() is to be published, as version()
     /// A reading to publish: version or rate have changed, or the clock jumped.

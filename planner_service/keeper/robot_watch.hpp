@@ -65,6 +65,7 @@ class RobotWatch {
   }
 
  private:
+  // The last status of a robot and the position from which it makes progress.
   struct Received {
     ReportedRobot robot;
     SteadyTime at;

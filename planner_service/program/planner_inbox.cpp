@@ -10,8 +10,7 @@ PlannerInbox::PlannerInbox(Readers readers, const link::WireLimits& limits)
     : readers_(std::move(readers)), gate_({.limits = limits}) {}
 
 // Commands first: phase and t0 are those after all commands that arrived. Messages that the gate
-// refuses
-// are counted and dropped.
+// refuses are counted and dropped.
 void PlannerInbox::receive(UtcTime now) {
   commands_.clear();
   readers_.command->take(commands_);

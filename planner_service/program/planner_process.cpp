@@ -31,7 +31,7 @@ namespace {
 // A change of the scene must lead to a published plan within 100 ms; polling may take only a small
 // part of that.
 constexpr Duration kStep = std::chrono::milliseconds(5);
-constexpr std::uint64_t kFaultSeed = 0xFA17;  // separates the link's random numbers from the planner's
+constexpr std::uint64_t kFaultSeed = 0xFA17;  // own random numbers for the link
 
 // std::this_thread::sleep_for would sleep on after a signal.
 void sleep_for(Duration d) {
@@ -77,8 +77,7 @@ struct PlannerProcess::Impl {
 };
 
 // Writes plan and statistics to the run directory before the planner joins the bus, so that the
-// files
-// of a mission that has a plan always exist.
+// files of a mission that has a plan always exist.
 Result<void> PlannerProcess::Impl::plan_first() {
   const PlanningRecord promised{mission.planner.method,
                                 keeper->method().traits().density_cap_per_m2};
@@ -142,8 +141,7 @@ void PlannerProcess::Impl::receive(SteadyTime now) {
 }
 
 // One step of the keeper: events, the plan and the clock go out in this order. A new clock reading
-// also
-// sends a heartbeat at once.
+// also sends a heartbeat at once.
 void PlannerProcess::Impl::keep_planned(SteadyTime now) {
   const UtcTime utc = utc_now();
   const PlanKeeper::Step step = keeper->step(now, utc);
@@ -158,8 +156,7 @@ void PlannerProcess::Impl::keep_planned(SteadyTime now) {
 }
 
 // Sends the plan, then writes it to the run directory, since the file must not delay the robots.
-// The
-// version of a scene is its time stamp, which gives the delay since the change.
+// The version of a scene is its time stamp, which gives the delay since the change.
 void PlannerProcess::Impl::publish() {
   const UtcTime now = utc_now();
   const Replan& newest = keeper->newest();

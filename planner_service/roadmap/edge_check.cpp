@@ -37,8 +37,7 @@ EdgeChecker::Sample EdgeChecker::sample(const ConvexObstacle& obstacle, const Sw
 }
 
 // The slack of an end at an obstacle, from the cache of the end. The edges of a node meet the same
-// few
-// obstacles.
+// few obstacles.
 const EdgeEnd::Seen& EdgeChecker::look(EdgeEnd& end, std::uint32_t obstacle) const {
   const std::size_t place = obstacle % EdgeEnd::kSeen;
   EdgeEnd::Seen& seen = end.seen_[place];
@@ -65,8 +64,7 @@ EdgeChecker::Rates::Rates(const EdgeEnd& a, const EdgeEnd& b, double k, double d
 }
 
 // The condition a + b + 2 · tolerance ≥ L h of the class comment. The distance in the turning term
-// is
-// bounded below by what both ends allow, and by the limit itself.
+// is bounded below by what both ends allow, and by the limit itself.
 bool EdgeChecker::is_proven(const Interval& interval, const Rates& rates, double tolerance_m) {
   const auto& [obstacle, from, to] = interval;
   const double share = to.t - from.t;
@@ -77,8 +75,7 @@ bool EdgeChecker::is_proven(const Interval& interval, const Rates& rates, double
 }
 
 // First the ends against every obstacle within reach, which refutes most edges. Obstacles with one
-// face
-// towards both ends are done; for the others intervals are halved until proven or refuted.
+// face towards both ends are done; for the others intervals are halved until proven or refuted.
 bool EdgeChecker::is_free(EdgeEnd& a, EdgeEnd& b, double tolerance_m) {
   const Vec2& from_m = a.mean_m();
   const Vec2& to_m = b.mean_m();

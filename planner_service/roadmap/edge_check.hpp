@@ -31,6 +31,7 @@ class EdgeEnd {
   friend class EdgeChecker;
   static constexpr std::uint32_t kNothing = ~0U;
   static constexpr std::size_t kSeen = 8;
+  // Slack, distance and facing edge of one obstacle, as seen from the mean.
   struct Seen {
     double slack_m;
     double distance_m;
@@ -86,12 +87,14 @@ class EdgeChecker {
   void set_world(const World& world) { world_ = &world; }
 
  private:
+  // The slack δ − CVaR against one obstacle at one point of the edge.
   struct Sample {
     double t = 0.0;
     double slack_m = 0.0;
     double distance_m = 0.0;
     int face = ConvexObstacle::kNoFace;
   };
+  // A part of the edge that is not proven yet against one obstacle.
   struct Interval {
     const ConvexObstacle* obstacle = nullptr;
     Sample from, to;

@@ -11,8 +11,7 @@ namespace swarm::planner {
 namespace {
 
 // What would make the component keep the limit at its nearest obstacle: CVaR = −s + k σ ≤ δ gives
-// the
-// largest σ.
+// the largest σ.
 std::string advice(const Gaussian& g, const SignedDistance& at_mean, const RiskLimit& risk,
                    double k) {
   const double room_m = at_mean.distance_m + risk.delta_m;

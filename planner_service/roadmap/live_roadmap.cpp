@@ -62,8 +62,7 @@ bool same(const Gaussian& a, const Gaussian& b) {
 }  // namespace
 
 // Samples, then checks all pairs within the radius. Blocked pairs are kept as candidates: they
-// become
-// free when an obstacle goes.
+// become free when an obstacle goes.
 LiveRoadmap::LiveRoadmap(World world, std::vector<Gaussian> terminals,
                          const LiveRoadmapOptions& options, Rng& rng)
     : options_(options),
@@ -117,8 +116,7 @@ bool LiveRoadmap::needs_check(const Gaussian& a, const Gaussian& b, double sigma
 }
 
 // Removes samples that violate the risk limit beside a new obstacle, closes the gaps in their
-// numbers
-// and renumbers the pairs. The order of the samples stays.
+// numbers and renumbers the pairs. The order of the samples stays.
 void LiveRoadmap::lose_samples() {
   std::vector<std::uint32_t> renamed(samples_.size());
   std::uint32_t kept = 0;
@@ -206,8 +204,7 @@ void LiveRoadmap::draw_samples(std::size_t before, Rng& rng) {
 }
 
 // Draws samples in a box by rejection until `most` are found or the tries are used up. With a
-// spacing,
-// positions nearer than that to another sample are rejected (random sequential packing).
+// spacing, positions nearer than that to another sample are rejected (random sequential packing).
 void LiveRoadmap::draw_in(const Box& box, double spacing_m, std::size_t most, std::size_t tries,
                           Rng& rng) {
   if (area_m2(box) <= 0.0) return;

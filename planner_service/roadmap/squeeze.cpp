@@ -21,8 +21,7 @@ constexpr double kShrink = 1.0 - 1e-9;
 
 // Per round: the obstacle with the largest CVaR, then the scaling of the deviation along its normal
 // that brings this CVaR to δ. The covariance is scaled on both sides, so that it stays symmetric
-// and
-// positive definite.
+// and positive definite.
 std::optional<Gaussian> squeeze_into_free(const Gaussian& g, const World& world, double k,
                                           double delta_m, double sigma_min_m) {
   const Vec2 mean_m = g.mean_m();

@@ -18,8 +18,8 @@ namespace swarm::planner {
 std::optional<Gaussian> squeeze_into_free(const Gaussian& g, const World& world, double k,
                                           double delta_m, double sigma_min_m);
 
-/// Moves the mean away from the nearest obstacles until it is `room_m` from them; where there
-/// is less room, as far as a few pushes take it.
+/// Moves the mean away from the nearest obstacles until it is `room_m` from them; where there is
+/// less room, as far as a few pushes take it.
 Gaussian push_out(const Gaussian& g, const World& world, double room_m);
 
 }  // namespace swarm::planner

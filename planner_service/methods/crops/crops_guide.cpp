@@ -92,8 +92,7 @@ CropsGuide::CropsGuide(const World& world, const RiskLimit& risk, const CropsOpt
 }
 
 // Alternates sampling and searching: the first round draws N samples, each further one N/2 + 1,
-// until
-// every pair of components is joined. Halton points of all rounds continue one sequence.
+// until every pair of components is joined. Halton points of all rounds continue one sequence.
 Result<CropsGuide> CropsGuide::make(const World& world, const Mixture& start, const Mixture& goal,
                                     const RiskLimit& risk, const CropsOptions& options, Rng& rng) {
   CropsGuide guide(world, risk, options);
@@ -189,8 +188,7 @@ std::size_t CropsGuide::add_samples(std::size_t count, HaltonMeans& means) {
 }
 
 // Rebuilds the graph: neighbours within the radius, tested for visibility nearest first, with the
-// cost
-// of guide_cost() on each edge.
+// cost of guide_cost() on each edge.
 void CropsGuide::connect() {
   for (std::size_t i = weights_.size(); i < points_m_.size(); ++i) {
     weights_.push_back(clearance_weight(*world_, points_m_[i], options_.clearance_power));
@@ -279,10 +277,8 @@ double CropsGuide::sigma_beside_m(const Vec2& from_m, const Vec2& to_m) const {
 }
 
 // Turns a path of points into Gaussians. A vertex takes the smaller σ of its two legs. Where the
-// leg
-// from the start component would break δ, a round Gaussian at the start mean is inserted, so that
-// the
-// component contracts in place before it moves; likewise at the goal.
+// leg from the start component would break δ, a round Gaussian at the start mean is inserted, so
+// that the component contracts in place before it moves; likewise at the goal.
 Waypoints CropsGuide::waypoints_along(const std::vector<std::uint32_t>& path, const Gaussian& start,
                                       const Gaussian& goal) const {
   std::vector<double> leg_sigma_m;
@@ -322,8 +318,7 @@ std::optional<std::size_t> CropsGuide::route_near(const Vec2& at_m) const {
 }
 
 // Raises the cost of the edges ahead of the stuck robots in both directions, then searches all
-// paths
-// again. The factors multiply when robots stay stuck there.
+// paths again. The factors multiply when robots stay stuck there.
 bool CropsGuide::reweight(std::size_t route, const Vec2& stuck_at_m) {
   SWARM_ASSERT(route < paths_.size());
   const std::vector<std::uint32_t> path = paths_[route];

@@ -79,9 +79,9 @@ class CropsGuide {
   /// (m^(1−p)), not metres.
   const Roadmap& roadmap() const { return graph_; }
 
-  /// Many robots of a route are stuck near this position: the edges of its path towards the
-  /// next goals cost stuck_factor times as much, and all paths are searched anew (edges that
-  /// cost 10⁶ times their first cost do not rise further). Returns whether any route changed.
+  /// Many robots of a route are stuck near this position: the edges of its path towards the next
+  /// goals cost stuck_factor times as much, and all paths are searched anew (edges that cost 10⁶
+  /// times their first cost do not rise further). Returns whether any route changed.
   bool reweight(std::size_t route, const Vec2& stuck_at_m);
 
   /// The route with a waypoint nearest to a position; nothing without routes.

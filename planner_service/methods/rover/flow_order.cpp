@@ -23,8 +23,7 @@ struct SourceRoute {
 };
 
 // Follows the share of every rank through the plan, as a robot does, and groups the ranks by first
-// leg
-// and sink.
+// leg and sink.
 std::vector<SourceRoute> routes_of(const FlowPlan& plan, std::size_t source, std::uint32_t size) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<std::uint32_t>> ranks;
   const MissionTime begin = plan.nodes()[plan.sources()[source]].time;

@@ -168,9 +168,8 @@ class Constraints {
     return row;
   }
 
-  // Writes the row (R) of tail_limit.hpp for the linearisation point z, divided by its right side
-  // α (1 − margin), so that the limit of every row is 1. Vertices that the swarm cannot reach in
-  // this
+  // Writes the row (R) of tail_limit.hpp for the linearisation point z, divided by its right side α
+  // (1 − margin), so that the limit of every row is 1. Vertices that the swarm cannot reach in this
   // step carry no mass and are left out.
   void set_risk_row(const Constraint& constraint, double from_m) {
     WeightRow& row = row_at(risk_row(constraint), constraint);
@@ -183,8 +182,7 @@ class Constraints {
   }
 
   // Writes the row of (11f) for one density point. It is linear in the weights as it stands, so
-  // that
-  // it is never renewed.
+  // that it is never renewed.
   void add_density_row(const Constraint& constraint) {
     WeightRow& row = row_at(density_row(constraint), constraint);
     for (std::uint32_t v = 0; v < graph_.vertices().size(); ++v) {
@@ -315,8 +313,7 @@ void HorizonMemory::shift() {
 }
 
 // Alg. 1: solve a linear program, linearise the violated constraints at its optimum, repeat. Rows
-// are
-// added or renewed only; the program starts each time from the basis of the one before.
+// are added or renewed only; the program starts each time from the basis of the one before.
 Result<HorizonPlan> solve_ftmpc(const RiskGraph& graph, std::span<const VertexMass> sources,
                                 std::span<const double> goal_weights, const FtmpcOptions& options,
                                 HorizonMemory& memory) {

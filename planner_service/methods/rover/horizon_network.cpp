@@ -16,8 +16,8 @@ constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 }  // namespace
 
 // Unrolls the graph over h stages, breadth first from the sources: a vertex enters layer p when an
-// arc
-// from layer p − 1 reaches it. Columns are appended stage by stage; the order is relied upon below.
+// arc from layer p − 1 reaches it. Columns are appended stage by stage; the order is relied upon
+// below.
 HorizonNetwork::HorizonNetwork(const RiskGraph& graph, std::span<const VertexMass> sources,
                                std::span<const double> goal_weights, const HorizonCosts& costs)
     : horizon_(costs.horizon),
@@ -51,8 +51,7 @@ HorizonNetwork::HorizonNetwork(const RiskGraph& graph, std::span<const VertexMas
     layer = std::move(next);
   }
   // The terminal transport (11e): from every vertex of the last layer to every goal component that
-  // a
-  // path of the graph reaches, at the cost of the squared path length Q.
+  // a path of the graph reaches, at the cost of the squared path length Q.
   goal_row_ = right_side_.size();
   right_side_.insert(right_side_.end(), goal_weights.begin(), goal_weights.end());
   for (const std::uint32_t from : layer) {

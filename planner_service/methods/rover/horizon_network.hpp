@@ -36,6 +36,7 @@ struct HorizonCosts {
 /// spacing, which keeps the numbers of the program near 1.
 class HorizonNetwork {
  public:
+  /// A variable of the program: the flow along an arc in one stage.
   struct Column {
     std::uint32_t stage = 0;  ///< 0 … h; stage h is the terminal transport
     std::uint32_t from = 0;   ///< vertex
@@ -78,6 +79,7 @@ class HorizonNetwork {
   std::vector<double> arc_weights(std::size_t step, std::span<const double> x) const;
 
  private:
+  // Cheapest paths to one goal component.
   struct Paths {
     std::vector<double> cost;         // by row below goal_row(0), +∞ where there is none
     std::vector<std::size_t> column;  // taken first

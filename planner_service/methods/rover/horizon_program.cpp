@@ -24,8 +24,7 @@ constexpr int kMaxRounds = 1000;
 }  // namespace
 
 // Chooses the first columns: the cheapest path from each source to each goal, which make the
-// program
-// feasible, the likely ones, and the share kFirstShare with the smallest detour.
+// program feasible, the likely ones, and the share kFirstShare with the smallest detour.
 HorizonProgram::HorizonProgram(const HorizonNetwork& network, std::span<const std::size_t> likely)
     : network_(&network),
       by_vertex_(network.horizon()),
@@ -49,9 +48,8 @@ HorizonProgram::HorizonProgram(const HorizonNetwork& network, std::span<const st
 }
 
 // Prices all columns outside the program, O(columns). A row that the program does not contain yet
-// has
-// no dual price; it gets the reduced cost of the cheapest path from it, by dynamic programming over
-// the layers, so that a column into it is judged with all that has to follow.
+// has no dual price; it gets the reduced cost of the cheapest path from it, by dynamic programming
+// over the layers, so that a column into it is judged with all that has to follow.
 HorizonProgram::Offers HorizonProgram::offers(std::span<const double> row_price) const {
   std::vector<double> price(row_price.begin(), row_price.end());
   for (std::size_t row = 0; row < is_met_.size(); ++row) {
@@ -179,8 +177,7 @@ LinearProgram HorizonProgram::whole(std::span<const WeightRow> rows) {
 }
 
 // Column generation: solve, price, add, until no column outside has a negative reduced cost. The
-// first
-// round follows a change of rows, hence the dual simplex.
+// first round follows a change of rows, hence the dual simplex.
 LpSolution HorizonProgram::solve(std::span<const WeightRow> rows) {
   ask(rows);
   int pivots = 0;

@@ -16,6 +16,7 @@ namespace swarm::planner {
 struct WeightRow {
   std::size_t step = 1;  ///< p of (11), 1 … h
   bool by_arc = false;   ///< on π of the stage before the step, else on ω at it
+  /// A coefficient that is not 0.
   struct Entry {
     std::uint32_t index = 0;  ///< vertex or arc of the graph
     double coefficient = 0.0;

@@ -50,8 +50,7 @@ std::vector<std::uint32_t> likeliest(const RiskGraph& graph, const Vec2& robot_m
 }  // namespace
 
 // EM with fixed components. Each robot's likelihoods are scaled by the largest, which cancels in
-// the
-// update and prevents underflow.
+// the update and prevents underflow.
 std::vector<double> estimate_weights(std::span<const Gaussian> components,
                                      std::span<const Vec2> positions_m) {
   SWARM_ASSERT(!components.empty() && !positions_m.empty());

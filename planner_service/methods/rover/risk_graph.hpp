@@ -15,6 +15,7 @@
 
 namespace swarm::planner {
 
+/// Parameters of the graph G.
 struct RiskGraphOptions {
   CollocationOptions collocation{};
   double transport_radius_m = 22.5;  ///< of Assumption 2, in W₂: here 20 directions and waiting
@@ -40,6 +41,7 @@ struct RiskGraphOptions {
 /// passages.
 class RiskGraph {
  public:
+  /// A directed edge of the graph.
   struct Arc {
     std::uint32_t to = 0;
     double w2_m = 0.0;
@@ -91,9 +93,9 @@ class RiskGraph {
   /// The vertex that equals a Gaussian to 1e-9, if any.
   std::optional<std::uint32_t> find(const Gaussian& g) const;
 
-  /// Adds a Gaussian of the swarm that is not in C: arcs lead out of it, none in. They
-  /// reach at least twice as far as to the nearest vertex, since its shape alone may be farther
-  /// than a small radius. Nothing when its mean lies in an obstacle.
+  /// Adds a Gaussian of the swarm that is not in C: arcs lead out of it, none in. They reach at
+  /// least twice as far as to the nearest vertex, since its shape alone may be farther than a small
+  /// radius. Nothing when its mean lies in an obstacle.
   std::optional<std::uint32_t> add_source(const Gaussian& g);
 
   /// Forgets all added sources.

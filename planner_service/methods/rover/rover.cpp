@@ -108,8 +108,7 @@ class FlowBuilder {
     }
   }
   // Appends a step. Its arcs begin at the nodes that the step before appended last, so that
-  // step.from
-  // has to be the mixture that the step before ended with.
+  // step.from has to be the mixture that the step before ended with.
   void append(const RoverStep& step) {
     const std::size_t first = nodes_.size() - step.from.components().size();
     const std::size_t next = nodes_.size();
@@ -223,8 +222,7 @@ Mixture Rover::mixture_of(std::span<const VertexMass> masses) const {
 }
 
 // Plans h steps from the sources and takes the first. All stages are cleaned of negligible flows,
-// so
-// that the CVaR reported for each step is that of the mixture the robots would follow.
+// so that the CVaR reported for each step is that of the mixture the robots would follow.
 Result<RoverStep> Rover::step_from(std::span<const VertexMass> sources) {
   auto horizon = solve_ftmpc(graph_, sources, goal_weights_, options_.mpc, memory_);
   if (!horizon) return tl::unexpected(horizon.error());

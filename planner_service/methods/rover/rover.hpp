@@ -22,6 +22,7 @@ struct RoverOptions {
 
 /// One step of the mission: from the current mixture to the next.
 struct RoverStep {
+  /// Mass that moves from a component of `from` to one of `to`.
   struct Arc {
     std::size_t from = 0;  ///< component of `from`
     std::size_t to = 0;    ///< component of `to`

@@ -20,9 +20,8 @@ struct Tail {
   double density = 0.0;
 };
 
-// For a normal Y with mean m and deviation σ, and u = (z − m)/σ: P(Y > z) = erfc(u/√2)/2 and
-// E[(Y − z)⁺] = σ (φ(u) − u P). The difference is clamped at 0, where cancellation may make it
-// negative.
+// For a normal Y with mean m and deviation σ, and u = (z − m)/σ: P(Y > z) = erfc(u/√2)/2 and E[(Y −
+// z)⁺] = σ (φ(u) − u P). The difference is clamped at 0, where cancellation may make it negative.
 Tail tail_of(const LineComponent& c, double z_m) {
   const double u = (z_m - c.mean_m) / c.sigma_m;
   if (u > 38.0) return {};  // below the smallest double

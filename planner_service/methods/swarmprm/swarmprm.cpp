@@ -143,8 +143,7 @@ Result<std::vector<Route>> PlanInProgress::choose_routes(Roadmap& roadmap, PlanS
 }
 
 // Shortcuts remove large detours, tightening pulls the rest straight around corners, and waypoints
-// that
-// tightening added without need are dropped last.
+// that tightening added without need are dropped last.
 void PlanInProgress::smooth(Waypoints& waypoints) {
   take_shortcuts(waypoints, options_.shortcuts, checker_, run_.rng);
   const TightenOptions band{.sigma_min_m = kSqueezeBelowMin * options_.sampler.sigma_min_m};

@@ -31,8 +31,7 @@ PlanningTraits SwarmPrmMethod::traits() const {
 }
 
 // A roadmap for the request: a new one for a single plan, else the kept one, repaired where the
-// world or
-// the ends changed.
+// world or the ends changed.
 Roadmap SwarmPrmMethod::roadmap_for(const PlanRequest& request, Rng& rng) {
   if (!options_.keeps_roadmap) return make_roadmap(request, options_, rng);
   if (live_) {

@@ -19,8 +19,7 @@ SamplerKind sampler_named(std::string_view word) {
 }  // namespace
 
 // A roadmap is kept only for missions in flight, where obstacles may change; the speed is lowered
-// to that
-// of the bodies where the cap is chosen automatically.
+// to that of the bodies where the cap is chosen automatically.
 SwarmPrmOptions swarmprm_options(const MethodContext& context) {
   const PlannerSpec& spec = context.mission.planner;
   const SwarmPrmKeys keys = swarmprm_keys().read(context.options());

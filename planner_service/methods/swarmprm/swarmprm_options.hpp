@@ -29,8 +29,8 @@ struct SwarmPrmOptions {
   bool keeps_roadmap = true;      ///< for the next plan, which repairs it; costs more at first
 };
 
-/// The options of a mission. Where its density cap is `auto` the speed is that of the
-/// limits at most.
+/// The options of a mission. Where its density cap is `auto` the speed is that of the limits at
+/// most.
 SwarmPrmOptions swarmprm_options(const MethodContext& context);
 
 }  // namespace swarm::planner

@@ -144,8 +144,8 @@ TEST(LiveRoadmap, ChecksOnlyEdgesThatAChangeCanAffect) {
 
   live.update(with(scene.world, obstacles), terminals_of(scene), rng);
 
-  // Edges that come within r + kσ of the obstacle, in the worst case: a disc of 2 + 10 + 9 m of
-  // 20 000 m² free, and a sample drawn for each that was lost, with all its edges.
+  // Edges that come within r + kσ of the obstacle, in the worst case: a disc of 2 + 10 + 9 m of 20
+  // 000 m² free, and a sample drawn for each that was lost, with all its edges.
   EXPECT_GT(live.work().edges_checked, 0U);
   EXPECT_GT(live.work().samples_lost, 0U);
   EXPECT_LT(live.work().edges_checked, all / 10);

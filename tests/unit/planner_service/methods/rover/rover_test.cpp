@@ -204,7 +204,8 @@ TEST(Rover, ReportsWhatToLoosen) {
     return mission.error().message;
   };
 
-  EXPECT_NE(message(closed, at(50, 80), at(150, 80)).find("no path to any goal"), std::string::npos);
+  EXPECT_NE(message(closed, at(50, 80), at(150, 80)).find("no path to any goal"),
+            std::string::npos);
   const std::string start = message(beside, at(90, 80), at(150, 20));
   EXPECT_NE(start.find("start: CVaR"), std::string::npos) << start;
   EXPECT_NE(start.find("obstacle 0"), std::string::npos) << start;
