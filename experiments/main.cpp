@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-// `swarm_launcher table` and `swarm_launcher soak` are this program.
+// `swarm_launcher table` and `swarm_launcher soak` start this program.
 #include <functional>
 #include <memory>
 #include <string>
@@ -18,8 +18,10 @@
 namespace swarm::launcher {
 namespace {
 
+/// The action of a subcommand, run after its options are parsed.
 using Act = std::function<Result<ExitCode>()>;
 
+/// The returned action owns the options that the parser fills.
 Act add_table(CLI::App& program) {
   const auto o = std::make_shared<TableOptions>();
   CLI::App* const table = program.add_subcommand(
@@ -33,6 +35,7 @@ Act add_table(CLI::App& program) {
   return [o] { return make_table(*o); };
 }
 
+/// Limits of the result are options as well: a soak is a test with an exit code.
 Act add_soak(CLI::App& program) {
   using namespace cli;
   const auto o = std::make_shared<SoakOptions>();

@@ -8,6 +8,7 @@
 
 namespace swarm::planner {
 
+// Each group weighs as much as its share of the robots that reported.
 Mixture mixture_of(std::span<const RobotGroup> groups) {
   std::size_t robots = 0;
   for (const RobotGroup& group : groups) robots += group.members.size();

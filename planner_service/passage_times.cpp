@@ -16,7 +16,7 @@ constexpr double kTouching_m = 1e-6;
 
 double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
 
-// Where on the way from a to b, 0 to 1, it crosses the segment.
+// Where the segment from a to b, as a fraction 0 to 1, crosses the passage; nothing if it does not.
 std::optional<double> crossing(const Vec2& a_m, const Vec2& b_m, const Passage& passage) {
   const Vec2 path_m = b_m - a_m;
   const Vec2 gate_m = passage.to_m - passage.from_m;
@@ -24,7 +24,8 @@ std::optional<double> crossing(const Vec2& a_m, const Vec2& b_m, const Passage& 
   if (turn == 0.0) return std::nullopt;
   const double along = cross(passage.from_m - a_m, gate_m) / turn;
   const double across = cross(passage.from_m - a_m, path_m) / turn;
-  // A way that ends on the segment has crossed it, one that begins there has not.
+  // A leg that ends on the passage has crossed it, one that begins there has not: a route with a
+  // waypoint there counts once.
   if (along <= 0.0 || along > 1.0 || across < 0.0 || across > 1.0) return std::nullopt;
   return along;
 }
@@ -42,12 +43,14 @@ Passage shortest_from(const ConvexObstacle& a, const ConvexObstacle& b) {
   return shortest;
 }
 
+// The shortest segment between two convex shapes ends at a corner of one of them (or on a circle).
 Passage between(const ConvexObstacle& a, const ConvexObstacle& b) {
   const Passage there = shortest_from(a, b);
   const Passage back = shortest_from(b, a);
   return there.width_m() <= back.width_m() ? there : back;
 }
 
+// Whether the mean of any leg crosses a passage.
 bool is_crossed(const FlowPlan& plan, const Passage& passage) {
   return std::any_of(plan.legs().begin(), plan.legs().end(), [&](const PlanLeg& leg) {
     return crossing(plan.nodes()[leg.from].gaussian.mean_m(),
@@ -56,7 +59,8 @@ bool is_crossed(const FlowPlan& plan, const Passage& passage) {
   });
 }
 
-// Times at which shares of a mass do something.
+// Times of an event, each with the mass it happens to: first, last, and when half of the mass is
+// done.
 class Times {
  public:
   void add(MissionTime time, double mass) {
@@ -82,6 +86,8 @@ class Times {
   std::vector<std::pair<MissionTime, double>> times_;
 };
 
+// The mass of one source, followed along the legs. At a node it mixes with other mass and leaves by
+// each leg in proportion.
 class Group {
  public:
   Group(const FlowPlan& plan, std::uint32_t source) : plan_(plan), mass_(plan.nodes().size(), 0.0) {
@@ -92,6 +98,7 @@ class Group {
     }
   }
 
+  // Legs have to come in order of time, so that the mass of a node is complete before it leaves.
   GroupTimes times(const std::vector<std::uint32_t>& legs_in_time,
                    const std::optional<Passage>& passage, double speed_mps) {
     GroupTimes result;
@@ -143,6 +150,7 @@ std::string to_text(const GroupTimes::Span& span) {
 
 }  // namespace
 
+// Tests all pairs of convex parts. The distance of boxes and the best width so far rule out most.
 std::optional<Passage> narrowest_passage(const FlowPlan& plan, const World& world) {
   const std::vector<ConvexObstacle>& parts = world.convex_obstacles();
   std::optional<Passage> narrowest;

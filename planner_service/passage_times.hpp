@@ -9,7 +9,8 @@
 #include "swarmflow/core/flow_plan.hpp"
 #include "swarmflow/core/world.hpp"
 
-/// When the groups of a plan pass a place: from the plan and the map alone, for reports and tests.
+/// When the groups of a plan pass a passage: from the plan and the map alone, for reports and
+/// tests.
 namespace swarm::planner {
 
 /// The shortest segment between two obstacles that do not touch.
@@ -27,6 +28,7 @@ std::optional<Passage> narrowest_passage(const FlowPlan& plan, const World& worl
 /// Of the mass that starts in one component, as a plan's means move it. Behind a node where routes
 /// meet it is mixed with the rest, as robots are.
 struct GroupTimes {
+  /// When the mass of a group passes an event.
   struct Span {
     MissionTime first{0};
     MissionTime half{0};  ///< when half of the mass is through
@@ -35,7 +37,7 @@ struct GroupTimes {
   double share = 0.0;  ///< of the swarm
   Span leaves, arrives;
   std::optional<Span> passes;       ///< the passage; nothing if it does not
-  MissionTime waits_on_average{0};  ///< until it arrives, beyond its way at the given speed
+  MissionTime waits_on_average{0};  ///< until it arrives, beyond its path at the given speed
 };
 
 /// One for each source of the plan. O(legs · sources).

@@ -17,6 +17,7 @@ constexpr int kFineGrid = 200;
 
 }  // namespace
 
+// Samples legs densely instead of using the planner's proofs, so that it can find their errors.
 double planned_max_cvar_m(const FlowPlan& plan, const World& world, double alpha) {
   const double k = cvar_coefficient(alpha);
   double worst_m = -std::numeric_limits<double>::infinity();
@@ -33,6 +34,7 @@ double planned_max_cvar_m(const FlowPlan& plan, const World& world, double alpha
   return worst_m;
 }
 
+// Ten equal parts of each interval between the distinct times of nodes.
 double planned_max_mixture_cvar_m(const FlowPlan& plan, const World& world, double alpha) {
   constexpr int kBetween = 10;
   std::vector<MissionTime> times;
@@ -50,6 +52,7 @@ double planned_max_mixture_cvar_m(const FlowPlan& plan, const World& world, doub
   return worst_m;
 }
 
+// Components by stratified draw, points within a component at random: x = μ + L z with Σ = LLᵀ.
 double planned_obstacle_share(const FlowPlan& plan, const World& world, std::size_t samples,
                               Rng& rng) {
   constexpr std::size_t kTimes = 100;

@@ -8,8 +8,8 @@
 #include "swarmflow/core/flow_plan.hpp"
 #include "swarmflow/core/world.hpp"
 
-/// What a plan keeps of its promises, from the plan alone: nothing of the planner's own checks is
-/// in it. For reports and tests.
+/// Checks of a plan against its promises, from the plan alone, independent of the planner's own
+/// checks. For reports and tests.
 namespace swarm::planner {
 
 /// Largest CVaR of a plan over 201 points of every leg [m].
@@ -19,7 +19,7 @@ double planned_max_cvar_m(const FlowPlan& plan, const World& world, double alpha
 /// between each two of them [m].
 double planned_max_mixture_cvar_m(const FlowPlan& plan, const World& world, double alpha);
 
-/// What the promise means in robots, for reports: the largest share of the flow's mixture inside
+/// The promise in numbers of robots, for reports: the largest share of the flow's mixture inside
 /// obstacles, over its whole time, from `samples` points drawn from it. A robot rides a point of
 /// its own and is shrunk towards the mean there, so this is a share of the plan, not of robots.
 double planned_obstacle_share(const FlowPlan& plan, const World& world, std::size_t samples,

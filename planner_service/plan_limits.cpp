@@ -8,6 +8,7 @@
 
 namespace swarm::planner {
 
+// The densest disc is the costly part; it is skipped where the cap of a timed plan bounds it.
 void check_limits(PlanResult& result, const PlanningTraits& traits, const SwarmLimits& limits,
                   double robots) {
   if (limits.packing_per_m2 <= 0.0 || !traits.is_kept_in_time) return;

@@ -8,7 +8,7 @@
 
 namespace swarm::planner {
 
-/// Whether robots can fly a plan: its density and speed against the limits of their bodies.
+/// Whether robots can follow a plan: its density and speed against the limits of their bodies.
 /// Measures the densest disc of a plan that robots keep in time and adds warnings
 /// `density-infeasible` and `speed-infeasible` where bodies cannot follow it. Nothing where limits
 /// are not known (zeros) or the plan is a guide.

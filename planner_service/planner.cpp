@@ -13,7 +13,8 @@
 namespace swarm::planner {
 namespace {
 
-/// A guest's method may return any flow, but each robot enters the plan at a source, by its index.
+/// A method of a guest may return any flow, but robots enter the plan at a source by its index, so
+/// that sources and start components have to match.
 Result<void> check_sources(const FlowPlan& plan, const PlanRequest& request) {
   const std::size_t starts = request.start.components().size();
   if (plan.sources().size() == starts) return {};
@@ -52,6 +53,7 @@ Result<PlanResult> Planner::plan(const PlanRequest& request, const PlanContext& 
   return result;
 }
 
+// A change makes methods discard their roadmaps, so that an equal limit must not reach them.
 void Planner::set_risk(const RiskLimit& risk) {
   const RiskLimit& now = method_->risk();
   if (risk.alpha == now.alpha && risk.delta_m == now.delta_m) return;

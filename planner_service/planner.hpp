@@ -15,8 +15,8 @@
 
 namespace swarm::planner {
 
-/// The method of a mission, and what is the same for all methods: the total time, the size of what
-/// was searched, and the check whether robots can fly the plan.
+/// The method of a mission, and the steps common to all methods: total time, size of the graph that
+/// was searched, and the check whether robots can follow the plan.
 class Planner {
  public:
   /// `limits` of zeros: bodies are not known, nothing is checked against them. `robots`: how many.

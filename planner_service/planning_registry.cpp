@@ -12,6 +12,8 @@
 
 namespace swarm::planner {
 
+// All methods share one section of the mission: an option of two methods has to be the same for
+// both.
 void PlanningRegistry::add(PlanningEntry entry) {
   SWARM_ASSERT(entry.make && find_component(specs(), entry.spec.name) == nullptr);
   for (const OptionSpec& option : entry.spec.options) {
@@ -36,6 +38,7 @@ Catalogue PlanningRegistry::catalogue() const {
       .planning_methods = specs(), .control_methods = {}, .drivers = {}, .robots_are_open = true};
 }
 
+// Makes the method that the mission names; the error lists the names there are.
 Result<std::unique_ptr<PlanningMethod>> PlanningRegistry::make(const Mission& mission,
                                                                PlanningUse use) const {
   const auto found = std::find_if(

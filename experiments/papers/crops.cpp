@@ -10,6 +10,7 @@
 namespace swarm::launcher {
 namespace {
 
+/// A map with the published results for the first swarm sizes.
 struct Map {
   const char* name;
   std::array<const char*, 4> cells;  // of the authors' own runs: all arrived of 20, wall s
@@ -21,9 +22,10 @@ constexpr std::array<Map, 4> kMaps{{
     {"crops_scene3", {"17/20, 6.3 s", "13/20, 16.9 s", "17/20, 32.5 s", ""}},
     {"crops_s", {"", "", "", ""}},
 }};
+// Swarm sizes; the authors published results for the first three.
 constexpr std::array<std::uint32_t, 4> kSwarmSizes{10, 30, 50, 100};
 
-/// R² of the straight line through the points.
+/// R² of the least-squares line through the points: how linear wall time is in N.
 double linearity(const std::vector<Vec2>& points) {
   Vec2 mean = Vec2::Zero();
   for (const Vec2& p : points) mean += p / static_cast<double>(points.size());
@@ -39,6 +41,7 @@ double linearity(const std::vector<Vec2>& points) {
 
 }  // namespace
 
+/// All swarm sizes of a map are flown in turns: their wall times are compared with each other.
 Result<void> crops_experiment(Rows& rows) {
   std::vector<Line> lines;
   for (const Map& map : kMaps) {

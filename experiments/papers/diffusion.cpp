@@ -13,13 +13,13 @@
 namespace swarm::launcher {
 namespace {
 
-/// A case of the official code; what else it scales with r is in scaled().
+/// A case of the official code. scaled() derives the other quantities that depend on the radius.
 struct Case {
   const char* mission;
   double radius_m;
   std::uint32_t robots;
   double tolerance_m2;
-  std::uint32_t seeds_of_descent = 20;  // it always goes on to the end
+  std::uint32_t seeds_of_descent = 20;  // gradient descent always runs to the time limit
 };
 
 constexpr std::array<Case, 4> kCases{{{"diffusion_q", 0.1, 50, 0.045},
@@ -30,7 +30,8 @@ constexpr std::array<Case, 2> kFineCases{
     {{"diffusion_q", 0.01, 1000, 0.01, 4}, {"diffusion_jie", 0.01, 3000, 0.04, 4}}};
 constexpr double kTimeLimit_s = 60.0;
 
-/// A mission made for another radius: lengths and speeds near a robot go with it, the shape stays.
+/// The mission for another radius: lengths and speeds on the scale of a robot are scaled with it,
+/// the control rate inversely; the shape stays.
 Mission scaled(Mission mission, const Case& c) {
   const double factor = c.radius_m / mission.robots.radius_m;
   RobotsSpec& robots = mission.robots;
@@ -50,7 +51,7 @@ Mission scaled(Mission mission, const Case& c) {
   return mission;
 }
 
-/// Seeds in which E came within the tolerance and nobody crashed.
+/// Number of seeds in which E fell to the tolerance without a contact.
 std::size_t formed(const Row& row, const Case& c) {
   return static_cast<std::size_t>(
       std::count_if(row.flown.begin(), row.flown.end(), [&](const Flown& f) {
@@ -59,6 +60,7 @@ std::size_t formed(const Row& row, const Case& c) {
       }));
 }
 
+/// The error E over time, sampled every kEnergyEvery_s.
 Line energy_line(const std::string& name, const Flown& flown) {
   Line line{.name = name, .points = {}};
   for (std::size_t i = 0; i < flown.energy_m2.size(); ++i) {
@@ -67,6 +69,8 @@ Line energy_line(const std::string& name, const Flown& flown) {
   return line;
 }
 
+/// Draws E of the first seed for both methods, with the tolerance. The two newest rows are ours and
+/// plain gradient descent, in this order.
 void draw_energy(Rows& rows, std::size_t index, const Case& c) {
   const Flown& ours = rows.all()[rows.all().size() - 2].flown.front();
   const Flown& plain = rows.newest().flown.front();
@@ -83,6 +87,8 @@ void draw_energy(Rows& rows, std::size_t index, const Case& c) {
                    lines));
 }
 
+/// Each case with intermittent diffusion and, for comparison, with a diffusion time of 0, which is
+/// plain gradient descent.
 Result<void> experiment(Rows& rows, std::span<const Case> cases) {
   std::string lines;
   for (std::size_t i = 0; i < (rows.quick() ? 1 : cases.size()); ++i) {

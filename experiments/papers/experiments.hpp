@@ -4,7 +4,8 @@
 
 #include "experiments/papers/rows.hpp"
 
-/// The experiments behind `swarm_launcher table`, one a file. Each fails if a mission file does.
+/// The experiments behind `swarm_launcher table`, one per source file. Each fails if a mission file
+/// cannot be read.
 namespace swarm::launcher {
 
 /// SwarmPRM, Table I: 20 to 500 robots on its map.
@@ -22,7 +23,8 @@ Result<void> diffusion_experiment(Rows& rows);
 /// The same with its smallest and most robots, of 1 cm: an hour.
 Result<void> fine_diffusion_experiment(Rows& rows);
 
-/// What loss, delay, noise and clocks out of step do to the SwarmPRM mission: no paper has this.
+/// The SwarmPRM mission under loss, delay, noise and clocks out of step; without a published
+/// counterpart.
 Result<void> network_experiment(Rows& rows);
 
 }  // namespace swarm::launcher

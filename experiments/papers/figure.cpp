@@ -15,6 +15,7 @@
 namespace swarm::launcher {
 namespace {
 
+// Sizes in px.
 constexpr double kWidth = 720.0, kHeight = 400.0;
 constexpr double kLeft = 64.0, kRight = 16.0, kTop = 58.0, kBottom = 48.0;
 constexpr double kInnerWidth = kWidth - kLeft - kRight;
@@ -22,7 +23,7 @@ constexpr double kInnerHeight = kHeight - kTop - kBottom;
 constexpr double kLeastShare = 1e-6;  // of the largest value, on a logarithmic axis
 constexpr double kLegend = 170.0;     // px a name
 
-// Okabe and Ito's colours, told apart by everyone.
+// Okabe and Ito's palette, distinguishable with every form of colour vision.
 constexpr std::array kColours{"#0072b2", "#d55e00", "#009e73", "#cc79a7",
                               "#e69f00", "#56b4e9", "#999999"};
 
@@ -38,10 +39,12 @@ struct Axis {
   double at(double value) const { return begin_px + (value - low) / (high - low) * length_px; }
 };
 
+/// Range of the values of all lines; y begins at 0 or below.
 struct Extent {
   double x_low = 0.0, x_high = 0.0, y_low = 0.0, y_high = 0.0;
 };
 
+/// Never empty, so that an axis can be divided by its length.
 Extent extent_of(std::span<const Line> lines) {
   Extent e;
   bool first = true;
@@ -59,6 +62,7 @@ Extent extent_of(std::span<const Line> lines) {
   return e;
 }
 
+/// Grid line and label of a value on the x axis.
 void tick_x(std::string& out, double px, double value) {
   fmt::format_to(std::back_inserter(out),
                  "<path class=\"grid\" d=\"M{0:.1f},{1}V{2}\"/><text x=\"{0:.1f}\" y=\"{3}\" "
@@ -66,6 +70,7 @@ void tick_x(std::string& out, double px, double value) {
                  px, kTop, kTop + kInnerHeight, kTop + kInnerHeight + 17, value);
 }
 
+/// Grid line and label of a value on the y axis.
 void tick_y(std::string& out, double px, double value) {
   fmt::format_to(std::back_inserter(out),
                  "<path class=\"grid\" d=\"M{0},{1:.1f}H{2}\"/><text x=\"{3}\" y=\"{4:.1f}\" "
@@ -73,10 +78,13 @@ void tick_y(std::string& out, double px, double value) {
                  kLeft, px, kLeft + kInnerWidth, kLeft - 6, px + 4, value);
 }
 
+/// Position on the axis: the value, or its logarithm. Values near 0 are drawn at the lower end.
 double to_axis(const Axes& axes, const Extent& extent, double y) {
   return axes.log_y ? std::log10(std::max(y, kLeastShare * extent.y_high)) : y;
 }
 
+/// Draws the grid of the y axis: multiples of a round step, or powers of ten. The axis ends at a
+/// grid line on both sides. Pixels grow downwards, hence the negative length.
 Axis add_y_axis(std::string& out, const Axes& axes, const Extent& extent,
                 std::span<const Line> lines) {
   Axis y{extent.y_low, extent.y_high, kTop + kInnerHeight, -kInnerHeight};
@@ -87,6 +95,7 @@ Axis add_y_axis(std::string& out, const Axes& axes, const Extent& extent,
     for (double v = y.low; v <= y.high + 1e-9 * step; v += step) tick_y(out, y.at(v), v + 0.0);
     return y;
   }
+  // Logarithmic: whole decades from the largest value down to the smallest drawn one.
   y.high = std::ceil(std::log10(extent.y_high));
   y.low = y.high - 1.0;
   for (const Line& line : lines) {
@@ -106,10 +115,12 @@ std::string figure(const Axes& axes, std::span<const Line> lines) {
   auto out = std::back_inserter(body);
   const Axis x{extent.x_low, extent.x_high, kLeft, kInnerWidth};
   const double step = monitor::round_step(x.high - x.low, 10.0);
+  // The tolerance of 1e-9 keeps ticks at the ends in spite of rounding; + 0.0 turns −0 into 0.
   for (double v = step * std::ceil(x.low / step - 1e-9); v <= x.high + 1e-9 * step; v += step) {
     tick_x(body, x.at(v), v + 0.0);
   }
   const Axis y = add_y_axis(body, axes, extent, lines);
+  // Each line as a polyline, its marked points, and its entry in the legend above the chart.
   for (std::size_t i = 0; i < lines.size(); ++i) {
     const char* colour = kColours[i % kColours.size()];
     fmt::format_to(out, "<polyline class=\"line\" stroke=\"{}\" points=\"", colour);
@@ -128,6 +139,7 @@ std::string figure(const Axes& axes, std::span<const Line> lines) {
                    "y=\"{}\">{}</text>\n",
                    colour, at, kTop - 18, at + 24, kTop - 14, monitor::escape_xml(lines[i].name));
   }
+  // Title and names of the axes.
   fmt::format_to(out, "<text x=\"{}\" y=\"20\" font-weight=\"bold\">{}</text>\n", kLeft,
                  monitor::escape_xml(axes.title));
   fmt::format_to(out, "<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">{}</text>\n",
@@ -141,12 +153,15 @@ std::string figure(const Axes& axes, std::span<const Line> lines) {
       kWidth, kHeight, kStyle, body);
 }
 
+/// Values beyond the last bin are clamped into it. Each bin is two points, so that the line has
+/// steps.
 Line histogram_line(const std::string& name, std::span<const double> values, double bin,
                     double high) {
   SWARM_ASSERT(bin > 0.0 && high > bin && !values.empty());
   const auto bins = static_cast<std::size_t>(std::ceil(high / bin - 1e-9));
   std::vector<double> shares(bins, 0.0);
   for (const double value : values) {
+    // The last bin is entered at its middle, so that rounding cannot leave the range.
     const double at = std::clamp(value / bin, 0.0, static_cast<double>(bins) - 0.5);
     shares[static_cast<std::size_t>(at)] += 1.0 / static_cast<double>(values.size());
   }

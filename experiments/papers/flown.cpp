@@ -19,16 +19,19 @@
 namespace swarm::launcher {
 namespace {
 
-// Distances to obstacles are looked at in every n-th step.
+// Distances to obstacles are evaluated at every n-th recorded point.
 constexpr std::size_t kRiskEvery = 5;
-// Between two recorded points robots are taken to move straight. Of small robots, controlled a
-// thousand times a second, all would not fit into memory; one of 1 cm drives 1.5 mm in between.
+// Rate of recorded points; robots are assumed to move straight between them. Small robots are
+// controlled a thousand times a second, and all their points would not fit into memory. A robot of
+// 1 cm drives 1.5 mm between two points.
 constexpr double kPoints_hz = 200.0;
 
+/// Control periods from one recorded point to the next.
 std::uint64_t periods_a_point(const Mission& mission) {
   return static_cast<std::uint64_t>(std::max(1.0, mission.control.rate_hz / kPoints_hz));
 }
 
+/// Keeps what the simulation publishes for the audit: plans, clock readings and scenes.
 class PlanKept final : public SimulationObserver {
  public:
   void on_plan(std::uint32_t version, const planner::PlanResult& planned) override {
@@ -41,6 +44,7 @@ class PlanKept final : public SimulationObserver {
   std::vector<Scene> scenes;
 };
 
+/// Copies what the audit measured; values it could not measure stay NaN.
 void take_tracking(const monitor::Tracking& tracking, Flown& flown) {
   if (tracking.w2) {
     flown.w2_m = tracking.w2->w2_m;
@@ -56,6 +60,7 @@ void take_tracking(const monitor::Tracking& tracking, Flown& flown) {
   flown.over_plan_s = tracking.mission_over_plan_s.value_or(Flown::kUnknown);
 }
 
+/// Share of the recorded points of moving robots nearer to an obstacle than the plan allows.
 double risk_share(const monitor::RecordedRun& run) {
   const double near_m = -run.mission.planner.risk_delta_m;
   std::size_t looked = 0;
@@ -70,7 +75,9 @@ double risk_share(const monitor::RecordedRun& run) {
   return looked == 0 ? 0.0 : static_cast<double>(inside) / static_cast<double>(looked);
 }
 
-/// All robots are recorded at the same times, evenly from the first step on.
+/// E = max (F + G) over the robots at each time, from their recorded positions, as in the official
+/// code of the diffusion paper. All robots are recorded at the same times, evenly from the first
+/// step on.
 std::vector<double> energy_m2(const monitor::RecordedRun& run) {
   const ControlSpec& control = run.mission.control;
   const auto keys = agent::intermittent_diffusion_keys().read(control.options);
@@ -102,6 +109,7 @@ std::vector<double> energy_m2(const monitor::RecordedRun& run) {
 
 }  // namespace
 
+/// Simulates the mission in lock-step, then audits the recording as that of a real run.
 Result<Flown> fly(const Mission& mission, const SimulationOptions& options, bool draw) {
   const auto begin = std::chrono::steady_clock::now();
   Recording recording(mission, Simulation::begin_utc(), periods_a_point(mission));
@@ -116,6 +124,7 @@ Result<Flown> fly(const Mission& mission, const SimulationOptions& options, bool
               .outcome = (*simulation)->outcome(),
               .wall_s = to_seconds(std::chrono::steady_clock::now() - begin)};
   const Simulation::Cost cost = (*simulation)->cost();
+  // The audit knows plans, scenes, clock and tracks alone, nothing of the simulation.
   const monitor::AuditedRun audited = monitor::audit_recorded({.mission = mission,
                                                                .plans = plan.plans,
                                                                .begin = Simulation::begin_utc(),
@@ -146,6 +155,8 @@ Result<Flown> fly(const Mission& mission, const SimulationOptions& options, bool
   return flown;
 }
 
+/// Threads take the next flight from a common counter. Consecutive flights are of different
+/// missions, so that other load on the machine affects the wall times of all missions alike.
 Result<std::vector<std::vector<Flown>>> fly_in_turns(
     std::span<const Mission> missions, std::uint32_t seeds, const SimulationOptions& options,
     const std::function<void(const Flown&)>& done) {
@@ -156,12 +167,15 @@ Result<std::vector<std::vector<Flown>>> fly_in_turns(
     for (std::size_t i = next++; i < results.size() && shell::stop_requests() == 0; i = next++) {
       SimulationOptions own = options;
       own.seed = i / missions.size() + 1;
+      // Seeds begin at 1; the flight of seed 1 is drawn.
       results[i] = fly(missions[i % missions.size()], own, own.seed == 1);
       const std::lock_guard lock(output_mutex);
       if (*results[i]) done(**results[i]);
     }
   };
   {
+    // This thread works as well, hence one thread less than cores; jthread joins at the end of the
+    // block.
     std::vector<std::jthread> others;
     for (unsigned i = 1; i < std::thread::hardware_concurrency(); ++i) others.emplace_back(work);
     work();

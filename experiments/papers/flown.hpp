@@ -15,19 +15,19 @@
 
 namespace swarm::launcher {
 
-/// What a table keeps of one simulated and audited mission.
+/// Results of one simulated and audited mission that a table uses.
 struct Flown {
   std::uint64_t seed = 0;
   Outcome outcome = Outcome::kNone;
   std::uint32_t robots = 0;
-  std::uint32_t arrived = 0;
+  std::uint32_t arrived = 0;    ///< robots at their goal at the end
   std::uint32_t contacts = 0;  ///< pairs of robots, and robots with obstacles
   double wall_s = 0.0;         ///< planning and flying
-  double plan_ms = 0.0;
-  double ns_per_agent_step = 0.0;
+  double plan_ms = 0.0;        ///< of all plans of the flight
+  double ns_per_agent_step = 0.0;  ///< median over the steps
   double mission_s = 0.0;
   double path_m = 0.0;   ///< mean over the robots
-  double bound_m = 0.0;  ///< geodesic, over their own begins and ends
+  double bound_m = 0.0;  ///< geodesic lower bound, between the robots' own starts and ends
   double robot_gap_m = 0.0;
   double obstacle_gap_m = 0.0;
   /// Mean over the robots of the least clearance of each, at most 2 m.
@@ -41,18 +41,20 @@ struct Flown {
   double centre_lag_s = kUnknown;
   double lag_p90_s = kUnknown;
   double density_per_m2 = kUnknown;          ///< largest flown, discs of 2 m radius
-  double density_p95_per_m2 = kUnknown;      ///< … at 95 % of times no more
+  double density_p95_per_m2 = kUnknown;      ///< … not exceeded at 95 % of the times
   double planned_density_per_m2 = kUnknown;  ///< largest of the plan, the same discs
   double over_plan_s = kUnknown;             ///< mission time minus the plan's duration
   /// E = max (F + G) over the robots, of shapes that are filled.
   std::vector<double> energy_m2{};
   static constexpr double kEnergyEvery_s = 0.1;
-  // Of a drawn one alone:
+  // Only of a flight that is drawn:
   std::string paths_svg{};
   std::vector<double> robot_gaps_m{};     ///< least gap of each robot to others, at most 2 m
   std::vector<double> obstacle_gaps_m{};  ///< and to obstacles
 
+  /// Path length over its lower bound: comparable between maps, unlike the metres.
   double ratio() const { return bound_m > 0.0 ? path_m / bound_m : 0.0; }
+  /// 1 means that the swarm follows the plan as closely as a sample of it would.
   double w2_ratio() const { return w2_m / w2_floor_m; }
 };
 
@@ -60,8 +62,8 @@ struct Flown {
 Result<Flown> fly(const Mission& mission, const SimulationOptions& options, bool draw);
 
 /// The same for seeds 1 … `seeds` of each mission, one flight of each in turn, as many at a time as
-/// there are cores; the first ones are drawn. Fails if one of them cannot be planned. `done` is
-/// told of each, by one thread at a time.
+/// there are cores; those of seed 1 are drawn. Fails if one of them cannot be planned. `done` is
+/// called for each, by one thread at a time.
 Result<std::vector<std::vector<Flown>>> fly_in_turns(std::span<const Mission> missions,
                                                      std::uint32_t seeds,
                                                      const SimulationOptions& options,

@@ -13,20 +13,24 @@ namespace {
 
 constexpr std::array kLosses{0.0, 0.1, 0.2, 0.3, 0.4};
 constexpr std::array kDelays_ms{0, 50, 150, 300};
+// Robots of the sweep.
 constexpr std::uint32_t kRobots = 100;
 
+/// Jitter is a third of the delay.
 LinkFaults faults_of(double loss, int delay_ms) {
   return {.loss = loss,
           .delay = std::chrono::milliseconds(delay_ms),
           .jitter = std::chrono::milliseconds(delay_ms / 3)};
 }
 
+/// Loss and delay as two cells of the table.
 std::string cells_of(const LinkFaults& faults) {
   return fmt::format("{:.0f} % | {:.0f} ± {:.0f} ms", 100.0 * faults.loss,
                      1e3 * to_seconds(faults.delay), 1e3 * to_seconds(faults.jitter));
 }
 
-/// A line over the loss for every delay.
+/// Flies all combinations of loss and delay, and draws a line over the loss for every delay. These
+/// runs may fail: they show at which loss the mission breaks down.
 Result<void> sweep(Rows& rows, const Mission& mission) {
   std::vector<Line> path, time, arrived;
   for (const int delay_ms : kDelays_ms) {
@@ -64,6 +68,8 @@ Result<void> sweep(Rows& rows, const Mission& mission) {
 
 }  // namespace
 
+/// The sweep, then two swarm sizes with a perfect and a bad network, which must not fail, and last
+/// all faults together with clocks out of step and noisy positions.
 Result<void> network_experiment(Rows& rows) {
   auto mission = rows.load("swarmprm_standin");
   if (!mission) return tl::unexpected(mission.error());
@@ -87,6 +93,7 @@ Result<void> network_experiment(Rows& rows) {
       }
     }
   }
+  // All faults at once.
   SimulationOptions worst = bad;
   worst.faults.delay = std::chrono::milliseconds(300);
   worst.clocks_in_step = false;

@@ -13,17 +13,21 @@
 namespace swarm::launcher {
 namespace {
 
-// Planning is nine tenths of a flight's wall time: a quick table plans at the steps of the horizon.
+// Planning is nine tenths of the wall time of a flight. A quick table plans less often, at the pace
+// of the steps of the horizon.
 constexpr double kQuickPeriod_s = 18.0;
 
+// Cells of the paper's tables for its three scenarios.
 constexpr std::array<const char*, 3> kPublished{
     "4.28 / 170.05 / .32 / .49 | 41.35 / 269.40 / .23 / 1.96 | 66.60 / 160.11 / .078 / -0.45",
     "5.44 / 198.67 / .62 / .76 | 44.51 / 279.70 / .23 / 7.00 | 116.76 / 162.09 / .02 / -6.57",
     "6.05 / 202.26 / .58 / .34 | 58.58 / 364.16 / .23 / 6.80 | 120.78 / 159.03 / .03 / -2.96"};
 
+// Risk levels α of the second table, with the published minutes and metres.
 constexpr std::array<std::pair<double, const char*>, 3> kAlphas{
     {{0.05, "5.50 / 191.0"}, {0.15, "4.20 / 174.6"}, {0.3, "3.81 / 173.2"}}};
 
+// Least gaps between robots and to obstacles.
 struct Clearance {
   double robot_m, obstacle_m;
 };
@@ -73,6 +77,8 @@ void draw_distances(Rows& rows, const std::vector<std::size_t>& by_alpha) {
 
 }  // namespace
 
+/// Three scenarios, then scenario 2 with other risk levels α and without following the plan in
+/// time.
 Result<void> rover_experiment(Rows& rows) {
   const std::uint32_t robots = rows.quick() ? 60 : 500;
   const std::uint32_t seeds = rows.quick() ? 1 : 5;

@@ -16,15 +16,17 @@
 namespace swarm::launcher {
 namespace {
 
+// Heads of the columns that cells() fills.
 constexpr std::string_view kOurs =
     "plan ms | wall s | mean path m (std) | / bound | mission s | arrived % | contacts | least gap "
     "robot / obstacle m | W2 / floor | centre lag s | density flown (planned) per m2";
 
-/// What was not measured, as without a plan in time, is a dash.
+/// A number, or a dash where it was not measured, for instance without a timed plan.
 std::string known(fmt::string_view format, double value) {
   return std::isfinite(value) ? fmt::vformat(format, fmt::make_format_args(value)) : "–";
 }
 
+/// The cells of a row: means over the seeds, but the least gaps.
 std::string cells(const Row& row) {
   const auto mean = [&](auto of) { return row.mean(of); };
   return fmt::format(
@@ -46,6 +48,7 @@ std::string cells(const Row& row) {
           known(" ({:.1f})", mean([](const Flown& f) { return f.planned_density_per_m2; })));
 }
 
+/// All numbers of every seed, for evaluation by other programs.
 nlohmann::ordered_json to_json(const Row& row) {
   nlohmann::ordered_json seeds = nlohmann::ordered_json::array();
   for (const Flown& f : row.flown) {
@@ -88,6 +91,7 @@ Result<void> Rows::add(const std::string& name, const std::string& published,
   return add_in_turns({{name, published}}, {&mission, 1}, seeds, options);
 }
 
+/// Rows are added after all flights, in the order of the missions, so that a failed one adds none.
 Result<void> Rows::add_in_turns(const std::vector<Named>& named, std::span<const Mission> missions,
                                 std::uint32_t seeds, const SimulationOptions& options) {
   Progress progress;
@@ -110,6 +114,7 @@ Result<void> Rows::add_in_turns(const std::vector<Named>& named, std::span<const
   return {};
 }
 
+/// The heads contain bars of their own: the rule below them has one cell more than there are bars.
 void Rows::add_published_rows(std::string_view head, std::string_view published_head) {
   const std::string columns = fmt::format("{} | {} | {}", head, published_head, kOurs);
   add_line("| " + columns + " |");
@@ -121,12 +126,15 @@ void Rows::add_published_rows(std::string_view head, std::string_view published_
   }
 }
 
+/// Prints the table first: it is not lost if a file cannot be written.
 Result<ExitCode> Rows::finish() const {
   std::fputs(text_.c_str(), stdout);
+  // The exit code is that of rows that must hold; others never fail a table.
   const bool good = std::all_of(rows_.begin(), rows_.end(), [](const Row& r) { return r.good(); });
   const ExitCode code = good ? ExitCode::kOk : ExitCode::kCriteriaNotMet;
   if (options_.out.empty()) return code;
 
+  // An existing directory is no error; a missing one shows when the first file is written.
   std::error_code error;
   std::filesystem::create_directories(options_.out, error);
   const auto write = [&](const std::string& suffix, const std::string& content) {

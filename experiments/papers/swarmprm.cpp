@@ -12,7 +12,8 @@ namespace swarm::launcher {
 
 namespace {
 
-/// What carries the result: the same flights with one thing switched off or put differently.
+/// Ablations: the same flights with one feature switched off or changed. They are flown in turns,
+/// so that their times can be compared; all but the first may fail.
 Result<void> add_ablations(Rows& rows, Mission mission) {
   const std::uint32_t robots = rows.quick() ? 40 : 500;
   const std::uint32_t seeds = rows.quick() ? 1 : 3;
@@ -24,6 +25,7 @@ Result<void> add_ablations(Rows& rows, Mission mission) {
     names.push_back({fmt::format("{}, {}", robots, what), "| | |"});
     missions.push_back(m);
   };
+  // Each mission differs from the first in one respect, those without a cap from each other.
   add("cap 1.5", mission);
   Mission free = mission;
   free.control.options.set("tracking", "free");
@@ -47,6 +49,7 @@ Result<void> add_ablations(Rows& rows, Mission mission) {
 
 }  // namespace
 
+/// Four swarm sizes with the published numbers beside them, then the ablations.
 Result<void> swarmprm_experiment(Rows& rows) {
   struct Published {
     std::uint32_t robots;

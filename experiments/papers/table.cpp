@@ -6,6 +6,7 @@
 
 namespace swarm::launcher {
 
+/// The name was checked by the command line parser, so that the last one needs no test.
 Result<ExitCode> make_table(const TableOptions& options) {
   Rows rows(options);
   const Result<void> made = options.which == "swarmprm"         ? swarmprm_experiment(rows)

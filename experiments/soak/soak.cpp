@@ -13,7 +13,11 @@
 
 namespace swarm::launcher {
 
+/// Flies the soak's own mission with real processes while SoakWatch measures, audits the recording,
+/// and compares all with the criteria. Only the group channel can be tapped by a listener.
 Result<ExitCode> soak(const SoakOptions& options) {
+  // The discovery server is in this process: starved by hundreds of starting agents it would answer
+  // too late.
   become_urgent();
   const std::uint32_t robots = options.processes * options.per_process;
   auto mission = soak_mission(robots, options.rate_hz, options.duration_s);

@@ -12,10 +12,11 @@
 
 namespace swarm::launcher {
 
+/// Options of the command line.
 struct SoakOptions {
-  std::uint32_t processes = 100;
-  std::uint32_t per_process = 1;
-  double rate_hz = 10.0;
+  std::uint32_t processes = 100;  ///< of agents
+  std::uint32_t per_process = 1;  ///< robots that each of them hosts
+  double rate_hz = 10.0;          ///< of control
   double duration_s = 60.0;
   std::uint64_t seed = 1;
   std::optional<Channel> channel{};  ///< empty: choose_channel() decides
@@ -23,11 +24,11 @@ struct SoakOptions {
   SoakCriteria criteria{};
   std::filesystem::path out{};  ///< run directory; empty: runs/soak-<time>
   int domain = -1;
-  bool json = false;
+  bool json = false;  ///< print JSON instead of text
 };
 
-/// `swarm_launcher soak`: a swarm that keeps moving for a given time, and what its link and its
-/// processes did in the meantime. Result on stdout, soak.json and soak.html in the run directory.
+/// `swarm_launcher soak`: keeps a swarm moving for a given time and measures its link and its
+/// processes. Result on stdout, soak.json and soak.html in the run directory.
 Result<ExitCode> soak(const SoakOptions& options);
 
 }  // namespace swarm::launcher

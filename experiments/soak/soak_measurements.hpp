@@ -11,7 +11,7 @@
 
 namespace swarm::launcher {
 
-/// One look at a running swarm.
+/// One sample of a running swarm.
 struct SoakSample {
   double time_s = 0.0;       ///< of the mission
   double cpu_share = 0.0;    ///< cores used since the last sample, all processes of the run
@@ -24,16 +24,16 @@ struct SoakSample {
   double p99_ms = 0.0;       ///< written → received, since the last sample
 };
 
-/// What a soak measured while its mission ran.
+/// Measurements of a soak while its mission ran.
 struct SoakMeasurements {
-  std::vector<SoakSample> samples{};
-  std::optional<link::StreamMeter::Counts> received{};  ///< empty: nobody can listen to this channel
+  std::vector<SoakSample> samples{};  ///< about one a second
+  std::optional<link::StreamMeter::Counts> received{};  ///< empty: the channel has no listener
   Histogram latency{};                               ///< written → received by a waiting listener
-  link::StreamMeter::Worst worst{};
+  link::StreamMeter::Worst worst{};  ///< the largest latency and its robot
   Histogram use_latency{};        ///< written → used by a neighbour's controller
   std::uint64_t states_sent = 0;  ///< as the robots count
   std::uint64_t states_used = 0;
-  std::uint64_t ticks = 0, late_ticks = 0;
+  std::uint64_t ticks = 0, late_ticks = 0;  ///< control periods, and those that began late
   std::uint64_t receive_drops = 0;  ///< by the kernel, all UDP sockets of the machine
 };
 

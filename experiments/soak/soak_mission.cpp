@@ -16,11 +16,13 @@
 namespace swarm::launcher {
 namespace {
 
-// In the middle of the crowd; the densest of the papers' missions has as much.
+// Area per robot in the middle of the swarm, as in the densest mission of the papers.
 constexpr double kAreaPerRobot_m2 = 8.0;
 
 }  // namespace
 
+/// Two Gaussians in a square without obstacles, between which the whole swarm goes back and forth.
+/// The mission is written as YAML, so that it takes the same path as every mission file.
 Result<Mission> soak_mission(std::uint32_t robots, double rate_hz, double duration_s) {
   // N robots of one Gaussian are densest in its middle: N / (2π σ²).
   const double variance_m2 = std::max(4.0, robots * kAreaPerRobot_m2 / (2.0 * std::numbers::pi));
@@ -37,8 +39,8 @@ Result<Mission> soak_mission(std::uint32_t robots, double rate_hz, double durati
       "planner: {{samples: 20, connection_radius_m: {0}, sigma_min_m: {4}, sigma_max_m: {4}}}\n"
       "control: {{rate_hz: {5}}}\nlauncher: {{time_limit_s: {6}}}\nscript:\n",
       side_m, robots, ends[0], ends[1], sigma_m, rate_hz, duration_s);
-  // The next goal comes before the last is reached, so that nobody rests; one more than there is
-  // time for, so that the time limit is what ends it.
+  // The next goal comes before the last is reached, so that no robot stops. There is one goal more
+  // than there is time for, so that the time limit ends the mission.
   const double leg_s = 0.5 * side_m / ControlSpec{}.cruise_mps;
   std::size_t goal = 0;
   for (double at_s = leg_s; at_s - leg_s <= duration_s; at_s += leg_s, goal = 1 - goal) {

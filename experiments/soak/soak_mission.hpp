@@ -9,8 +9,8 @@
 
 namespace swarm::launcher {
 
-/// A mission that keeps a swarm of any size moving at the same density, controllers on: an open
-/// square, crossed by everyone there and back again until the time is up.
+/// A mission that keeps a swarm of any size moving at the same density: all robots cross an open
+/// square back and forth until the time is up.
 Result<Mission> soak_mission(std::uint32_t robots, double rate_hz, double duration_s);
 
 }  // namespace swarm::launcher

@@ -17,17 +17,22 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+/// Histograms count in microseconds, reports are in milliseconds.
 double to_ms(std::int64_t us) { return 1e-3 * static_cast<double>(us); }
 
+/// A share, 0 where there is nothing to share.
 double ratio(std::uint64_t part, std::uint64_t whole) {
   return whole > 0 ? static_cast<double>(part) / static_cast<double>(whole) : 0.0;
 }
 
+/// The larger of two losses: at the listener, by sequence numbers, and at the robots, by the drops
+/// of the kernel.
 double loss_of(const SoakMeasurements& m) {
   const double at_listener = m.received ? ratio(m.received->lost, m.received->sent()) : 0.0;
   return std::max(at_listener, ratio(m.receive_drops, m.states_used + m.receive_drops));
 }
 
+/// Quantiles of a histogram in ms; null where nothing was measured.
 Json quantiles(const Histogram& histogram) {
   if (histogram.count() == 0) return nullptr;
   return {{"p50", to_ms(histogram.quantile_us(0.5))},
@@ -42,6 +47,7 @@ Json to_json(const Growth& growth) {
   return {{"start", growth.start}, {"end", growth.end}, {"max", growth.max}};
 }
 
+/// The same for a terminal.
 std::string quantiles_text(const Histogram& h) {
   if (h.count() == 0) return "not measured";
   return fmt::format("{:.2f} / {:.2f} / {:.2f} / {:.2f} / {:.2f} / {:.2f} ms",
@@ -64,9 +70,11 @@ std::string chart_of(const std::vector<SoakSample>& samples, double SoakSample::
 
 }  // namespace
 
+/// Means over tenths of the samples, since single samples of memory vary.
 Growth growth_of(const std::vector<SoakSample>& samples, double SoakSample::*what) {
   if (samples.empty()) return {};
   const std::size_t tenth = std::max<std::size_t>(samples.size() / 10, 1);
+  // With fewer than two tenths of samples the second tenth is the last one.
   const std::size_t begin = std::min(tenth, samples.size() - tenth);
   const auto mean = [&](std::size_t from) {
     double sum = 0.0;
@@ -78,6 +86,7 @@ Growth growth_of(const std::vector<SoakSample>& samples, double SoakSample::*wha
   return growth;
 }
 
+/// An unknown latency fails a latency limit: a soak that did not measure it must not pass.
 std::vector<std::string> complaints(const SoakResult& result, const SoakCriteria& criteria) {
   std::vector<std::string> found;
   const SoakMeasurements& m = result.measured;
@@ -102,12 +111,14 @@ std::vector<std::string> complaints(const SoakResult& result, const SoakCriteria
   return found;
 }
 
+/// The content of soak.json. Values that were not measured are null.
 std::string to_json(const SoakResult& result, const std::vector<std::string>& complaints) {
   const SoakMeasurements& m = result.measured;
   const Growth rss = growth_of(m.samples, &SoakSample::rss_mb);
   const auto received = [&](std::uint64_t link::StreamMeter::Counts::*count) {
     return m.received ? Json((*m.received).*count) : Json();
   };
+  // The robot with the largest latency; null without a listener.
   Json worst = nullptr;
   if (m.latency.count() > 0) {
     worst = {{"robot", m.worst.robot.value()}, {"max_ms", to_ms(m.worst.latency_us)}};
@@ -145,6 +156,7 @@ std::string to_json(const SoakResult& result, const std::vector<std::string>& co
   return json.dump(2) + "\n";
 }
 
+/// The summary for the terminal, which the page shows as well.
 std::string to_text(const SoakResult& result, const std::vector<std::string>& complaints) {
   const SoakMeasurements& m = result.measured;
   const Growth rss = growth_of(m.samples, &SoakSample::rss_mb);
@@ -175,6 +187,7 @@ std::string to_text(const SoakResult& result, const std::vector<std::string>& co
   return text;
 }
 
+/// A self-contained page: charts are inline SVG.
 std::string to_html(const SoakResult& result, const std::vector<std::string>& complaints) {
   const SoakMeasurements& m = result.measured;
   std::string body = fmt::format(

@@ -12,14 +12,14 @@
 
 namespace swarm::launcher {
 
-/// What a soak must not exceed; what is empty is not asked for.
+/// Limits of a soak; an empty one is not tested.
 struct SoakCriteria {
   std::optional<double> max_p99_ms{};          ///< written → received
   std::optional<double> max_loss{};            ///< share, of the listener and of all receivers
   std::optional<double> max_rss_growth_pct{};  ///< of all agents together
 };
 
-/// What a soak was and found.
+/// Parameters and results of a soak.
 struct SoakResult {
   std::uint32_t processes = 0, per_process = 1;
   double rate_hz = 0.0, duration_s = 0.0;
@@ -31,8 +31,10 @@ struct SoakResult {
   bool flown = false;  ///< to the end
 };
 
+/// A quantity at the start and the end of a soak, and its maximum.
 struct Growth {
   double start = 0.0, end = 0.0, max = 0.0;
+  /// Growth relative to the start [%]; 0 where nothing was measured at the start.
   double percent() const { return start > 0.0 ? 100.0 * (end - start) / start : 0.0; }
 };
 
@@ -42,6 +44,7 @@ Growth growth_of(const std::vector<SoakSample>& samples, double SoakSample::*wha
 /// Why a soak failed; empty if it did not. Robots that touch, and a flight cut short, fail always.
 std::vector<std::string> complaints(const SoakResult& result, const SoakCriteria& criteria);
 
+/// The result as JSON, as text for a terminal, and as a page.
 std::string to_json(const SoakResult& result, const std::vector<std::string>& complaints);
 std::string to_text(const SoakResult& result, const std::vector<std::string>& complaints);
 /// A page of its own, with the curves over time and the distributions.

@@ -16,7 +16,7 @@ namespace {
 
 constexpr Duration kSampleEvery = std::chrono::seconds(1);
 constexpr Duration kListenFor =
-    std::chrono::milliseconds(100);  // until it is looked whether to end
+    std::chrono::milliseconds(100);  // longest wait before the thread checks whether to end
 
 }  // namespace
 
@@ -32,6 +32,8 @@ void SoakWatch::listen(std::unique_ptr<link::GroupTap> tap) {
   listener_ = std::thread([this] { receive_all(); });
 }
 
+/// The thread of the listener. States count while the mission runs only; a batch gets one time of
+/// reception, taken before the lock.
 void SoakWatch::receive_all() {
   std::vector<link::CellStatesMessage> batches;
   while (!ended_) {
@@ -45,6 +47,8 @@ void SoakWatch::receive_all() {
   }
 }
 
+/// Keeps the first and the newest counters of each robot: their difference is the count of the
+/// soak. A robot whose process was restarted begins anew.
 void SoakWatch::on_status(const link::StatusMessage& status) {
   if (!running_) return;
   for (const link::RobotStatusMessage& now : status.robots) {
@@ -57,6 +61,8 @@ void SoakWatch::on_status(const link::StatusMessage& status) {
   if (!status.state_age.empty()) ages_[status.process_id] = status.state_age;
 }
 
+/// Called by the flight at every step: marks begin and end of the measurement, and takes a sample
+/// when one is due.
 void SoakWatch::on_step(const Flight& flight, SteadyTime now) {
   const bool running = flight.supervisor().stage() == Supervisor::Stage::kRunning;
   if (running && !running_) {
@@ -69,6 +75,8 @@ void SoakWatch::on_step(const Flight& flight, SteadyTime now) {
   if (now - sampled_at_ >= kSampleEvery) sample(flight, now);
 }
 
+/// Rates are differences to the last sample. CPU counts all processes of the run, memory and
+/// threads the agents alone.
 void SoakWatch::sample(const Flight& flight, SteadyTime now) {
   SoakSample s{.time_s = flight.supervisor().mission_time(now).count()};
   double cpu_s = 0.0;
@@ -78,6 +86,7 @@ void SoakWatch::sample(const Flight& flight, SteadyTime now) {
     const auto one = sample_process(pid);
     if (!one) continue;
     cpu_s += one->cpu_s;
+    // The planner counts as CPU only: it holds no robots.
     if (process == kPlanner) continue;
     s.rss_mb += one->rss_mb;
     s.rss_max_mb = std::max(s.rss_max_mb, one->rss_mb);
@@ -97,7 +106,7 @@ void SoakWatch::sample(const Flight& flight, SteadyTime now) {
   s.cpu_share = std::max(0.0, cpu_s - cpu_s_) / passed_s;
   s.switches_hz = static_cast<double>(switches - std::min(switches, switches_)) / passed_s;
   s.received_hz = static_cast<double>(received - received_) / passed_s;
-  // Rates of the first look would be those since the processes began.
+  // The rates of the first sample would be those since the processes began.
   if (cpu_s_ > 0.0) samples_.push_back(s);
   cpu_s_ = cpu_s;
   switches_ = switches;
@@ -122,6 +131,8 @@ SoakMeasurements SoakWatch::measurements() const {
     m.ticks += last.ticks - first.ticks;
     m.late_ticks += last.late_ticks - first.late_ticks;
   }
+  // Each status carries the whole histogram of its process so far, so that the newest ones are
+  // added.
   for (const auto& [process, bins] : ages_) {
     for (const link::HistogramBinMessage& bin : bins) m.use_latency.add_bin(bin.bin, bin.count);
   }

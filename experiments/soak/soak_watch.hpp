@@ -17,7 +17,8 @@
 
 namespace swarm::launcher {
 
-/// Looks at a flight once a second and listens to it all the time.
+/// Samples the processes of a flight once a second and receives all its states in a thread of its
+/// own.
 class SoakWatch final : public FlightObserver {
  public:
   explicit SoakWatch(std::uint32_t robots);
@@ -25,18 +26,20 @@ class SoakWatch final : public FlightObserver {
   SoakWatch(const SoakWatch&) = delete;
   SoakWatch& operator=(const SoakWatch&) = delete;
 
-  /// Starts the listener's thread. Without it nothing is known of what is written → received.
+  /// Starts the listener's thread. Without it the latency from written to received is not measured.
   void listen(std::unique_ptr<link::GroupTap> tap);
 
   void on_status(const link::StatusMessage& status) override;
   void on_step(const Flight& flight, SteadyTime now) override;
   std::string describe() override;
 
-  /// What was found so far.
+  /// The measurements so far.
   SoakMeasurements measurements() const;
 
  private:
+  /// The loop of the listener's thread.
   void receive_all();
+  /// Takes one sample of all processes.
   void sample(const Flight& flight, SteadyTime now);
 
   /// Counters of a robot when the mission began and now.

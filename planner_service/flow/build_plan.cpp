@@ -11,6 +11,7 @@
 namespace swarm::planner {
 namespace {
 
+// Earliest time at each waypoint of a route that starts at 0.
 std::vector<double> arrival_times_s(const Waypoints& waypoints, const LegSpeed& speed) {
   std::vector<double> times_s{0.0};
   for (std::size_t i = 1; i < waypoints.size(); ++i) {
@@ -21,6 +22,8 @@ std::vector<double> arrival_times_s(const Waypoints& waypoints, const LegSpeed& 
 
 }  // namespace
 
+// First pass: times, and the slowest route of each sink. Second pass: nodes and legs, with the
+// times of each route stretched so that it arrives with the slowest.
 Result<FlowPlan> build_plan(std::span<const Route> routes, std::size_t starts, std::size_t goals,
                             const LegSpeed& speed) {
   SWARM_ASSERT(speed.means_mps > 0.0 && speed.robots_mps > 0.0);

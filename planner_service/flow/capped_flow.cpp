@@ -21,6 +21,7 @@ namespace {
 
 // Newton's method below ends after as many steps as there are different cuts under way: a handful.
 constexpr int kMostCuts = 64;
+// Mass below kFits counts as none; an arc with less than kSaturated left counts as full.
 constexpr double kFits = 1e-9;
 constexpr double kSaturated = 1e-11;
 
@@ -40,6 +41,8 @@ struct SplitNetwork {
   std::vector<FlowArc> arcs;
 };
 
+// The roadmap as a flow network with node capacities: splitting a node turns its capacity into that
+// of an arc (the standard reduction). Closed edges are left out.
 SplitNetwork split_network(const Roadmap& roadmap, const Terminals& terminals,
                            const DensityCap& cap) {
   SplitNetwork net;
@@ -63,15 +66,16 @@ SplitNetwork split_network(const Roadmap& roadmap, const Terminals& terminals,
   return net;
 }
 
-// The cut that holds the flow back at one density: the mass that fits through at density ρ is at
-// most passed + ρ · per_density, with equality at the ρ the cut was found for.
+// The minimum cut at one density: the mass that fits through at density ρ is at most passed + ρ ·
+// per_density, with equality at the ρ the cut was found for.
 struct Cut {
   double unserved = 0.0;
   double passed = 0.0;
   double per_density = 0.0;
 };
 
-// Largest flow: every start has a bypass to all goals, and the bypass is all that costs.
+// Maximum flow, posed as min-cost flow: every start has a bypass to all goals, and only the bypass
+// has a cost. The minimum cut follows from its residual network.
 Cut smallest_cut(const Roadmap& roadmap, const Terminals& terminals, const DensityCap& cap) {
   SplitNetwork net = split_network(roadmap, terminals, cap);
   for (FlowArc& arc : net.arcs) arc.cost = 0.0;
@@ -87,7 +91,7 @@ Cut smallest_cut(const Roadmap& roadmap, const Terminals& terminals, const Densi
   const auto flow = min_cost_flow(net.balance, net.arcs);
   SWARM_ASSERT(flow.has_value());
 
-  // What the unserved starts still reach in the residual network is one side of the cut.
+  // The nodes that the unserved starts reach in the residual network are one side of the cut.
   std::vector<std::vector<std::uint32_t>> residual(net.balance.size());
   for (std::size_t a = 0; a < bypasses; ++a) {
     const FlowArc& arc = net.arcs[a];
@@ -127,6 +131,8 @@ Cut smallest_cut(const Roadmap& roadmap, const Terminals& terminals, const Densi
   return cut;
 }
 
+// The error of an infeasible flow: the share that fits, and the least density at which all would
+// fit.
 Error does_not_fit(const Roadmap& roadmap, const Terminals& terminals, const DensityCap& cap) {
   Cut cut = smallest_cut(roadmap, terminals, cap);
   const double fits = 1.0 - cut.unserved;
@@ -147,8 +153,8 @@ Error does_not_fit(const Roadmap& roadmap, const Terminals& terminals, const Den
                       cap.max_per_m2, 100.0 * fits, cap.robots, cure)};
 }
 
-// Takes the flow apart into routes: each follows what is left of it from a start to a goal and
-// takes as much as its thinnest arc carries, which empties an arc.
+// Decomposes the flow into routes: each follows the remaining flow from a start to a goal and takes
+// as much as its thinnest arc carries, which empties an arc.
 class RouteTaker {
  public:
   RouteTaker(const Roadmap& roadmap, const Terminals& terminals, std::span<const double> flow,
@@ -180,7 +186,8 @@ class RouteTaker {
     double mass;
   };
 
-  // Costs are positive, so an optimal flow has no cycles and the walk ends.
+  // Follows the arc with most mass at each node until a goal has demand left. Nothing when rounding
+  // left no arc to follow. Costs are positive, so an optimal flow has no cycles and the walk ends.
   std::optional<Route> next(std::size_t start, double left) {
     std::vector<std::uint32_t> nodes{static_cast<std::uint32_t>(start)};
     std::vector<Carrying*> taken;
@@ -214,6 +221,8 @@ class RouteTaker {
   std::vector<double> left_;  // demand of each goal
 };
 
+// The roadmap's edges are proven to a coarse tolerance. Those that carry mass are proven to that of
+// a plan, and closed where that fails. False when an edge was closed.
 bool prove_used_edges(Roadmap& roadmap, std::span<const double> flow, std::span<const FlowArc> arcs,
                       EdgeChecker& checker) {
   bool proven = true;
@@ -230,6 +239,7 @@ bool prove_used_edges(Roadmap& roadmap, std::span<const double> flow, std::span<
 
 }  // namespace
 
+// Solve, prove, close and repeat; the flow of the last round is decomposed into routes.
 Result<CappedFlow> capped_flow(Roadmap& roadmap, std::span<const double> supplies,
                                std::span<const double> demands, const DensityCap& cap,
                                EdgeChecker& checker) {

@@ -8,6 +8,8 @@
 
 namespace swarm::planner {
 
+// One search per start, each ended when the lengths to all goals are known; then (13) on the
+// lengths.
 PathTransport transport_on_paths(const Roadmap& roadmap, std::span<const double> supplies,
                                  std::span<const double> demands) {
   std::vector<std::uint32_t> goal_nodes(demands.size());

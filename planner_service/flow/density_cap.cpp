@@ -14,6 +14,7 @@
 namespace swarm::planner {
 namespace {
 
+// Appends a line to an error of several lines.
 void add_line(std::string& lines, std::string line) {
   if (!lines.empty()) lines += '\n';
   lines += std::move(line);
@@ -45,6 +46,8 @@ void describe(std::span<const Gaussian> components, std::span<const double> mass
 
 }  // namespace
 
+// The mass at start and goal is fixed: no flow can keep a cap that they exceed. Both are checked,
+// so that one error names all of it.
 Result<void> check_components(std::span<const Gaussian> nodes, std::span<const double> supplies,
                               std::span<const double> demands, const DensityCap& cap) {
   SWARM_ASSERT(cap.max_per_m2 > 0.0 && cap.robots > 0.0);

@@ -10,6 +10,8 @@
 
 namespace swarm::planner {
 
+// Evaluates each leg at all sampled times at which it is under way. Sources before their time and
+// sinks from theirs on are legs from themselves to themselves.
 DensityGrid::DensityGrid(const FlowPlan& plan, double robots, double step_s)
     : times_(density_times(plan, step_s)), alive_(times_.size()) {
   const std::vector<PlanNode>& nodes = plan.nodes();
@@ -37,6 +39,8 @@ DensityGrid::DensityGrid(const FlowPlan& plan, double robots, double step_s)
   }
 }
 
+// The Gaussians of a leg at its times. A source at rest gets one for every later time as well, of
+// which only those before its departure are used.
 std::vector<DensityPart> DensityGrid::parts_of(const Leg& leg,
                                                const std::vector<PlanNode>& nodes) const {
   std::vector<DensityPart> parts;
@@ -54,6 +58,9 @@ std::vector<DensityPart> DensityGrid::parts_of(const Leg& leg,
   return parts;
 }
 
+// Whether the density keeps the limit when climbed to from the mean of the changed leg at each of
+// its times. Only parts in sight count. The density at the mean decides first: above the limit is a
+// violation, far below it needs no climb.
 bool DensityGrid::keeps(const Leg& changed, double limit_per_m2) {
   for (std::uint32_t at = 0; at < changed.parts.size(); ++at) {
     const std::uint32_t k = changed.first + at;
@@ -76,6 +83,8 @@ bool DensityGrid::keeps(const Leg& changed, double limit_per_m2) {
   return true;
 }
 
+// Replaces the parts of all changed legs before any of them is tested, since they may overlap; puts
+// all back when one fails.
 bool DensityGrid::try_change(const std::vector<PlanNode>& nodes,
                              std::span<const std::uint32_t> legs, double limit_per_m2) {
   std::vector<std::vector<DensityPart>> before;

@@ -11,8 +11,8 @@
 
 namespace swarm::planner {
 
-/// The density of a plan at sampled times while its Gaussians are moved: what one change does is
-/// looked at alone. Times and masses stay, so who is there at a time does.
+/// The density of a plan at sampled times while its Gaussians are moved: only the legs that change
+/// are evaluated again. Times and masses are fixed, and with them the legs present at each time.
 ///
 /// Memory: a part for each leg and sampled time of it.
 class DensityGrid {
@@ -26,6 +26,7 @@ class DensityGrid {
                   double limit_per_m2);
 
  private:
+  // A leg, or a source or sink at rest, with its Gaussian at each of its times.
   struct Leg {
     std::uint32_t from = 0;
     std::uint32_t to = 0;

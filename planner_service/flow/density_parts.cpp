@@ -13,6 +13,7 @@ constexpr double kPulledSigmas = 2.0;
 
 }  // namespace
 
+// Stores the inverse covariance and the peak, so that evaluating costs one exponential.
 DensityPart::DensityPart(const Gaussian& g, double robots, double smoothed_m2)
     : mean_m_(g.mean_m()) {
   const Mat2 s = g.covariance_m2() + smoothed_m2 * Mat2::Identity();
@@ -25,6 +26,8 @@ DensityPart::DensityPart(const Gaussian& g, double robots, double smoothed_m2)
   peak_per_m2_ = robots / (2.0 * std::numbers::pi * std::sqrt(det));
 }
 
+// The mean shift is the fixed-point iteration for ∇density = 0. It ends when a step is shorter than
+// kClimbed_m; the position is then exact enough for the density, which is flat at the top.
 Vec2 climb(const std::vector<DensityPart>& parts, Vec2 x) {
   for (int step = 0; step < kClimbSteps; ++step) {
     double xx = 0.0;

@@ -8,7 +8,7 @@
 
 #include "swarmflow/core/gaussian.hpp"
 
-/// What a density is made of at one time, and the way to its local maxima.
+/// The Gaussians that make up a density at one time, and the climb to its local maxima.
 namespace swarm::planner {
 
 /// A Gaussian that carries robots at one time, ready to be evaluated.
@@ -19,8 +19,8 @@ class DensityPart {
 
   const Vec2& mean_m() const { return mean_m_; }
 
-  /// Whether a climb that starts at x has to know it: it adds something there, or to a place that
-  /// one of the parts in between can lead to.
+  /// Whether a climb that starts at x has to consider it: it contributes there, or at a position
+  /// that one of the parts in between can lead to.
   bool is_in_sight(const Vec2& x) const {
     return std::abs(x.x() - mean_m_.x()) <= sight_m_.x() &&
            std::abs(x.y() - mean_m_.y()) <= sight_m_.y();
@@ -52,8 +52,8 @@ class DensityPart {
   double peak_per_m2_;
 };
 
-/// Means where the density is this far below what is of interest need no climb. The middle of a
-/// square of equal Gaussians has 1.3 times the density of its corners at most.
+/// Means where the density is below this share of the density of interest need no climb. The middle
+/// of a square of equal Gaussians has 1.3 times the density of its corners at most.
 inline constexpr double kWorthClimbing = 0.7;
 
 /// Follows the mean shift x ← (Σ wₖΣₖ⁻¹)⁻¹ Σ wₖΣₖ⁻¹μₖ, wₖ the density of part k at x, which never

@@ -17,10 +17,10 @@
 namespace swarm::planner {
 namespace {
 
-// Later than this is later, not rounding.
+// Differences of times below this are rounding.
 constexpr double kLater_s = 1e-9;
 
-// Everything by which two Gaussians are the same.
+// The parameters of a Gaussian, compared bit for bit.
 using Key = std::array<double, 5>;
 
 Key key_of(const Gaussian& g) {
@@ -58,7 +58,8 @@ class MergedGraph {
   std::uint32_t terminals() const { return terminals_; }
   std::uint32_t representative(std::uint32_t node) const { return merged_[node]; }
 
-  // Makes two nodes one unless that closes a circle or delays a goal.
+  // Makes two nodes one unless that closes a cycle or delays a goal. Tested by computing all
+  // earliest times anew, O(legs), which bounds the whole by waypoints².
   void try_merge(std::uint32_t a, std::uint32_t b) {
     if (merged_[a] == merged_[b]) return;
     std::vector<std::uint32_t> kept = merged_;
@@ -84,6 +85,7 @@ class MergedGraph {
   }
 
  private:
+  // Whether the merged legs have no cycle and reach each terminal no later than without merging.
   bool is_on_time() const {
     const auto times_s = earliest_times_s(size(), merged_legs().first);
     if (!times_s) return false;
@@ -102,6 +104,8 @@ class MergedGraph {
 
 }  // namespace
 
+// Merges node by node, then paces the merged legs, then builds a plan of the representatives. The
+// node numbering is that of MergedGraph: starts, goals, then inner waypoints route by route.
 Result<FlowPlan> build_merged_plan(std::span<const Route> routes, std::size_t starts,
                                    std::size_t goals, const LegSpeed& speed) {
   SWARM_ASSERT(speed.means_mps > 0.0 && speed.robots_mps > 0.0);

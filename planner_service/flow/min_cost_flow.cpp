@@ -19,11 +19,14 @@ namespace {
 using Units = std::int64_t;
 using Graph = lemon::SmartDigraph;
 
+// The whole supply in units. Sums of supplies stay far below 2⁶³.
 constexpr Units kMassUnits = Units{1} << 50;
 // The solver starts from potentials of 2⁶² and adds costs along paths of at most all nodes to them.
 constexpr double kPathUnits = 0x1p60;
+// Costs keep the precision of a double's mantissa and no more.
 constexpr double kFinestCost = 0x1p52;
 
+// The largest cost sets the unit of costs.
 double largest_cost(std::span<const FlowArc> arcs) {
   double largest = 0.0;
   for (const FlowArc& arc : arcs) largest = std::max(largest, arc.cost);
@@ -42,6 +45,8 @@ std::vector<Units> in_units(std::span<const double> supplies, double per_unit) {
 
 }  // namespace
 
+// Whole numbers make the network simplex exact: with floating point, rounding in potentials could
+// make it cycle or stop early. Masses and costs are scaled to units, solved, and scaled back.
 std::optional<std::vector<double>> min_cost_flow(std::span<const double> supplies,
                                                  std::span<const FlowArc> arcs) {
   double total = 0.0;
@@ -65,11 +70,13 @@ std::optional<std::vector<double>> min_cost_flow(std::span<const double> supplie
                                           Graph::nodeFromId(static_cast<int>(arc.to)));
     SWARM_ASSERT(arc.cost >= 0.0 && arc.capacity >= 0.0);
     cost[added] = std::llround(arc.cost * cost_scale);
-    // More than the whole supply never flows: costs are not negative.
+    // An arc never carries more than the whole supply, since costs are not negative. A larger
+    // capacity is therefore as good as none.
     capacity[added] =
         arc.capacity >= total ? 2 * kMassUnits : std::llround(arc.capacity * per_unit);
   }
 
+  // Network simplex of LEMON: primal simplex on spanning trees of the network.
   lemon::NetworkSimplex<Graph, Units, Units> simplex(graph);
   simplex.supplyMap(supply).costMap(cost).upperMap(capacity);
   if (simplex.run() != decltype(simplex)::OPTIMAL) return std::nullopt;

@@ -11,7 +11,7 @@
 
 namespace swarm::planner {
 
-/// An arc of a flow network; no capacity means as much as one likes.
+/// An arc of a flow network; without a capacity its flow is unlimited.
 struct FlowArc {
   std::uint32_t from = 0;
   std::uint32_t to = 0;
@@ -26,7 +26,8 @@ struct FlowArc {
 /// by network simplex in whole numbers: masses in units of 2⁻⁵⁰ of the whole supply, costs in units
 /// of 2⁻⁶⁰ (nodes + 2) of the largest, but no finer than 2⁻⁵². So its objective is within
 /// (arcs on a path) · 2⁻⁶⁰ (nodes + 2) of the largest cost times the mass of the optimum: 1e-12 for
-/// a thousand nodes. Flows below kNegligibleFlow of the supply, which only rounding makes, count as 0.
+/// a thousand nodes. Flows below kNegligibleFlow of the supply, which only rounding makes, count as
+/// 0.
 ///
 /// Returns x, a basic solution, arc by arc; nothing when the supplies do not fit through. \pre the
 /// supplies sum to 0 within rounding, some are positive; costs are finite and at least 0,

@@ -12,7 +12,7 @@ namespace {
 constexpr double kNotReached = -1.0;
 constexpr std::uint32_t kNone = UINT32_MAX;
 
-// A way between two nodes that have times, through nodes that have none.
+// A path between two nodes that have times, through nodes that have none.
 struct Path {
   double tightness = -1.0;  // its least time over the time it has
   double least_s = 0.0;
@@ -27,7 +27,8 @@ class Pacer {
         has_time_(earliest_s.size(), 1),
         longest_s_(earliest_s.size()),
         by_(earliest_s.size()) {
-    // Legs in order of when they can be left: each after all that lead to it.
+    // By the earliest time of their first node, which is a topological order: legs take positive
+    // time.
     std::stable_sort(legs_.begin(), legs_.end(), [&](const PacedLeg& a, const PacedLeg& b) {
       return earliest_s[a.from] < earliest_s[b.from];
     });
@@ -53,7 +54,9 @@ class Pacer {
   }
 
  private:
-  // Longest ways from one node that has a time, over all such nodes.
+  // The path with the largest ratio of least time to available time, over all pairs of nodes that
+  // have times. Longest paths by dynamic programming over the legs in topological order: O(nodes ·
+  // legs).
   Path tightest_path() {
     Path tightest;
     for (std::uint32_t from = 0; from < has_time_.size(); ++from) {
@@ -62,7 +65,7 @@ class Pacer {
       longest_s_[from] = 0.0;
       for (std::uint32_t l = 0; l < legs_.size(); ++l) {
         const PacedLeg& leg = legs_[l];
-        // A leg between two nodes that have times is no way to pace.
+        // A leg between two nodes that have times leaves nothing to pace.
         const bool goes_on = leg.from == from ? has_time_[leg.to] == 0 : has_time_[leg.from] == 0;
         if (!goes_on || longest_s_[leg.from] == kNotReached) continue;
         const double through_s = longest_s_[leg.from] + leg.least_s;
@@ -84,6 +87,7 @@ class Pacer {
     return tightest;
   }
 
+  // Gives the nodes of a path times in proportion to the least times of its legs.
   void pace(const Path& path) {
     const double from_s = times_s_[path.nodes.front()];
     const double stretch = (times_s_[path.nodes.back()] - from_s) / path.least_s;
@@ -95,6 +99,7 @@ class Pacer {
     for (std::size_t i = 1; i + 1 < path.nodes.size(); ++i) has_time_[path.nodes[i]] = 1;
   }
 
+  // Least time of the leg between two nodes; legs are unique by their ends.
   double least_between(std::uint32_t from, std::uint32_t to) const {
     for (const PacedLeg& leg : legs_) {
       if (leg.from == from && leg.to == to) return leg.least_s;
@@ -106,11 +111,13 @@ class Pacer {
   std::vector<double> times_s_;
   std::vector<char> has_time_;
   std::vector<double> longest_s_;  // scratch of tightest_path()
-  std::vector<std::uint32_t> by_;  // the leg on the longest way to a node
+  std::vector<std::uint32_t> by_;  // last leg on the longest path to a node
 };
 
 }  // namespace
 
+// Topological order by Kahn's algorithm: a node is done when all its legs in are. Nodes that remain
+// are on or behind a cycle. O(nodes + legs).
 std::optional<std::vector<double>> earliest_times_s(std::size_t nodes,
                                                     std::span<const PacedLeg> legs) {
   std::vector<std::uint32_t> legs_in(nodes, 0);

@@ -17,14 +17,14 @@ struct PacedLeg {
   double least_s = 0.0;
 };
 
-/// When each node can be reached at the earliest: the longest way to it. Nothing when legs run in a
-/// circle.
+/// Earliest time of each node: the length of the longest path to it. Nothing when the legs contain
+/// a cycle.
 std::optional<std::vector<double>> earliest_times_s(std::size_t nodes,
                                                     std::span<const PacedLeg> legs);
 
 /// Times that spread waiting evenly. Nodes without a leg in are left at 0 and nodes without a leg
-/// out reached at their earliest time. Then, again and again, the way through nodes without a time
-/// that has the least time for its length is paced evenly: no other way becomes tighter by that, so
+/// out reached at their earliest time. Then, repeatedly, the path through nodes without a time that
+/// has the least time for its length is paced evenly: no other path becomes tighter by that, so
 /// every leg gets its least time. \pre earliest_s from earliest_times_s()
 std::vector<double> paced_times_s(std::span<const double> earliest_s,
                                   std::span<const PacedLeg> legs);

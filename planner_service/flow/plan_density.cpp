@@ -19,6 +19,7 @@ struct Part : DensityPart {
   std::uint32_t from, to;
 };
 
+// The mixture of a plan at one time: waiting sources, legs under way, and sinks that were reached.
 class Slice {
  public:
   /// `smoothed_m2` is added to both variances of every Gaussian.
@@ -46,7 +47,8 @@ class Slice {
 
   const std::vector<Part>& parts() const { return parts_; }
 
-  // One peak for each mean worth climbing from, given what is of interest.
+  // A local maximum for each mean where the density is large enough to lead to a peak above the
+  // density of interest. Several means may lead to the same one.
   std::vector<DensityPeak> peaks(double interest_per_m2) const {
     std::vector<DensityPeak> peaks;
     std::vector<DensityPart> in_sight;
@@ -65,7 +67,7 @@ class Slice {
     return peaks;
   }
 
-  // Nothing is too far for the result.
+  // The reported density counts all parts, however far.
   double density_at(const Vec2& x) const {
     double density = 0.0;
     for (const Part& part : parts_) {
@@ -106,6 +108,7 @@ double disc_density(const Slice& slice, const Vec2& center_m, double radius_m) {
 
 }  // namespace
 
+// The nodes' times are included because the density is not smooth there. Plans may begin before 0.
 std::vector<MissionTime> density_times(const FlowPlan& plan, double step_s) {
   SWARM_ASSERT(step_s > 0.0);
   std::vector<MissionTime> times;
@@ -123,6 +126,8 @@ std::vector<MissionTime> density_times(const FlowPlan& plan, double step_s) {
   return times;
 }
 
+// The highest density so far is the density of interest, so that few climbs remain after the first
+// times.
 DensityPeak max_density(const FlowPlan& plan, double robots, double step_s) {
   DensityPeak highest;
   for (const MissionTime t : density_times(plan, step_s)) {
@@ -142,6 +147,8 @@ DensityPeak max_density(std::span<const Gaussian> components, std::span<const do
   return highest;
 }
 
+// The density smoothed by a Gaussian with the disc's covariance approximates the mean over the
+// disc, and can be climbed; the disc at each of its peaks is then integrated.
 DensityPeak densest_disc(const FlowPlan& plan, double robots, double radius_m, double step_s) {
   SWARM_ASSERT(radius_m > 0.0);
   DensityPeak highest;
@@ -161,6 +168,7 @@ DensityPeak densest_disc_of(const FlowPlan& plan, double robots) {
   return densest_disc(plan, robots, kDisc_m, kStep_s);
 }
 
+// Peaks with the legs that cause them, for lowering capacities and undoing moves.
 std::vector<SharedPeak> peaks_above(const FlowPlan& plan, double robots, double step_s,
                                     double limit_per_m2) {
   std::vector<SharedPeak> above;

@@ -10,6 +10,7 @@
 namespace swarm::planner {
 namespace {
 
+// Least duration of a leg: times have to increase along it even where nothing moves.
 constexpr double kShortestLeg_s = 1e-3;
 constexpr double kEllipseSigmas = 2.0;  // 86 % of the robots are inside
 constexpr int kHalvings = 60;
@@ -32,6 +33,8 @@ double mean_length_m(const Waypoints& waypoints) {
   return length_m;
 }
 
+// W₂² is the squared path of the mean plus the mean square path about the mean. The leg takes the
+// time of the longer of the two.
 double leg_duration_s(const Gaussian& from, const Gaussian& to, double speed_mps) {
   const double mean_path_m = (to.mean_m() - from.mean_m()).norm();
   const double squared = wasserstein2_squared(from, to);
@@ -70,6 +73,7 @@ double longest_robot_path_m(const Gaussian& from, const Gaussian& to) {
   return std::sqrt(std::max(0.0, squared));
 }
 
+// Without a limit for the robots it is the duration for the means alone.
 double end_leg_duration_s(const Gaussian& from, const Gaussian& to, const LegSpeed& speed) {
   const double means_s = leg_duration_s(from, to, speed.means_mps);
   if (!std::isfinite(speed.robots_mps)) return means_s;

@@ -22,6 +22,7 @@ struct RoutePoint {
   Gaussian gaussian;
 };
 
+// The point of a route at a W₂ length from its start: on a geodesic, length is proportional to t.
 RoutePoint point_at(const Waypoints& waypoints, const std::vector<double>& along_m,
                     double target_m) {
   const auto after = std::upper_bound(along_m.begin(), along_m.end(), target_m);
@@ -33,6 +34,7 @@ RoutePoint point_at(const Waypoints& waypoints, const std::vector<double>& along
   return {leg, along_m[leg] + t * length_m, Geodesic(waypoints[leg], waypoints[leg + 1]).at(t)};
 }
 
+// W₂ length from the start of the route to each waypoint.
 std::vector<double> lengths_along(const Waypoints& waypoints) {
   std::vector<double> along_m{0.0};
   for (std::size_t i = 1; i < waypoints.size(); ++i) {
@@ -43,6 +45,8 @@ std::vector<double> lengths_along(const Waypoints& waypoints) {
 
 }  // namespace
 
+// Random shortcuts: the saving is tested first, since the edge check costs far more. Both points
+// become waypoints, those between them are removed.
 void take_shortcuts(Waypoints& waypoints, std::uint32_t tries, EdgeChecker& checker, Rng& rng) {
   std::vector<double> along_m = lengths_along(waypoints);
   for (std::uint32_t i = 0; i < tries && waypoints.size() > 2; ++i) {
@@ -66,6 +70,7 @@ void take_shortcuts(Waypoints& waypoints, std::uint32_t tries, EdgeChecker& chec
   }
 }
 
+// One pass from the start; after a removal the same position is tried again with its new neighbour.
 void drop_superfluous(Waypoints& waypoints, EdgeChecker& checker) {
   for (std::size_t i = 1; i + 1 < waypoints.size();) {
     if (checker.is_free(waypoints[i - 1], waypoints[i + 1], kPlanTolerance_m)) {

@@ -9,13 +9,14 @@
 namespace swarm::planner {
 namespace {
 
-// Longer ways share the last bucket, which only makes them slower.
+// Longer paths share the last bucket; the search stays correct but repeats more work.
 constexpr std::size_t kMostBuckets = 1U << 16U;
 constexpr std::size_t kArcsLookedAt = 256;
-// Narrow buckets are often empty, wide ones hold nodes that shorten each other's ways.
+// Narrow buckets are often empty; in wide ones nodes shorten each other's paths after expansion.
 constexpr double kBucketsPerArc = 8.0;
 
-// First in, first out within each bucket: the bound on repeated work is Bellman and Ford's.
+// Queue of nodes in buckets of path length. First in, first out within each bucket, so that
+// repeated work is bounded as in the Bellman-Ford algorithm.
 class BucketQueue {
  public:
   explicit BucketQueue(double width_m) : per_m_(1.0 / width_m) {}
@@ -61,6 +62,7 @@ class BucketQueue {
   std::vector<List> lists_;
 };
 
+// A fraction of the mean arc length, from a sample of at most a few hundred arcs.
 double bucket_width_m(const Roadmap& roadmap) {
   double sum_m = 0.0;
   double count = 0.0;
@@ -75,12 +77,14 @@ double bucket_width_m(const Roadmap& roadmap) {
 
 }  // namespace
 
+// Relaxes the arcs of the nodes in the order of buckets. A node may be expanded again when its
+// length falls while its bucket is processed.
 ShortestRoutes::ShortestRoutes(const Roadmap& roadmap, std::uint32_t source,
                                std::span<const std::uint32_t> targets)
     : length_m_(roadmap.nodes.size(), std::numeric_limits<double>::infinity()),
       previous_(roadmap.nodes.size(), source) {
   BucketQueue queue(bucket_width_m(roadmap));
-  std::vector<double> expanded_m(length_m_);  // the length a node's arcs were last looked at with
+  std::vector<double> expanded_m(length_m_);  // path length at the last expansion of each node
   std::size_t targets_left = targets.size();
   length_m_[source] = 0.0;
   queue.push(0, source);
@@ -98,7 +102,7 @@ ShortestRoutes::ShortestRoutes(const Roadmap& roadmap, std::uint32_t source,
         queue.push(queue.bucket_of(through_m), arc.to);
       }
     }
-    // Whatever is left is in later buckets, so lengths up to this one are final.
+    // All nodes left are in later buckets, so that lengths up to this one are final.
     while (targets_left > 0 && std::isfinite(length_m_[targets[targets_left - 1]]) &&
            queue.bucket_of(length_m_[targets[targets_left - 1]]) <= bucket) {
       --targets_left;
@@ -117,6 +121,7 @@ std::vector<std::uint32_t> ShortestRoutes::nodes_to(std::uint32_t target) const 
   return nodes;
 }
 
+// One search from each node of the smaller side, ended by the nodes of the other.
 RouteTable::RouteTable(const Roadmap& roadmap, std::span<const std::uint32_t> starts,
                        std::span<const std::uint32_t> goals)
     : starts_(starts.begin(), starts.end()),

@@ -11,7 +11,7 @@
 
 namespace swarm::planner {
 
-/// Shortest ways on the roadmap from one node.
+/// Shortest paths on the roadmap from one node.
 class ShortestRoutes {
  public:
   /// Label-correcting search with buckets of length: like Dijkstra's, but nodes whose lengths are
@@ -20,10 +20,10 @@ class ShortestRoutes {
   ShortestRoutes(const Roadmap& roadmap, std::uint32_t source,
                  std::span<const std::uint32_t> targets);
 
-  /// Length of the way to a target [m]; +∞ when there is none.
+  /// Length of the path to a target [m]; +∞ when there is none.
   double length_m(std::uint32_t target) const { return length_m_[target]; }
 
-  /// Nodes on the way, source and target included; empty when there is none.
+  /// Nodes on the path, source and target included; empty when there is none.
   std::vector<std::uint32_t> nodes_to(std::uint32_t target) const;
 
  private:
@@ -31,17 +31,17 @@ class ShortestRoutes {
   std::vector<std::uint32_t> previous_;
 };
 
-/// Shortest ways from every start to every goal. The roadmap has no direction, so the searches
+/// Shortest paths from every start to every goal. The roadmap has no direction, so the searches
 /// begin on the side with fewer nodes.
 class RouteTable {
  public:
   RouteTable(const Roadmap& roadmap, std::span<const std::uint32_t> starts,
              std::span<const std::uint32_t> goals);
 
-  /// Length of the way from start i to goal j [m]; +∞ when there is none.
+  /// Length of the path from start i to goal j [m]; +∞ when there is none.
   double length_m(std::size_t start, std::size_t goal) const;
 
-  /// Nodes on the way from start i to goal j, both included; empty when there is none.
+  /// Nodes on the path from start i to goal j, both included; empty when there is none.
   std::vector<std::uint32_t> nodes(std::size_t start, std::size_t goal) const;
 
  private:

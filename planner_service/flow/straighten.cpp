@@ -21,12 +21,14 @@
 namespace swarm::planner {
 namespace {
 
+// Shares of the distance to the mean of the neighbours that are tried, the whole first.
 constexpr std::array kStraightenSteps{1.0, 0.5, 0.25};
-// Farther from obstacles than the limit asks for: the legs need it where they pass a corner.
+// Extra distances from obstacles that are tried [m]: at a corner the legs beside a node need more
+// room than the node itself.
 constexpr std::array kExtraRooms_m{0.0, 0.4, 1.0};
 constexpr double kLater_s = 1e-9;    // rounding
 constexpr double kCoarser = 2.0;     // every second time, until the whole is checked
-constexpr double kStraightenBelowCap = 0.999;  // so that the check of the whole finds little to undo
+constexpr double kStraightenBelowCap = 0.999;  // leaves the check of the whole little to undo
 
 // √S = (S + √det I) / √(tr + 2√det), for a positive definite matrix of two rows.
 Mat2 root_of(const Mat2& s) {
@@ -46,6 +48,8 @@ struct SplitPlan {
   std::vector<bool> is_end_leg;  // of legs: they are timed for the robots of an ellipse
 };
 
+// Puts a node at the W₂ midpoint of each leg longer than longest_m, at its mid-time: the mixture at
+// every time stays the same. Stops splitting where the plan would exceed its limits of size.
 SplitPlan split(const FlowPlan& plan, const std::vector<bool>& is_end, double longest_m) {
   std::vector<PlanNode> nodes = plan.nodes();
   std::vector<PlanLeg> legs;
@@ -76,6 +80,8 @@ SplitPlan split(const FlowPlan& plan, const std::vector<bool>& is_end, double lo
   return result;
 }
 
+// Block coordinate descent on the action Σ mass · W₂² / time: one Gaussian moves at a time, all
+// times and masses stay. Every accepted move keeps speed, risk limit and density cap.
 class Straightener {
  public:
   Straightener(const SplitPlan& split, const World& world, const RiskLimit& risk,
@@ -99,7 +105,7 @@ class Straightener {
     for (std::size_t i = 0; i < nodes_.size(); ++i) may_move_[i] = !split.is_end[i];
   }
 
-  // Nothing if the plan as it is serves better.
+  // The straightened plan; nothing if no straightened plan keeps the cap at all times.
   std::optional<FlowPlan> run() {
     move_all();
     while (!keeps_cap()) {
@@ -124,6 +130,8 @@ class Straightener {
     return leg.from == i ? leg.to : leg.from;
   }
 
+  // Sweeps over the nodes in order of time. A node that could not move is skipped until a neighbour
+  // moves.
   void move_all() {
     std::vector<std::uint32_t> order(nodes_.size());
     std::iota(order.begin(), order.end(), 0U);
@@ -148,6 +156,7 @@ class Straightener {
     }
   }
 
+  // Action of the legs of node i if its Gaussian is g.
   double action(std::uint32_t i, const Gaussian& g) const {
     double sum = 0.0;
     for (const std::uint32_t l : legs_of_[i]) {
@@ -174,6 +183,8 @@ class Straightener {
     return Gaussian::from_valid(mean_m / weights, root * root);
   }
 
+  // Whether a leg between these Gaussians is no faster than allowed in the time it has. Legs at
+  // start and goal components are also timed for the robots of the 2σ ellipse.
   bool is_slow_enough(std::uint32_t l, const Gaussian& from, const Gaussian& to,
                       double duration_s) const {
     const double least_s = split_.is_end_leg[l]
@@ -182,7 +193,7 @@ class Straightener {
     return least_s <= duration_s + kLater_s;
   }
 
-  // Whether all legs of a node may be if its Gaussian is g.
+  // Whether all legs of a node keep the speed if its Gaussian is g.
   bool keeps_speed(std::uint32_t i, const Gaussian& g) const {
     return std::all_of(legs_of_[i].begin(), legs_of_[i].end(), [&](std::uint32_t l) {
       const bool leaves = leg(l).from == i;
@@ -190,6 +201,7 @@ class Straightener {
                             leaves ? nodes_[leg(l).to].gaussian : g, duration_s(leg(l)));
     });
   }
+  // Whether all legs of a node are proven to keep the risk limit if its Gaussian is g.
   bool keeps_risk(std::uint32_t i, const Gaussian& g) const {
     EdgeEnd end(g);
     return std::all_of(legs_of_[i].begin(), legs_of_[i].end(), [&](std::uint32_t l) {
@@ -198,6 +210,7 @@ class Straightener {
     });
   }
 
+  // Sets the Gaussian of a node if the density keeps the cap on its legs, else leaves it as it is.
   bool try_place(std::uint32_t i, const Gaussian& g) {
     const Gaussian before = std::exchange(nodes_[i].gaussian, g);
     if (density_.try_change(nodes_, legs_of_[i], kStraightenBelowCap * cap_.max_per_m2)) return true;
@@ -205,10 +218,13 @@ class Straightener {
     return false;
   }
 
+  // Line search towards the mean of the neighbours. Each candidate is first made feasible (pushed
+  // out of obstacles, then squeezed); the cheap tests come before the proof of the edges and the
+  // density.
   bool try_move(std::uint32_t i) {
     const double enough = (1.0 - options_.worthwhile) * action(i, nodes_[i].gaussian);
     const Geodesic path(nodes_[i].gaussian, middle_of(i));
-    // A hair more than σ_min needs, so that the squeeze that follows does not end below it.
+    // Slightly more than σ_min needs, so that the squeeze that follows does not end below it.
     const double room_m = k_ * options_.sigma_min_m * (1.0 + 1e-6) - delta_m_;
     for (const double step : kStraightenSteps) {
       for (const double extra_m : kExtraRooms_m) {
@@ -227,7 +243,8 @@ class Straightener {
     return peaks_above(plan, cap_.robots, options_.sample_s, cap_.max_per_m2);
   }
 
-  // Whether the whole plan keeps the cap; if not, some nodes have gone back.
+  // Whether the whole plan keeps the cap; if not, nodes beside the peaks are put back, those with a
+  // large share of a peak first.
   bool keeps_cap() {
     auto made = FlowPlan::make(nodes_, split_.plan.legs());
     SWARM_ASSERT(made.has_value());
@@ -239,7 +256,8 @@ class Straightener {
     return true;
   }
 
-  // Nodes beside peaks go back to where they were. False when there is none that can.
+  // Puts nodes beside peaks back to their Gaussians in the plan before. False when all are there
+  // already.
   bool undo_beside(const std::vector<SharedPeak>& peaks, double share_that_counts) {
     std::vector<std::uint32_t> open;
     for (const SharedPeak& peak : peaks) {
@@ -257,7 +275,7 @@ class Straightener {
       if (same(nodes_[i].gaussian, was)) continue;
       nodes_[i].gaussian = was;
       some = true;
-      // What can no longer be joined to the old place goes back, too.
+      // Neighbours that can no longer be joined to the old Gaussian are put back as well.
       for (const std::uint32_t l : legs_of_[i]) {
         const Gaussian& from = nodes_[leg(l).from].gaussian;
         const Gaussian& to = nodes_[leg(l).to].gaussian;
@@ -270,8 +288,8 @@ class Straightener {
     return some;
   }
 
-  // New nodes whose neighbours can be joined directly are put on that leg, where they are not
-  // needed. Their neighbours are nodes of the plan.
+  // A new node whose neighbours can be joined directly is not needed: it is put on the leg between
+  // them and left out of the result. Its neighbours are nodes of the plan, which stay.
   void drop_what_is_straight() {
     density_ = DensityGrid(FlowPlan::make(nodes_, split_.plan.legs()).value(), cap_.robots,
                            kCoarser * options_.sample_s);
@@ -288,8 +306,8 @@ class Straightener {
     }
   }
 
-  // New nodes that were dropped from legs beside peaks are taken back, or else all of them are:
-  // without any dropped the plan keeps the cap.
+  // Takes back new nodes that were dropped from legs beside peaks, or all of them when none is
+  // beside a peak. The loop in run() ends, because the plan with no node dropped keeps the cap.
   void bend_again(const std::vector<SharedPeak>& peaks, const std::vector<PlanNode>& bent) {
     std::set<std::pair<std::uint32_t, std::uint32_t>> legs;
     for (const SharedPeak& peak : peaks) {
@@ -309,6 +327,7 @@ class Straightener {
     if (!take_back(false)) take_back(true);
   }
 
+  // The plan without the nodes that are not needed; the two legs of each become one.
   FlowPlan result() const {
     std::vector<std::uint32_t> index(nodes_.size(), 0);
     std::vector<PlanNode> nodes;

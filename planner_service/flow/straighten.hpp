@@ -14,6 +14,7 @@
 
 namespace swarm::planner {
 
+/// Limits and effort of straighten().
 struct StraightenOptions {
   LegSpeed speed{};          ///< no leg is faster than this
   double sigma_min_m = 0.8;  ///< no Gaussian is squeezed below this
@@ -32,11 +33,11 @@ struct StraightenOptions {
 /// stay where they are. New nodes, in the middle of legs that go around a corner, come after them.
 ///
 /// Node after node, each moves to the W₂ mean of its neighbours, weighted by mass over time, or
-/// half or a quarter of the way there, is pushed out of obstacles and squeezed beside them, and
+/// half or a quarter of that distance, is pushed out of obstacles and squeezed beside them, and
 /// stays there if that lowers the action and its legs keep the speed, the risk limit and, with all
-/// others at their times, the density cap. The latter is looked for from the means of those legs
-/// alone, so the plan is checked once more as a whole (plan_density.hpp), and nodes beside a peak
-/// above the cap go back, with neighbours they can no longer be joined to. So the result keeps
+/// others at their times, the density cap. The cap is checked by climbing from the means of those
+/// legs alone, so the plan is checked once more as a whole (plan_density.hpp), and nodes beside a
+/// peak above the cap go back, with neighbours they can no longer be joined to. So the result keeps
 /// everything that `plan` keeps: at worst it is the same flow.
 ///
 /// Cost: sweeps · nodes that still move · (edge checks + times · legs in sight).

@@ -9,6 +9,7 @@
 
 namespace swarm::planner {
 
+/// Resolution and effort of tighten().
 struct TightenOptions {
   double spacing_m = 4.0;    ///< the route is cut into legs of about this W₂ length first
   std::uint32_t sweeps = 5;  ///< five are enough, more change less than 0.1 %

@@ -20,13 +20,14 @@
 namespace swarm::planner {
 namespace {
 
-// Networks above this take minutes: rather say so.
+// Larger networks take minutes to solve; they are refused with an error.
 constexpr std::size_t kMostArcs = 3'000'000;
+// Steps beyond free flow that the first horizon has at least.
 constexpr std::uint32_t kLeastExtraSteps = 8;
 // Peaks are brought a little below the cap, so that a round does not end just above it.
 constexpr double kBelowCap = 0.995;
-// What is lowered beside a peak: nodes with this share in it, and by no more than this at once,
-// because some of what is on a node may find a place elsewhere.
+// Capacities are lowered at nodes that contribute at least this share to a peak, and by no more
+// than kLowestStep at once, because part of the mass of a node may move to other nodes.
 constexpr double kShareThatCounts = 0.02;
 constexpr double kLowestStep = 0.5;
 constexpr int kNeighbouringWaves = 10;
@@ -37,6 +38,7 @@ struct Terminals {
   std::size_t count() const { return supplies.size() + demands.size(); }
 };
 
+// Density of components that hold all of their mass [robots/m²].
 double stationary_density_per_m2(std::span<const Gaussian> components, std::span<const double> masses,
                                double robots, const Vec2& at_m) {
   double density = 0.0;
@@ -45,8 +47,9 @@ double stationary_density_per_m2(std::span<const Gaussian> components, std::span
   return robots * density;
 }
 
-// Capacities to begin with: of the Gaussian alone, less what stands there at the start or in the
-// end, less what the waves one step before and after add when each of them is full.
+// First capacities: what a Gaussian may hold alone, reduced by the density that start or goal
+// components add at its mean, and divided by the density that waves of full Gaussians one, two …
+// steps before and after add to it, Σ exp(−(k d)²/2) with d the distance of waves in σ.
 std::vector<double> first_capacities(const Roadmap& roadmap, const Terminals& terminals,
                                      const DensityCap& cap, double wave_spacing_m) {
   const std::span<const Gaussian> nodes(roadmap.nodes);
@@ -72,8 +75,8 @@ std::vector<double> first_capacities(const Roadmap& roadmap, const Terminals& te
   return capacities;
 }
 
-// Lowers the capacity of the nodes beside each peak in proportion to its excess. False when there
-// is none to lower.
+// Lowers the capacity of the nodes beside each peak in proportion to its excess. Start and goal
+// components are fixed. False when no capacity is left to lower.
 bool lower_capacities(const std::vector<SharedPeak>& peaks, const TimedPlan& timed,
                       const DensityCap& cap, std::size_t terminals,
                       std::vector<double>& capacities) {
@@ -101,6 +104,7 @@ double highest_per_m2(const std::vector<SharedPeak>& peaks) {
   return highest;
 }
 
+// Σ mass · W₂ of the moves, without the cost of time that the network adds.
 double cost_m(const std::vector<TimedMove>& moves, const Roadmap& roadmap) {
   double cost = 0.0;
   for (const TimedMove& move : moves) {
@@ -109,7 +113,8 @@ double cost_m(const std::vector<TimedMove>& moves, const Roadmap& roadmap) {
   return cost;
 }
 
-// Doubles the time beyond free flow until the flow fits.
+// The horizon of the network. Doubles the time beyond free flow until the flow fits, up to
+// stretch_max times the free-flow time. It never shrinks: later rounds have less capacity.
 class Horizon {
  public:
   Horizon(const TimedNetwork& network, std::uint32_t free_flow, double stretch_max)
@@ -148,6 +153,7 @@ class Horizon {
   std::uint32_t longest_;
 };
 
+// An error with the parameters that admit a denser plan or give the flow more room.
 Error too_dense(const DensityCap& cap, std::string_view what) {
   return {ErrorCode::kInfeasible,
           fmt::format("{:.0f} robots at no more than {:.3f} robots/m2: {}; raise the limit on the "
@@ -157,6 +163,7 @@ Error too_dense(const DensityCap& cap, std::string_view what) {
 
 }  // namespace
 
+// Each round solves the flow, samples the density of its plan, and lowers capacities beside peaks.
 Result<TimedFlow> timed_flow(const Roadmap& roadmap, std::span<const double> supplies,
                              std::span<const double> demands, const DensityCap& cap,
                              const TimedFlowOptions& options, EdgeChecker& checker) {

@@ -18,13 +18,13 @@
 namespace swarm::planner {
 namespace {
 
-// A share of a step that is rounding, not way.
+// A leg that exceeds whole steps by less than this share of a step is not rounded up.
 constexpr double kWholeStep = 1e-9;
 // Rounding up makes a leg half a step later than it could be; a third instead of half the median
-// leg makes ways half a percent shorter and takes twice as long to solve.
+// leg makes paths half a percent shorter and takes twice as long to solve.
 constexpr double kStepsPerLeg = 2.0;
 
-// A directed edge of the roadmap on a near-shortest way.
+// A directed edge of the roadmap on a near-shortest path.
 struct Leg {
   std::uint32_t from;
   std::uint32_t to;
@@ -32,7 +32,8 @@ struct Leg {
   double duration_s;
 };
 
-// How long the ways through a node or leg are, from every start and to every goal.
+// Lengths of the shortest paths through a node or leg, from every start to every goal: one search
+// from each of them.
 class Paths {
  public:
   Paths(const Roadmap& roadmap, std::size_t starts, std::size_t goals, double detour)
@@ -45,7 +46,7 @@ class Paths {
     for (std::size_t i = 0; i < starts_; ++i) {
       for (std::size_t j = starts_; j < from_.size(); ++j) {
         const double shortest_m = from_[i].length_m(static_cast<std::uint32_t>(j));
-        // Edges are undirected: from the goal is to the goal.
+        // Edges are undirected, so that the length from the goal is the length to the goal.
         const double path_m = from_[i].length_m(u) + length_m + from_[j].length_m(v);
         if (std::isfinite(path_m) && path_m <= detour_ * shortest_m) return true;
       }
@@ -59,6 +60,9 @@ class Paths {
   std::vector<ShortestRoutes> from_;
 };
 
+// The directed edges that lie on a path no longer than detour times the shortest between some start
+// and goal, proven to the tolerance of a plan. An edge is proven once for both directions. All
+// other edges are left out: the unrolled network is many times the roadmap.
 std::vector<Leg> near_shortest(const Roadmap& roadmap, std::size_t starts, std::size_t goals,
                                const TimedNetworkOptions& options, EdgeChecker& checker) {
   const Paths paths(roadmap, starts, goals, options.detour);
@@ -83,6 +87,7 @@ std::vector<Leg> near_shortest(const Roadmap& roadmap, std::size_t starts, std::
   return legs;
 }
 
+// The step of the grid is a share of the median: a few very short legs do not make it fine.
 double median_duration_s(const std::vector<Leg>& legs) {
   std::vector<double> durations_s;
   for (const Leg& leg : legs) durations_s.push_back(leg.duration_s);
@@ -100,6 +105,7 @@ struct TimedNetwork::Unrolled {
   std::vector<TimedMove> moves;  // of each arc; from_step = to_step within a node
 };
 
+// Durations are rounded up to whole steps, at least one, so that no leg is faster than the speed.
 TimedNetwork::TimedNetwork(const Roadmap& roadmap, std::size_t starts, std::size_t goals,
                            const TimedNetworkOptions& options, EdgeChecker& checker)
     : starts_(starts), goals_(goals) {
@@ -119,6 +125,7 @@ TimedNetwork::TimedNetwork(const Roadmap& roadmap, std::size_t starts, std::size
   left_ = steps_from(back, starts, goals);
 }
 
+// Dijkstra in whole steps from several sources at once: the earliest step at every node.
 std::vector<std::uint32_t> TimedNetwork::steps_from(const Arcs& arcs, std::size_t first,
                                                     std::size_t count) {
   using Entry = std::pair<std::uint32_t, std::uint32_t>;
@@ -141,6 +148,8 @@ std::vector<std::uint32_t> TimedNetwork::steps_from(const Arcs& arcs, std::size_
   return steps;
 }
 
+// The longest of the fastest paths: from a start to its nearest goal, and to a goal from its
+// nearest start.
 std::optional<std::uint32_t> TimedNetwork::free_flow_steps() const {
   std::uint32_t longest = 0;
   for (std::size_t v = 0; v < starts_ + goals_; ++v) {
@@ -151,6 +160,7 @@ std::optional<std::uint32_t> TimedNetwork::free_flow_steps() const {
   return longest;
 }
 
+// Each copy has an arc through it, an arc of waiting and an arc for each leg.
 std::size_t TimedNetwork::arc_count(std::uint32_t horizon) const {
   std::size_t count = 0;
   for (std::size_t v = 0; v < arcs_.size(); ++v) {
@@ -159,6 +169,11 @@ std::size_t TimedNetwork::arc_count(std::uint32_t horizon) const {
   return count;
 }
 
+// Builds the time-expanded network. A copy of node v exists for steps earliest[v] to horizon −
+// left[v]:
+// at others no mass could be there that also arrives in time. The arc between the two halves of a
+// copy carries the capacity. Supplies enter at step 0, demands leave at the horizon; mass at a goal
+// waits free of charge.
 TimedNetwork::Unrolled TimedNetwork::unrolled(std::uint32_t horizon,
                                               const TimedDemand& demand) const {
   SWARM_ASSERT(demand.supplies.size() == starts_ && demand.demands.size() == goals_ &&
@@ -209,6 +224,7 @@ TimedNetwork::Unrolled TimedNetwork::unrolled(std::uint32_t horizon,
   return net;
 }
 
+// Network simplex on the unrolled network. Arcs within a copy are not moves and are left out.
 std::optional<std::vector<TimedMove>> TimedNetwork::solve(std::uint32_t horizon,
                                                           const TimedDemand& demand) const {
   const Unrolled net = unrolled(horizon, demand);
@@ -224,7 +240,8 @@ std::optional<std::vector<TimedMove>> TimedNetwork::solve(std::uint32_t horizon,
 }
 
 double TimedNetwork::mass_that_fits(std::uint32_t horizon, const TimedDemand& demand) const {
-  // Everyone may bypass the network, and nothing else costs.
+  // Every supply may bypass the network at cost 1, and nothing else costs: the optimum bypasses as
+  // little as possible, which is the mass that does not fit (a maximum flow).
   Unrolled net = unrolled(horizon, demand);
   for (FlowArc& arc : net.arcs) arc.cost = 0.0;
   const std::size_t bypasses = net.arcs.size();

@@ -14,11 +14,12 @@
 
 namespace swarm::planner {
 
+/// Time grid and costs of a TimedNetwork.
 struct TimedNetworkOptions {
   LegSpeed speed{};            ///< ends are legs at a start or goal component
   double step_s = 0.0;         ///< the grid of times; 0 for half of the median leg
-  double detour = 1.05;        ///< legs on no way shorter than this many times the shortest are out
-  double delay_cost_mps = 0;  ///< what a second of being under way costs, beside the way itself
+  double detour = 1.05;        ///< legs on no path within this factor of the shortest are left out
+  double delay_cost_mps = 0;  ///< cost of a second of travel or waiting, besides the path length
 };
 
 /// Mass that moves (or waits, when `from` = `to`) between two nodes of the roadmap.
@@ -30,8 +31,8 @@ struct TimedMove {
   double mass = 0.0;
 };
 
-/// What a swarm has to bring from where to where: masses of the start and goal components, each
-/// summing to 1, and what every node of the roadmap may hold at a time.
+/// The transport a swarm has to carry out: masses of the start and goal components, each summing to
+/// 1, and what every node of the roadmap may hold at a time.
 struct TimedDemand {
   std::span<const double> supplies;
   std::span<const double> demands;
@@ -39,10 +40,11 @@ struct TimedDemand {
 };
 
 /// The part of a roadmap that matters for one transport, unrolled over time: a copy of every node
-/// for every step, arcs that take as many steps as the way needs at the given speed (rounded up),
-/// and arcs that wait for one. What is at a node at a step, moving or waiting, fits its capacity.
+/// for every step, arcs that take as many steps as the leg needs at the given speed (rounded up),
+/// and arcs that wait for one. The mass at a node at a step, moving or waiting, is within its
+/// capacity.
 ///
-/// Left out: legs off the near-shortest ways, legs not proven to kPlanTolerance_m, and copies that
+/// Left out: legs off the near-shortest paths, legs not proven to kPlanTolerance_m, and copies that
 /// are too early to be reached or too late to reach a goal.
 class TimedNetwork {
  public:
@@ -52,23 +54,23 @@ class TimedNetwork {
 
   double step_s() const { return step_s_; }
 
-  /// Steps in which everyone is there if nobody has to wait; nothing when some component has no
-  /// way.
+  /// Steps until all mass has arrived if none has to wait; nothing when some component has no path.
   std::optional<std::uint32_t> free_flow_steps() const;
 
-  /// Cheapest flow that is there after `horizon` steps; the price of a move is its W₂ length and
-  /// its time's price, of waiting the latter, of having arrived nothing. Nothing when it does not
-  /// fit. Exactness as of min_cost_flow().
+  /// Cheapest flow that has arrived after `horizon` steps. A move costs its W₂ length and the cost
+  /// of its time, waiting the cost of time alone, waiting at a goal nothing. Nothing when no flow
+  /// fits. Exactness as of min_cost_flow().
   std::optional<std::vector<TimedMove>> solve(std::uint32_t horizon,
                                               const TimedDemand& demand) const;
 
-  /// Largest share of the swarm that is there after `horizon` steps.
+  /// Largest share of the swarm that can arrive within `horizon` steps.
   double mass_that_fits(std::uint32_t horizon, const TimedDemand& demand) const;
 
   /// Size of the network of a horizon, before it is built; an upper bound.
   std::size_t arc_count(std::uint32_t horizon) const;
 
  private:
+  // A directed leg with its duration in whole steps.
   struct Arc {
     std::uint32_t to;
     std::uint32_t steps;

@@ -16,6 +16,7 @@
 namespace swarm::planner {
 namespace {
 
+// Moves of less mass than this are rounding.
 constexpr double kNothing = 1e-9;
 
 // A node of the roadmap at a step.
@@ -29,7 +30,8 @@ Copy from_of(const TimedMove& move) { return {move.from, move.from_step}; }
 Copy to_of(const TimedMove& move) { return {move.to, move.to_step}; }
 bool waits(const TimedMove& move) { return move.from == move.to; }
 
-// Leaves out what rounding made: moves of next to nothing, and then those that hang in the air.
+// Removes what rounding left: moves of negligible mass, and then moves that no longer begin at mass
+// from a start (first pass, in order of time) or no longer lead to a goal (second pass, backwards).
 void drop_negligible(std::vector<TimedMove>& moves, std::size_t starts, std::size_t goals) {
   std::erase_if(moves, [](const TimedMove& move) { return move.mass < kNothing; });
   std::sort(moves.begin(), moves.end(),
@@ -72,7 +74,8 @@ std::set<Copy> events_of(const std::vector<TimedMove>& moves, std::size_t starts
     const auto after = events.lower_bound({j + 1, 0});
     SWARM_ASSERT(after != events.begin() && std::prev(after)->node == j);
     const Copy last = *std::prev(after);
-    // Somebody passes through after the last arrival: what stays is there one step later.
+    // Mass leaves the goal at the step of the last arrival. A sink has no leg out, so that it
+    // closes one step later.
     if (left.contains(last)) events.insert({j, last.step + 1});
   }
   return events;
@@ -80,6 +83,9 @@ std::set<Copy> events_of(const std::vector<TimedMove>& moves, std::size_t starts
 
 }  // namespace
 
+// Nodes of the plan are the events; starts get the first indices and goals the next, which makes
+// sources()[i] and sinks()[j] the components. Waiting steps between two events of a node merge into
+// one leg.
 Result<TimedPlan> timed_plan(std::span<const Gaussian> nodes, std::span<const double> supplies,
                              std::span<const double> demands, std::vector<TimedMove> moves,
                              double step_s) {

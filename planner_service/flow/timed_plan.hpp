@@ -12,6 +12,7 @@
 
 namespace swarm::planner {
 
+/// A flow plan with the roadmap node of each of its nodes.
 struct TimedPlan {
   FlowPlan plan;
   std::vector<std::uint32_t> roadmap_node;  ///< which node of the roadmap a node of the plan is
@@ -20,8 +21,7 @@ struct TimedPlan {
 /// The flow plan of moves on the grid of times. A node of the plan is a node of the roadmap at a
 /// step where something comes or goes; waiting in between is one leg from the Gaussian to itself.
 /// So a start component that sends its mass in waves is one source at time 0 and a chain of legs
-/// that carry what is left; a goal component is a chain that ends in its sink when its last mass
-/// comes.
+/// that carry the rest; a goal component is a chain that ends in its sink when its last mass comes.
 ///
 /// sources()[i] is start component i, sinks()[j] goal component j. Moves below 1e-9, which only
 /// rounding makes, are left out. kBadInput when the plan would not fit a message.

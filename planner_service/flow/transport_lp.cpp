@@ -14,9 +14,12 @@
 namespace swarm::planner {
 namespace {
 
-// A component of next to no mass still needs a route: rounding must not make it one of none.
+// Every component needs a route. One of negligible mass is raised to this, so that rounding does
+// not remove its shipment.
 constexpr double kLeastMass = 1e-9;
 
+// Raises masses below the least one; the largest component gives what they gain, so that the sum
+// stays.
 std::vector<double> lifted(std::span<const double> masses) {
   std::vector<double> lifted(masses.begin(), masses.end());
   double lent = 0.0;
@@ -32,6 +35,8 @@ std::vector<double> lifted(std::span<const double> masses) {
 
 }  // namespace
 
+// The transport problem (13) as min-cost flow on the bipartite network of starts and goals, without
+// arcs for pairs that no route joins.
 std::optional<std::vector<Shipment>> solve_transport(std::span<const double> supplies,
                                                      std::span<const double> demands,
                                                      std::span<const double> costs_m) {

@@ -7,6 +7,7 @@
 
 namespace swarm::planner {
 
+// Maximum-likelihood covariance (divided by n) plus the floor.
 Gaussian shape_of(const Members& members, double sigma_floor_m) {
   Vec2 mean_m = Vec2::Zero();
   for (const ReportedRobot* robot : members) mean_m += robot->position_m;
@@ -21,6 +22,7 @@ Gaussian shape_of(const Members& members, double sigma_floor_m) {
                               covariance_m2 + sigma_floor_m * sigma_floor_m * Mat2::Identity());
 }
 
+// Direction of the larger principal axis of a 2 × 2 covariance: half the angle of its deviator.
 void sort_along_axis(Members& members, const Gaussian& gaussian) {
   const Mat2& c = gaussian.covariance_m2();
   const double angle_rad = 0.5 * std::atan2(2.0 * c(0, 1), c(0, 0) - c(1, 1));

@@ -10,7 +10,7 @@ namespace swarm::planner {
 struct PlanEntry {
   static constexpr std::uint16_t kAnywhere = 0xFFFF;
   std::uint16_t source = kAnywhere;  ///< index into FlowPlan::sources()
-  std::uint16_t share = 0;           ///< / 65536: its place in the draws at the splits behind
+  std::uint16_t share = 0;           ///< / 65536: its draw at the splits that follow the source
 
   static std::uint16_t share_of(double share) {
     return static_cast<std::uint16_t>(share * 65536.0);

@@ -15,6 +15,7 @@
 namespace swarm::planner {
 namespace {
 
+// Factor of the radius while there are too many groups.
 constexpr double kWider = 1.5;
 
 /// The goal component that a robot has arrived in, if any.
@@ -31,8 +32,8 @@ std::optional<std::size_t> goal_of(const ReportedRobot& robot, const Mixture& go
   return reached;
 }
 
-/// Leader clustering: a robot joins the nearest group whose first robot it sees within the radius,
-/// or begins one.
+/// Leader clustering: a robot joins the nearest group whose first robot is within the radius and in
+/// line of sight, or begins a group. O(robots · groups).
 std::vector<Members> cluster(const Members& robots, const World& world, double radius_m) {
   std::vector<Members> clusters;
   for (const ReportedRobot* robot : robots) {
@@ -60,7 +61,7 @@ std::vector<Members> cluster(const Members& robots, const World& world, double r
 std::optional<Gaussian> free_shape_of(const Members& members, const World& world,
                                       const RiskLimit& risk, const GroupOptions& options) {
   const double k = cvar_coefficient(risk.alpha);
-  // A hair more than the narrowest needs, so that the squeeze that follows does not end below it.
+  // Slightly more than the narrowest σ needs, so that the squeeze does not end below it.
   const double room_m = k * options.sigma_least_m * (1.0 + 1e-6) - risk.delta_m;
   for (const Members& of : {members, Members{members.front()}}) {
     const Gaussian pushed = push_out(shape_of(of, options.sigma_floor_m), world, room_m);
@@ -79,6 +80,8 @@ RobotGroup group_of(Members members, const Gaussian& gaussian) {
 
 }  // namespace
 
+// Arrived robots first, by goal component, then clusters of the others. The sort along the axis
+// gives neighbouring robots neighbouring ranks, hence neighbouring shares of the plan.
 Result<std::vector<RobotGroup>> group_robots(const MeasuredSwarm& swarm, const RiskLimit& risk,
                                              const GroupOptions& options) {
   SWARM_ASSERT(!swarm.robots.empty());
@@ -92,7 +95,7 @@ Result<std::vector<RobotGroup>> group_robots(const MeasuredSwarm& swarm, const R
   }
   double radius_m = options.radius_m;
   std::vector<Members> clusters = cluster(under_way, world, radius_m);
-  // Groups that walls keep apart stay apart however wide the radius is: it need not grow for ever.
+  // Walls separate groups at any radius, so that the number of tries is bounded.
   for (int tries = 0; clusters.size() > options.groups_max && tries < 16; ++tries) {
     radius_m *= kWider;
     clusters = cluster(under_way, world, radius_m);

@@ -14,12 +14,15 @@ void ClockGovernor::issue(std::uint32_t version, SteadyTime now) {
 }
 
 void ClockGovernor::advance(SteadyTime now, bool runs) {
-  // Of a mission that has just been started or resumed nothing has passed yet.
+  // The clock advances only if the mission ran at both calls: one that was just started or resumed
+  // has no time behind it yet.
   if (runs && runs_ && now > at_) plan_time_s_ += rate_ * to_seconds(now - at_);
   runs_ = runs;
   at_ = std::max(at_, now);
 }
 
+// The rate from the quantile of the lags, by linear interpolation between lag_free_s (full rate)
+// and lag_stop_s. If all robots are hopeless, none remains to judge by, and the least rate applies.
 void ClockGovernor::judge(std::span<const RobotLag> robots) {
   lags_.clear();
   hopeless_.clear();

@@ -28,9 +28,9 @@ struct RobotLag {
 ///   τ̇ = clamp(1 − (L − L₀)/(L₁ − L₀), rate_min, 1)
 ///
 /// L is a quantile of the robots' lags; arrived robots count as 0, hopeless ones not at all. The
-/// least rate keeps a crowd that has no room from stopping the mission for good: its lag is spread,
-/// which waiting does not heal. While the mission does not run, τ stands still. Keys of the
-/// mission: plan_clock. Pure: time and lags in, τ out.
+/// least rate keeps a dense region without room from stopping the mission for good: its lag comes
+/// from robots spread over space, which waiting does not reduce. While the mission does not run, τ
+/// is constant. Keys of the mission: plan_clock. Pure: time and lags in, τ out.
 class ClockGovernor {
  public:
   explicit ClockGovernor(const PlanClockSpec& spec) : spec_(spec) {}
@@ -45,7 +45,7 @@ class ClockGovernor {
   /// from there. τ never goes back.
   void catch_up(double plan_time_s) { plan_time_s_ = std::max(plan_time_s_, plan_time_s); }
 
-  /// Sets the rate by the lags of all robots that are known to live.
+  /// Sets the rate from the lags of all robots that reported lately.
   void judge(std::span<const RobotLag> robots);
 
   double plan_time_s() const { return plan_time_s_; }

@@ -11,24 +11,25 @@
 namespace swarm::planner {
 namespace {
 
-// After a start the launcher's scene is due at once; a bus that does not bring it must not keep a
-// mission from flying.
+// The launcher's scene is expected right after a start. If it does not arrive within this time, the
+// planner publishes its plan without it.
 constexpr Duration kSceneTimeout = std::chrono::seconds(3);
-// Robots that stand for this long are stuck; escapes of their own have not helped by then.
+// Robots that make no progress for this long are stuck: their own escape manoeuvres have failed by
+// then.
 constexpr Duration kStuckAfter = std::chrono::seconds(8);
-// … and so many of them are reason to lead the swarm another way.
+// Share of the swarm that has to be stuck before the planner changes the route.
 constexpr double kStuckShare = 0.1;
-// While obstacles move, and while there is no plan for the scene.
+// Period of planning anew while obstacles move, and while the last attempt failed.
 constexpr Duration kReplanPeriod = std::chrono::seconds(2);
 // The robots' statuses come once a second.
 constexpr Duration kJudgePeriod = std::chrono::seconds(1);
 // A clock that is slow for shorter than this is not worth an event.
 constexpr Duration kSlowFor = std::chrono::seconds(5);
-// Robots that are this far ahead of the clock had it from a planner before this one.
+// Robots this far ahead of the clock follow the clock of an earlier planner.
 constexpr double kRobotsAhead_s = 1.0;
 constexpr std::size_t kNamed = 10;  // robots, in an event
 
-/// A notice is one line.
+/// Replaces line breaks, since a notice is one line.
 std::string one_line(std::string text) {
   for (std::size_t at = 0; (at = text.find('\n', at)) != std::string::npos;) {
     text.replace(at, 1, "; ");
@@ -66,8 +67,9 @@ bool PlanKeeper::take_scene(Scene scene) {
   return true;
 }
 
-/// From where the robots are, once they have left their start; before, the mission's own mixture is
-/// the truth they were placed by.
+/// Plans for a world: from the robots' positions once they have left their start; before that from
+/// the start mixture of the mission, from which their positions were drawn. The seed depends on the
+/// version, so that each plan has its own random numbers and all are reproducible.
 Result<Replan> PlanKeeper::plan_anew(const World& world, std::span<const ReportedRobot> robots) {
   const Mixture& goal = scene_.goal ? *scene_.goal : mission_.goal;
   planner_.set_risk({.alpha = scene_.risk_alpha.value_or(mission_.planner.risk_alpha),
@@ -81,9 +83,9 @@ Result<Replan> PlanKeeper::plan_anew(const World& world, std::span<const Reporte
   return Replan{*std::move(planned), {}};
 }
 
-/// Around the bodies of fallen robots, if there is a plan that gets around them. A Gaussian is
-/// wider than a body: one under a source, a goal, or in a passage can be more than any plan gets
-/// around, but not more than a robot does.
+/// Plans around the bodies of failed robots where possible, else without them. A Gaussian is wider
+/// than a body: one at a source, at a goal or in a passage may block every plan although single
+/// robots can drive around it.
 Result<Replan> PlanKeeper::plan_around_bodies(UtcTime utc, std::span<const ReportedRobot> robots,
                                               Step& step) {
   auto planned = plan_anew(world_during(mission_.world, scene_, utc, kReplanPeriod), robots);
@@ -102,6 +104,8 @@ Result<Replan> PlanKeeper::plan_around_bodies(UtcTime utc, std::span<const Repor
   return through;
 }
 
+/// Plans for the present scene and publishes the result. If planning fails the last plan stays in
+/// force; the failure is reported once per scene.
 void PlanKeeper::try_again(SteadyTime now, UtcTime utc, Step& step) {
   std::vector<ReportedRobot> robots;
   if (is_in_flight(now)) {
@@ -125,6 +129,9 @@ void PlanKeeper::try_again(SteadyTime now, UtcTime utc, Step& step) {
   publish(now, step);
 }
 
+/// Decides whether to plan now: on a new scene, periodically while obstacles move or the last
+/// attempt failed, and at the period of the method. The plan made at the start is published as it
+/// is while the scene is the mission's own.
 void PlanKeeper::keep_planned(SteadyTime now, UtcTime utc, Step& step) {
   if (!scene_received_ && now - begun_at_ < kSceneTimeout) return;
   const bool published = version_ > 0;
@@ -142,7 +149,8 @@ void PlanKeeper::keep_planned(SteadyTime now, UtcTime utc, Step& step) {
   }
 }
 
-/// Where many robots are stuck the method may know another route.
+/// When many robots are stuck the method may find another route. The median of them, by id, stands
+/// for the position of the congestion.
 void PlanKeeper::avoid_jams(SteadyTime now, UtcTime utc, Step& step) {
   if (phase_ != MissionPhase::kRunning) return;
   const std::vector<ReportedRobot> stuck = robots_.stuck(now, kStuckAfter);
@@ -154,11 +162,12 @@ void PlanKeeper::avoid_jams(SteadyTime now, UtcTime utc, Step& step) {
   if (!planner_.method().on_congestion(at_m)) return;
   step.notices.push_back(
       {false, "jam",
-       fmt::format("{} robots are stuck, about ({:.1f}, {:.1f}) m: the guide leads another way",
+       fmt::format("{} robots are stuck, about ({:.1f}, {:.1f}) m: the guide takes another route",
                    stuck.size(), at_m.x(), at_m.y())});
   try_again(now, utc, step);
 }
 
+/// A new version: its clock starts at 0.
 void PlanKeeper::publish(SteadyTime now, Step& step) {
   step.publish = true;
   ++version_;
@@ -193,8 +202,10 @@ void PlanKeeper::catch_up(SteadyTime now) {
   if (*middle > governor_.plan_time_s() + kRobotsAhead_s) governor_.catch_up(*middle);
 }
 
+/// Events about the clock: robots that it no longer waits for, once each, and a clock that has been
+/// slow for a while.
 void PlanKeeper::report_clock(SteadyTime now, Step& step) {
-  std::vector<RobotId> fresh;  // not reported before, for this plan
+  std::vector<RobotId> fresh;  // not reported before
   for (const RobotId robot : governor_.hopeless()) {
     if (hopeless_reported_.insert(robot).second) fresh.push_back(robot);
   }
@@ -226,6 +237,8 @@ void PlanKeeper::report_clock(SteadyTime now, Step& step) {
   }
 }
 
+/// Sets the clock's rate from the reported lags once a second. A reading goes out when version or
+/// rate change, and after a jump; in between receivers extrapolate.
 void PlanKeeper::keep_clock(SteadyTime now, UtcTime utc, Step& step) {
   if (version_ == 0) return;
   if (now - judged_at_ >= kJudgePeriod && phase_ == MissionPhase::kRunning) {
@@ -240,7 +253,7 @@ void PlanKeeper::keep_clock(SteadyTime now, UtcTime utc, Step& step) {
     report_clock(now, step);
   }
   const PlanClock clock = governor_.reading(utc);
-  // A jump, after a restart, is worth a reading as well.
+  // The clock jumps when it catches up after a restart.
   const bool jumped = std::abs(clock_reported_.plan_time_at_s(utc) - clock.plan_time_s) > 0.05;
   if (clock.plan_version == clock_reported_.plan_version && clock.rate == clock_reported_.rate && !jumped) {
     return;

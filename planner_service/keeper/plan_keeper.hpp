@@ -20,8 +20,8 @@ namespace swarm::planner {
 
 /// Keeps a plan for the scene as it is: the first one, and a new one when the scene changes, while
 /// obstacles move, at the period of the planning method, and where robots are stuck and the method
-/// knows another route. It also owns the plan's clock. Pure: what was received and the time in,
-/// plans and clock readings out; the program around it owns bus and files. One thread.
+/// finds another route. It also owns the plan's clock. Pure: received messages and the time go in,
+/// plans and clock readings come out; the program around it owns bus and files. One thread.
 class PlanKeeper {
  public:
   /// `planner`: for this mission. \pre the mission outlives the keeper
@@ -30,7 +30,7 @@ class PlanKeeper {
   /// The plan of the mission file. The same mission and seed give the same flow.
   Result<void> plan_first();
 
-  /// The keeper is on the bus from now on: what it has not received yet may still come.
+  /// The keeper is on the bus from now on. Timeouts for the scene and the robots begin here.
   void begin(SteadyTime now) { begun_at_ = now; }
 
   void set_phase(MissionPhase phase) { phase_ = phase; }
@@ -38,23 +38,24 @@ class PlanKeeper {
   bool take_scene(Scene scene);
   /// \pre the id is below the number of robots
   void receive(const ReportedRobot& robot, bool moving, SteadyTime now) {
-    // What a robot sent before it fell may come after its body became an obstacle.
+    // A status sent before the robot failed may arrive after its body became an obstacle.
     if (!has_body(scene_, robot.robot)) robots_.receive(robot, moving, now);
   }
 
-  /// What happened, for the event log; the text is one line.
+  /// An entry for the event log; the text is one line.
   struct Notice {
     bool warning = false;
     std::string code;
     std::string text;
   };
+  /// What the program has to publish after a step.
   struct Step {
-    bool publish = false;  ///< newest() is to go out, as version()
-    /// The clock's version or rate is another one.
+    bool publish = false;  ///< newest() is to be published, as version()
+    /// A reading to publish: version or rate have changed, or the clock jumped.
     std::optional<PlanClock> clock{};
     std::vector<Notice> notices;
   };
-  /// Call it often. May plan, which takes as long as that takes.
+  /// Call it often. It blocks while it plans.
   Step step(SteadyTime now, UtcTime utc);
 
   const Replan& newest() const { return newest_; }
@@ -94,8 +95,8 @@ class PlanKeeper {
   Replan newest_;
   std::uint32_t version_ = 0;  // 0 = nothing published
   std::uint64_t planned_scene_ = 0;
-  std::optional<std::uint64_t> failed_scene_{};  // that was complained about
-  std::uint64_t bodies_left_out_ = 0;            // scene of which that was reported
+  std::optional<std::uint64_t> failed_scene_{};  // scene whose failure was reported
+  std::uint64_t bodies_left_out_ = 0;            // scene for which bodies-not-planned was reported
   SteadyTime begun_at_;
   SteadyTime tried_at_;  // to plan anew
   ClockGovernor governor_;

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-// Plans from where the robots are: when, and what the keeper knows of the robots then.
+// When to plan from the robots' positions, and the state of the robots at that time.
 #include <algorithm>
 
 #include "planner_service/groups/robot_groups.hpp"
@@ -11,9 +11,9 @@
 namespace swarm::planner {
 namespace {
 
-// A planner that comes back in mid-flight waits this long for robots it does not hear.
+// A planner that restarts in flight waits this long for robots that have not reported.
 constexpr Duration kReportTimeout = std::chrono::milliseconds(1500);
-// With a plan at each period a status is a plan or two old.
+// With a plan at each period a status may refer to an earlier plan, up to this many before.
 constexpr std::uint32_t kPlansBack = 3;
 
 }  // namespace
@@ -40,11 +40,12 @@ bool PlanKeeper::is_in_flight_elsewhere(SteadyTime now) const {
                      [](const ReportedRobot& r) { return r.plan_version > 1; });
 }
 
+/// Whether robots may still report for the first time after a start of the planner.
 bool PlanKeeper::is_waiting_for_robots(SteadyTime now) const {
   return !robots_.received_all(now) && now - begun_at_ < kReportTimeout;
 }
 
-/// With their places in the plan in force.
+/// Adds each robot's leg and goal in the plan in force: its share and the plan time determine both.
 std::vector<ReportedRobot> PlanKeeper::placed(std::vector<ReportedRobot> robots) const {
   if (!method().traits().uses_positions || version_ == 0) return robots;
   const FlowPlan& plan = newest_.planned.plan;
@@ -68,8 +69,8 @@ std::vector<ReportedRobot> PlanKeeper::placed(std::vector<ReportedRobot> robots)
   return robots;
 }
 
-/// A robot that follows an older plan says nothing of this one, unless each goes on from where the
-/// one before has led: then a status may be a few plans old.
+/// Whether the lag of a robot counts. A lag refers to the plan the robot follows. Plans made at a
+/// period continue each other, so that there a status of a few plans before counts as well.
 bool PlanKeeper::reports_lag(const ReportedRobot& robot) const {
   if (robot.plan_version > version_) return false;
   return version_ - robot.plan_version <= (method().replan_period() ? kPlansBack : 0);

@@ -9,6 +9,7 @@
 namespace swarm::planner {
 namespace {
 
+// The source of each robot is its group, its share is stratified by its rank in the group.
 std::vector<PlanEntry> entries_of(std::span<const RobotGroup> groups, std::uint32_t robot_count) {
   std::vector<PlanEntry> entries(robot_count);
   for (std::size_t g = 0; g < groups.size(); ++g) {
@@ -24,6 +25,7 @@ std::vector<PlanEntry> entries_of(std::span<const RobotGroup> groups, std::uint3
 
 }  // namespace
 
+// Measure, plan, then order the members: the order depends on the routes of the plan.
 Result<Replan> replan(Planner& planner, const MeasuredSwarm& swarm, std::uint32_t robot_count,
                       const PlanContext& context) {
   PlanningMethod& method = planner.method();

@@ -10,8 +10,8 @@
 
 namespace swarm::planner {
 
-/// What the planner knows of the robots: their last state update, while it is fresh, and since when those
-/// under way have not come on.
+/// The planner's estimate of the robots: the last status of each while it is fresh, and since when
+/// robots under way have made no progress.
 class RobotWatch {
  public:
   /// Less than this is no progress.
@@ -20,7 +20,7 @@ class RobotWatch {
   RobotWatch(std::uint32_t robots, Duration forget_after)
       : received_(robots), forget_after_(forget_after) {}
 
-  /// `moving` = under way, wants to move. \pre the id is below the number of robots
+  /// `moving`: the robot is under way. \pre the id is below the number of robots
   void receive(const ReportedRobot& robot, bool moving, SteadyTime now) {
     std::optional<Received>& received = received_.at(robot.robot.value());
     const bool is_stopped = received && moving && received->moving &&
@@ -32,10 +32,10 @@ class RobotWatch {
                   .stopped_since = is_stopped ? received->stopped_since : now};
   }
 
-  /// As if nothing was received of it. \pre the id is below the number of robots
+  /// Drops the last status of a robot. \pre the id is below the number of robots
   void forget(RobotId robot) { received_.at(robot.value()).reset(); }
 
-  /// Robots heard lately, by id.
+  /// Last status of each robot that reported lately, by id.
   std::vector<ReportedRobot> fresh(SteadyTime now) const {
     std::vector<ReportedRobot> robots;
     for (const std::optional<Received>& received : received_) {
@@ -46,7 +46,7 @@ class RobotWatch {
 
   bool received_all(SteadyTime now) const { return fresh(now).size() == received_.size(); }
 
-  /// Those of them that are under way and have not come on for so long.
+  /// Fresh robots under way that have made no progress for at least `after`.
   std::vector<ReportedRobot> stuck(SteadyTime now, Duration after) const {
     std::vector<ReportedRobot> robots;
     for (const std::optional<Received>& received : received_) {
@@ -57,7 +57,7 @@ class RobotWatch {
     return robots;
   }
 
-  /// They are given time to come on before they count as stuck again.
+  /// Restarts the timers of all robots: each has the full time before it counts as stuck again.
   void reset_stuck_timers(SteadyTime now) {
     for (std::optional<Received>& received : received_) {
       if (received) received->stopped_since = now;
@@ -65,6 +65,7 @@ class RobotWatch {
   }
 
  private:
+  // The last status of a robot and the position from which it makes progress.
   struct Received {
     ReportedRobot robot;
     SteadyTime at;

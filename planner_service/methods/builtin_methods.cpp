@@ -15,6 +15,7 @@ namespace swarm::planner {
 
 namespace {
 
+// Registry entry of a method class, which has static keys() and make().
 template <class Method>
 PlanningEntry entry(std::string name, std::string doc) {
   return {.spec = {.name = std::move(name), .doc = std::move(doc), .options = Method::keys()},

@@ -9,6 +9,8 @@ namespace swarm::planner {
 PlannerInbox::PlannerInbox(Readers readers, const link::WireLimits& limits)
     : readers_(std::move(readers)), gate_({.limits = limits}) {}
 
+// Commands first: phase and t0 are those after all commands that arrived. Messages that the gate
+// refuses are counted and dropped.
 void PlannerInbox::receive(UtcTime now) {
   commands_.clear();
   readers_.command->take(commands_);
@@ -29,6 +31,7 @@ void PlannerInbox::receive(UtcTime now) {
                         readers_.status->undecodable());
 }
 
+// t0 is the stamp of the command that starts the mission, also when it arrives late.
 void PlannerInbox::apply(const link::CommandMessage& command) {
   const MissionPhase before = phase_;
   phase_ = phase_after(phase_, command.kind);

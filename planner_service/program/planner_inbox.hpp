@@ -14,14 +14,15 @@
 
 namespace swarm::planner {
 
+/// Readers of the topics that a planner subscribes to.
 struct Readers {
   link::ReaderPtr<link::CommandMessage> command;
   link::ReaderPtr<link::SceneMessage> scene;
   link::ReaderPtr<link::StatusMessage> status;
 };
 
-/// What the planner receives: takes everything that arrived, has the gate check it, and hands on
-/// what passed. Not thread-safe.
+/// The messages that the planner receives: takes all that arrived, validates them at the gate, and
+/// hands on the valid ones. Not thread-safe.
 class PlannerInbox {
  public:
   PlannerInbox(Readers readers, const link::WireLimits& limits);

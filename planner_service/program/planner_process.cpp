@@ -28,10 +28,12 @@
 namespace swarm::planner {
 namespace {
 
-// A change of the scene must be a plan on the bus within 100 ms, most of which is not ours.
+// A change of the scene must lead to a published plan within 100 ms; polling may take only a small
+// part of that.
 constexpr Duration kStep = std::chrono::milliseconds(5);
-constexpr std::uint64_t kFaultSeed = 0xFA17;  // not the planner's chance
+constexpr std::uint64_t kFaultSeed = 0xFA17;  // own random numbers for the link
 
+// std::this_thread::sleep_for would sleep on after a signal.
 void sleep_for(Duration d) {
   const timespec t{.tv_sec = 0, .tv_nsec = static_cast<long>(d.count())};
   ::nanosleep(&t, nullptr);  // a stop signal wakes it
@@ -63,7 +65,7 @@ struct PlannerProcess::Impl {
   std::optional<PlannerInbox> inbox;
   std::uint64_t beats = 0;
   std::ofstream clock_file;
-  link::RefusalCounters reported;  // what was announced as an event already
+  link::RefusalCounters reported;  // counts already announced as events
 
   Result<void> plan_first();
   Result<void> join(const shell::RunInfo& run);
@@ -74,6 +76,8 @@ struct PlannerProcess::Impl {
   void beat(UtcTime now);
 };
 
+// Writes plan and statistics to the run directory before the planner joins the bus, so that the
+// files of a mission that has a plan always exist.
 Result<void> PlannerProcess::Impl::plan_first() {
   const PlanningRecord promised{mission.planner.method,
                                 keeper->method().traits().density_cap_per_m2};
@@ -88,6 +92,7 @@ Result<void> PlannerProcess::Impl::plan_first() {
   return write_stats(options.run_dir, planned.stats);
 }
 
+// Creates all writers and readers first and takes them over only when none failed.
 Result<void> PlannerProcess::Impl::join(const shell::RunInfo& run) {
   auto made = link::join_as_planner(link::meeting_of(run, {.faults = options.faults,
                                                            .seed = mix_seed(run.seed, kFaultSeed),
@@ -135,6 +140,8 @@ void PlannerProcess::Impl::receive(SteadyTime now) {
   }
 }
 
+// One step of the keeper: events, the plan and the clock go out in this order. A new clock reading
+// also sends a heartbeat at once.
 void PlannerProcess::Impl::keep_planned(SteadyTime now) {
   const UtcTime utc = utc_now();
   const PlanKeeper::Step step = keeper->step(now, utc);
@@ -148,6 +155,8 @@ void PlannerProcess::Impl::keep_planned(SteadyTime now) {
   beat(utc);  // robots need not wait for the next one
 }
 
+// Sends the plan, then writes it to the run directory, since the file must not delay the robots.
+// The version of a scene is its time stamp, which gives the delay since the change.
 void PlannerProcess::Impl::publish() {
   const UtcTime now = utc_now();
   const Replan& newest = keeper->newest();
@@ -184,6 +193,7 @@ void PlannerProcess::Impl::announce(link::Severity severity, const std::string& 
                        .text = text});
 }
 
+// Refused messages are reported with the heartbeat, so that a flood of them makes few events.
 void PlannerProcess::Impl::beat(UtcTime now) {
   link::report_new(inbox->refused(), reported,
                    [&](link::RefusalReason reason, std::uint32_t times) {
@@ -207,6 +217,8 @@ void PlannerProcess::Impl::beat(UtcTime now) {
 PlannerProcess::PlannerProcess(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 PlannerProcess::~PlannerProcess() = default;
 
+// The epoch is the start time of the process, so that the plans of a restarted planner supersede
+// those before.
 Result<std::unique_ptr<PlannerProcess>> PlannerProcess::make(const ProcessOptions& options,
                                                              const PlanningRegistry& registry) {
   auto impl = std::make_unique<Impl>();
@@ -226,6 +238,8 @@ Result<std::unique_ptr<PlannerProcess>> PlannerProcess::make(const ProcessOption
   return std::unique_ptr<PlannerProcess>(new PlannerProcess(std::move(impl)));
 }
 
+// Polls every kStep. A planner whose launcher has died ends: its parent process is then another
+// one.
 Result<void> PlannerProcess::run() {
   Impl& p = *impl_;
   const Duration beat_period = from_seconds(1.0 / p.mission.timing.heartbeat_hz);

@@ -12,21 +12,23 @@
 
 namespace swarm::planner {
 
+/// Options of the command line.
 struct ProcessOptions {
   std::filesystem::path run_dir;
   LinkFaults faults{};
-  std::uint32_t parent_pid = 0;            ///< end when this process is gone; 0 = do not watch
+  std::uint32_t parent_pid = 0;            ///< end when this process has ended; 0 = do not watch
   std::uint32_t ownership_strength = 100;  ///< a stand-by planner has less
 };
 
 /// The program: plans, publishes the plan (kept for late joiners) and the heartbeat, and follows
-/// the mission's commands for its clock t0. When the scene changes it plans anew from where the
-/// robots say they are. The same mission and seed give the same first plan, so after a restart in
-/// an unchanged scene it publishes the same flow under a higher epoch and the swarm goes on where
-/// it was; in a changed one it plans anew.
+/// the mission's commands for its clock t0. When the scene changes it plans anew from the positions
+/// that the robots report. The same mission and seed give the same first plan, so after a restart
+/// in an unchanged scene it publishes the same flow under a higher epoch and the swarm goes on
+/// where it was; in a changed one it plans anew.
 class PlannerProcess {
  public:
-  /// Plans first, joins the bus second: a mission that cannot be planned ends here, saying why.
+  /// Plans first, joins the bus second: a mission that cannot be planned ends here, with the reason
+  /// as error.
   static Result<std::unique_ptr<PlannerProcess>> make(const ProcessOptions& options,
                                                       const PlanningRegistry& registry);
   ~PlannerProcess();

@@ -52,6 +52,7 @@ Result<std::optional<ExitCode>> read_options(int argc, char** argv,
 
 }  // namespace
 
+// Signals are caught before the process is made, so that a stop during the first plan is not lost.
 int run_planner(int argc, char** argv, const PlanningRegistry& registry) {
   return shell::run_main("planner_service", [&]() -> Result<ExitCode> {
     ProcessOptions options;

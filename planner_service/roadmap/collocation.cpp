@@ -8,6 +8,7 @@
 
 namespace swarm::planner {
 
+// The bounds of the count are checked in double: a tiny spacing would overflow an integer.
 Result<std::vector<Gaussian>> collocation_set(const Box& bounds_m,
                                               const CollocationOptions& options) {
   const bool valid = options.spacing_m > 0.0 && options.sigma_m >= Gaussian::kMinSigma_m &&
@@ -19,7 +20,8 @@ Result<std::vector<Gaussian>> collocation_set(const Box& bounds_m,
                             Gaussian::kMaxSigma_m));
   }
   const Vec2 size_m = bounds_m.max_m - bounds_m.min_m;
-  // A mean on the border itself is half a spacing too far.
+  // Whole cells of the grid; the first mean is half a spacing from the border. The summand absorbs
+  // the rounding of a quotient that is a whole number.
   const double columns = std::floor(size_m.x() / options.spacing_m + 1e-9);
   const double rows = std::floor(size_m.y() / options.spacing_m + 1e-9);
   if (!(columns * rows >= 1.0 && columns * rows <= static_cast<double>(kMaxCollocation))) {

@@ -17,7 +17,7 @@ struct CollocationOptions {
   double sigma_m = 7.0710678118654755;  ///< Σ_c = σ² I; the paper's 50 m²
 };
 
-/// More than this and a step is no longer planned within a control period's order of time.
+/// With more components the FTMPC no longer plans a step in about a control period.
 inline constexpr std::size_t kMaxCollocation = 4096;
 
 /// N(μ, σ²I) with means half a spacing and whole spacings from the lower left corner of the bounds,

@@ -7,6 +7,7 @@
 
 namespace swarm::planner {
 
+// Compressed rows by counting sort: degrees, their prefix sums, then each edge at both of its ends.
 Roadmap assemble(std::vector<Gaussian> nodes, std::span<const NeighbourPair> edges) {
   Roadmap roadmap;
   roadmap.arc_offset.assign(nodes.size() + 1, 0);
@@ -27,6 +28,8 @@ Roadmap assemble(std::vector<Gaussian> nodes, std::span<const NeighbourPair> edg
   return roadmap;
 }
 
+// Edge ends are shared by all edges of a node, so that the distances to obstacles are computed
+// once.
 Roadmap connect(std::vector<Gaussian> nodes, double radius_m, EdgeChecker& checker,
                 std::size_t terminals) {
   std::vector<NeighbourPair> edges = find_neighbours(nodes, radius_m, terminals);

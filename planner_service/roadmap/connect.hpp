@@ -18,7 +18,7 @@ namespace swarm::planner {
 /// much.
 inline constexpr double kBuildTolerance_m = 0.1;
 
-/// What a plan promises: CVaR ≤ δ + this on every leg.
+/// A plan guarantees CVaR ≤ δ + this on every leg.
 inline constexpr double kPlanTolerance_m = 1e-3;
 
 /// The roadmap of these edges, each given once; a node's arcs are in the order of the edges, their

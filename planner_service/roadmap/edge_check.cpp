@@ -12,6 +12,7 @@ namespace swarm::planner {
 EdgeChecker::EdgeChecker(const World& world, const RiskLimit& risk)
     : world_(&world), k_(cvar_coefficient(risk.alpha)), delta_m_(risk.delta_m) {}
 
+// Coefficients of the polynomials of Σ(t) for its three distinct entries.
 EdgeChecker::Sweep::Sweep(const Gaussian& a, const Gaussian& b)
     : from_m(a.mean_m()), step_m(b.mean_m() - a.mean_m()) {
   const Mat2 pulled = transport_map(a, b) * a.covariance_m2();
@@ -20,6 +21,7 @@ EdgeChecker::Sweep::Sweep(const Gaussian& a, const Gaussian& b)
   yy = {a.covariance_m2()(1, 1), 2.0 * pulled(1, 1), b.covariance_m2()(1, 1)};
 }
 
+// Slack δ − CVaR at t against one obstacle: CVaR of the distance linearised at the mean.
 EdgeChecker::Sample EdgeChecker::sample(const ConvexObstacle& obstacle, const Sweep& sweep,
                                         double t) const {
   const std::array weights{(1.0 - t) * (1.0 - t), t * (1.0 - t), t * t};
@@ -34,6 +36,8 @@ EdgeChecker::Sample EdgeChecker::sample(const ConvexObstacle& obstacle, const Sw
   return {t, delta_m_ - cvar_m, to_obstacle.distance_m, face};
 }
 
+// The slack of an end at an obstacle, from the cache of the end. The edges of a node meet the same
+// few obstacles.
 const EdgeEnd::Seen& EdgeChecker::look(EdgeEnd& end, std::uint32_t obstacle) const {
   const std::size_t place = obstacle % EdgeEnd::kSeen;
   EdgeEnd::Seen& seen = end.seen_[place];
@@ -59,6 +63,8 @@ EdgeChecker::Rates::Rates(const EdgeEnd& a, const EdgeEnd& b, double k, double d
   distance_min_m = k * sigma_min_m - delta_m;
 }
 
+// The condition a + b + 2 · tolerance ≥ L h of the class comment. The distance in the turning term
+// is bounded below by what both ends allow, and by the limit itself.
 bool EdgeChecker::is_proven(const Interval& interval, const Rates& rates, double tolerance_m) {
   const auto& [obstacle, from, to] = interval;
   const double share = to.t - from.t;
@@ -68,6 +74,8 @@ bool EdgeChecker::is_proven(const Interval& interval, const Rates& rates, double
   return from.slack_m + to.slack_m + 2.0 * tolerance_m >= rate_m * share;
 }
 
+// First the ends against every obstacle within reach, which refutes most edges. Obstacles with one
+// face towards both ends are done; for the others intervals are halved until proven or refuted.
 bool EdgeChecker::is_free(EdgeEnd& a, EdgeEnd& b, double tolerance_m) {
   const Vec2& from_m = a.mean_m();
   const Vec2& to_m = b.mean_m();
@@ -86,8 +94,8 @@ bool EdgeChecker::is_free(EdgeEnd& a, EdgeEnd& b, double tolerance_m) {
       });
   if (breaks_at_an_end) return false;
   if (open_.empty()) return true;
-  // First in, first out: the whole edge is looked at coarsely before any part of it finely, and
-  // most edges that are not free fall at once.
+  // First in, first out: the whole edge is tested coarsely before any part of it finely, which
+  // refutes most edges that are not free after few samples.
   const Rates rates(a, b, k_, delta_m_);
   std::optional<Sweep> sweep;
   for (std::size_t i = 0; i < open_.size(); ++i) {

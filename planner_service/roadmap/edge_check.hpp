@@ -13,8 +13,8 @@
 
 namespace swarm::planner {
 
-/// An end of edges, with what every one of them asks of it again. What is learned about the
-/// obstacles around it holds for one world and one risk limit.
+/// An end of edges, with values that every edge of it needs. The distances to obstacles cached here
+/// hold for one world and one risk limit.
 class EdgeEnd {
  public:
   explicit EdgeEnd(const Gaussian& g)
@@ -31,6 +31,7 @@ class EdgeEnd {
   friend class EdgeChecker;
   static constexpr std::uint32_t kNothing = ~0U;
   static constexpr std::size_t kSeen = 8;
+  // Slack, distance and facing edge of one obstacle, as seen from the mean.
   struct Seen {
     double slack_m;
     double distance_m;
@@ -40,7 +41,8 @@ class EdgeEnd {
   Gaussian gaussian_;
   double sigma_min_m_;
   double sigma_max_m_;
-  // By the last bits of an obstacle's index; what nothing was seen of is not set.
+  // A direct-mapped cache by the last bits of an obstacle's index. Entries of seen_ without an
+  // obstacle are not set.
   std::array<std::uint32_t, kSeen> seen_obstacle_;
   std::array<Seen, kSeen> seen_;
 };
@@ -54,7 +56,7 @@ class EdgeEnd {
 ///
 ///   L = |Δμ| + k √(W₂² − |Δμ|²) + k (σ_max − σ_min) |Δμ| / s
 ///
-/// (way of the mean, change of shape, turn of the normal at distance s from a corner), so slacks a
+/// (path of the mean, change of shape, turn of the normal at distance s from a corner), so slacks a
 /// and b at the ends of an interval of length h prove that CVaR ≤ δ + tolerance on it when a + b +
 /// 2 · tolerance ≥ L h.
 ///
@@ -77,20 +79,22 @@ class EdgeChecker {
     return is_free(from, to, tolerance_m);
   }
 
-  /// How far an obstacle may be from the box of the means' way, or from one mean, and still come
-  /// into play, when σ_max is the widest of the ends [m].
+  /// Distance from the box of the means' path, or from one mean, up to which an obstacle can
+  /// matter, when σ_max is the widest of the ends [m].
   double reach_m(double sigma_max_m) const { return k_ * sigma_max_m - delta_m_; }
 
   /// Takes another world from now on; keeps a reference to it.
   void set_world(const World& world) { world_ = &world; }
 
  private:
+  // The slack δ − CVaR against one obstacle at one point of the edge.
   struct Sample {
     double t = 0.0;
     double slack_m = 0.0;
     double distance_m = 0.0;
     int face = ConvexObstacle::kNoFace;
   };
+  // A part of the edge that is not proven yet against one obstacle.
   struct Interval {
     const ConvexObstacle* obstacle = nullptr;
     Sample from, to;

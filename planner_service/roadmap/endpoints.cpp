@@ -10,6 +10,8 @@
 namespace swarm::planner {
 namespace {
 
+// What would make the component keep the limit at its nearest obstacle: CVaR = −s + k σ ≤ δ gives
+// the largest σ.
 std::string advice(const Gaussian& g, const SignedDistance& at_mean, const RiskLimit& risk,
                    double k) {
   const double room_m = at_mean.distance_m + risk.delta_m;
@@ -52,6 +54,7 @@ std::string describe_violations(const Mixture& mixture, std::string_view which, 
   return lines;
 }
 
+// Reports the violations of both ends in one error.
 Result<void> check_endpoints(const World& world, const Mixture& start, const Mixture& goal,
                              const RiskLimit& risk) {
   std::string violations = describe_violations(start, "start", world, risk);

@@ -14,9 +14,10 @@
 namespace swarm::planner {
 namespace {
 
+// Marks a sample that was removed, or a terminal that was not there before.
 constexpr std::uint32_t kLost = std::numeric_limits<std::uint32_t>::max();
-// Points that are at least this many mean spacings apart, drawn until no more fit, are as dense as
-// the spacing says: random sequential packing of discs covers 0.547 of the plane.
+// Random points at least kSpacing · d apart, drawn until no more fit, have the density 1/d²: random
+// sequential packing of discs covers 0.547 of the plane, and √(0.547 · 4/π) = 0.83.
 constexpr double kSpacing = 0.83;
 // Tries for each point that fits: enough to fill nine tenths of the gaps.
 constexpr double kLiveTriesPerSample = 6.0;
@@ -40,6 +41,8 @@ Box path_box(const Gaussian& a, const Gaussian& b) {
   return {a.mean_m().cwiseMin(b.mean_m()), a.mean_m().cwiseMax(b.mean_m())};
 }
 
+// Free area by counting the free centres of a grid: the density of samples is a rough number
+// anyway.
 double free_area_m2(const World& world, double clearance_m) {
   const Vec2 step = (world.bounds_m().max_m - world.bounds_m().min_m) / kAreaGrid;
   int free = 0;
@@ -58,6 +61,8 @@ bool same(const Gaussian& a, const Gaussian& b) {
 
 }  // namespace
 
+// Samples, then checks all pairs within the radius. Blocked pairs are kept as candidates: they
+// become free when an obstacle goes.
 LiveRoadmap::LiveRoadmap(World world, std::vector<Gaussian> terminals,
                          const LiveRoadmapOptions& options, Rng& rng)
     : options_(options),
@@ -78,6 +83,8 @@ LiveRoadmap::LiveRoadmap(World world, std::vector<Gaussian> terminals,
   connect_terminals(std::move(terminals));
 }
 
+// The order matters: samples are removed before their pairs are checked, and new samples are drawn
+// last, so that their pairs are checked against the present world once.
 void LiveRoadmap::update(World world, std::vector<Gaussian> terminals, Rng& rng) {
   work_ = {};
   WorldChange change = world_change(*world_, world);
@@ -100,7 +107,7 @@ bool LiveRoadmap::check(const Gaussian& a, const Gaussian& b) {
   return checker_.is_free(a, b, kBuildTolerance_m);
 }
 
-// A free edge can only be lost to what is new, a blocked one only be freed by what is gone.
+// A free edge can be blocked by a new obstacle only, a blocked one freed by a removed one only.
 bool LiveRoadmap::needs_check(const Gaussian& a, const Gaussian& b, double sigma_max_m,
                               bool free) const {
   const BoxIndex& changed = free ? added_ : removed_;
@@ -108,6 +115,8 @@ bool LiveRoadmap::needs_check(const Gaussian& a, const Gaussian& b, double sigma
                             [](std::uint32_t) { return true; });
 }
 
+// Removes samples that violate the risk limit beside a new obstacle, closes the gaps in their
+// numbers and renumbers the pairs. The order of the samples stays.
 void LiveRoadmap::lose_samples() {
   std::vector<std::uint32_t> renamed(samples_.size());
   std::uint32_t kept = 0;
@@ -146,8 +155,8 @@ void LiveRoadmap::lose_samples() {
 }
 
 void LiveRoadmap::recheck_pairs() {
-  // A way that a change can touch has both its ends within the radius of there: most are ruled out
-  // by their first.
+  // An edge that a change can affect has both its ends within the connection radius (plus the reach
+  // of the risk) of the change: most edges are ruled out by their first end.
   double widest_m = 0.0;
   for (const double sigma_max_m : sigma_max_m_) widest_m = std::max(widest_m, sigma_max_m);
   const double reach_m = options_.connection_radius_m + checker_.reach_m(widest_m);
@@ -166,8 +175,9 @@ void LiveRoadmap::recheck_pairs() {
   }
 }
 
-// Fills what is gone to the density of the beginning; what was lost to something new comes back
-// around it, where the ways are narrow now, as long as the roadmap is not larger than it was.
+// Fills the space of removed obstacles to the density of the beginning. Samples lost to new
+// obstacles are drawn again around these, where passages are narrow now, while the roadmap is not
+// larger than it was before.
 void LiveRoadmap::draw_samples(std::size_t before, Rng& rng) {
   const std::size_t first = samples_.size();
   const double spacing_m = kSpacing / std::sqrt(density_per_m2_);
@@ -193,6 +203,8 @@ void LiveRoadmap::draw_samples(std::size_t before, Rng& rng) {
   join_samples_from(first);
 }
 
+// Draws samples in a box by rejection until `most` are found or the tries are used up. With a
+// spacing, positions nearer than that to another sample are rejected (random sequential packing).
 void LiveRoadmap::draw_in(const Box& box, double spacing_m, std::size_t most, std::size_t tries,
                           Rng& rng) {
   if (area_m2(box) <= 0.0) return;
@@ -215,6 +227,8 @@ void LiveRoadmap::draw_in(const Box& box, double spacing_m, std::size_t most, st
   }
 }
 
+// Pairs of the new samples with all before them. Few are new, so that no search tree is built; the
+// distance of means is a lower bound of W₂ and comes first.
 void LiveRoadmap::join_samples_from(std::size_t first) {
   const double radius_m = options_.connection_radius_m;
   for (auto b = static_cast<std::uint32_t>(first); b < samples_.size(); ++b) {
@@ -228,12 +242,14 @@ void LiveRoadmap::join_samples_from(std::size_t first) {
   }
 }
 
+// Connects the terminals, keeping verdicts of terminals that were there before. Ends of a swarm in
+// flight change with every plan, those of goals seldom.
 void LiveRoadmap::connect_terminals(std::vector<Gaussian> terminals) {
   std::vector<Gaussian> nodes = terminals;
   nodes.insert(nodes.end(), samples_.begin(), samples_.end());
   const auto count = static_cast<std::uint32_t>(terminals.size());
   const auto old_count = static_cast<std::uint32_t>(terminals_.size());
-  // Which old terminal a new one is, so that its verdicts are kept.
+  // The old terminal that equals each new one, if any: its verdicts are kept.
   std::vector<std::uint32_t> old_of(count, kLost);
   for (std::uint32_t t = 0; t < count; ++t) {
     const auto found = std::find_if(terminals_.begin(), terminals_.end(),
@@ -253,7 +269,8 @@ void LiveRoadmap::connect_terminals(std::vector<Gaussian> terminals) {
     }
     for (const NeighbourPair& pair :
          terminal_neighbours(nodes, t, count, options_.connection_radius_m)) {
-      // An old terminal that comes before this one now had the pair the other way round.
+      // Number of b in the old pairs of this terminal. A pair of terminals is stored with the first
+      // of them: it is found only if their order is as before.
       const std::uint32_t old_b =
           pair.b >= count ? pair.b - count + old_count
           : old_of[t] != kLost && old_of[pair.b] != kLost && old_of[pair.b] > old_of[t]
@@ -271,6 +288,7 @@ void LiveRoadmap::connect_terminals(std::vector<Gaussian> terminals) {
   terminal_pairs_ = std::move(next);
 }
 
+// Assembles the free candidates; numbers of samples are shifted behind the terminals.
 Roadmap LiveRoadmap::roadmap() const {
   std::vector<Gaussian> nodes = terminals_;
   nodes.insert(nodes.end(), samples_.begin(), samples_.end());

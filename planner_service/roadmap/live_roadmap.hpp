@@ -19,6 +19,7 @@
 
 namespace swarm::planner {
 
+/// Parameters of a roadmap that is kept; those of SwarmPRM.
 struct LiveRoadmapOptions {
   std::size_t samples = 500;          ///< n of Alg. 1
   double connection_radius_m = 20.0;  ///< r of Alg. 1, in W₂
@@ -29,29 +30,29 @@ struct LiveRoadmapOptions {
 /// A roadmap that is kept while the world changes, and repaired where it does.
 ///
 /// Its edges are always those that connect() would find for its nodes in its world: an edge's
-/// verdict is the sum of the verdicts of the obstacles within reach, so that only free edges near a
-/// new obstacle and blocked ones near a gone one are looked at again, and edges of nodes that are
-/// new. Everything else costs a comparison of boxes.
+/// verdict is free when every obstacle within reach leaves it free, so that only three kinds are
+/// checked again: free edges near a new obstacle, blocked ones near a removed one, and edges of new
+/// nodes. All others cost a comparison of boxes.
 ///
-/// Samples that a new obstacle catches are drawn again around it, and the place a gone one leaves
-/// is filled to the density the roadmap began with. The same calls and generator state give the
-/// same roadmap.
+/// Samples that a new obstacle invalidates are drawn again around it, and the space that a removed
+/// one leaves is filled to the density the roadmap began with. The same calls and generator state
+/// give the same roadmap.
 class LiveRoadmap {
  public:
   /// `terminals` are the start components, then the goal components: the first nodes of the
-  /// roadmap, as they are given. Whether they keep the risk limit is the caller's question.
+  /// roadmap, unchanged. The caller checks whether they keep the risk limit.
   LiveRoadmap(World world, std::vector<Gaussian> terminals, const LiveRoadmapOptions& options,
               Rng& rng);
 
-  /// Takes the world and the terminals as they are now. Finds by itself what has changed.
+  /// Takes the present world and terminals. Finds the changes by comparing them with the last ones.
   void update(World world, std::vector<Gaussian> terminals, Rng& rng);
 
   const World& world() const { return *world_; }
 
-  /// What a search needs: its own copy, where it may close edges. Linear in the edges.
+  /// The roadmap as a copy, so that a search may close edges in it. Linear in the edges.
   Roadmap roadmap() const;
 
-  /// What the last call cost, the constructor included.
+  /// Work of the last call, the constructor included.
   struct Work {
     std::size_t edges_checked = 0;
     std::size_t samples_lost = 0;

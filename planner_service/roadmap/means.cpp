@@ -33,12 +33,14 @@ HaltonMeans::HaltonMeans(const Box& bounds_m, Rng& rng) : bounds_m_(bounds_m) {
   shift_.y() = uniform01(rng);
 }
 
+// The sequence begins at index 1: index 0 would be the shift itself.
 Vec2 HaltonMeans::next() {
   ++index_;
   return in_box(bounds_m_, fraction(radical_inverse(index_, 2) + shift_.x()),
                 fraction(radical_inverse(index_, 3) + shift_.y()));
 }
 
+// All random numbers are drawn before any test, so that the draws do not depend on the world.
 std::optional<Vec2> near_obstacle_mean(const World& world, double spread_m, double clearance_m,
                                        Rng& rng) {
   const Vec2 first = uniform_mean(world.bounds_m(), rng);

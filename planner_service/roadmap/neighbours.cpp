@@ -14,7 +14,7 @@
 namespace swarm::planner {
 namespace {
 
-// What nanoflann asks of a point cloud; the names are its own.
+// The interface that nanoflann requires of a point cloud; the names are its own.
 struct MeanCloud {
   std::span<const Gaussian> nodes;
   std::size_t kdtree_get_point_count() const { return nodes.size(); }
@@ -31,9 +31,11 @@ using MeanTree =
     nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, MeanCloud>, MeanCloud,
                                         2, std::uint32_t>;
 
-// The relative hair lets W₂ = r count, whatever rounding does to the distance of the means.
+// Slightly more than the squared radius, so that rounding does not exclude a pair with W₂ = r.
 double widened_squared(double reach_m) { return reach_m * reach_m * (1.0 + 1e-12); }
 
+// Radius of a terminal: at least the connection radius and twice the W₂ distance to its nearest
+// sample.
 double terminal_radius_m(std::span<const Gaussian> nodes, const Gaussian& terminal,
                          std::size_t terminals, double radius_m) {
   double nearest_m2 = std::numeric_limits<double>::infinity();
@@ -77,7 +79,7 @@ std::vector<NeighbourPair> find_neighbours(std::span<const Gaussian> nodes, doub
   std::vector<std::pair<std::uint32_t, double>> found;
   for (std::uint32_t a = first; a < nodes.size(); ++a) {
     found.clear();
-    // The tree's ball is open; the exact test below decides.
+    // The tree returns a superset by the distance of means; the test of W₂ decides.
     tree.radiusSearch(nodes[a].mean_m().data(), widened_squared(radius_m), found, any_order);
     const auto begin = static_cast<std::ptrdiff_t>(pairs.size());
     for (const auto& [index, squared] : found) {

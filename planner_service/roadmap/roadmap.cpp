@@ -7,6 +7,7 @@
 
 namespace swarm::planner {
 
+// An infinite length instead of removal: node and arc numbers stay valid in a running search.
 void Roadmap::close_edge(std::uint32_t a, std::uint32_t b) {
   for (const auto& [node, other] : {std::pair{a, b}, std::pair{b, a}}) {
     for (std::uint32_t i = arc_offset[node]; i < arc_offset[node + 1]; ++i) {

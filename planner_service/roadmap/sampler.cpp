@@ -13,10 +13,13 @@
 namespace swarm::planner {
 namespace {
 
+// Tries without success after which the free space counts as full.
 constexpr std::size_t kTriesPerSample = 2000;
-// Where obstacles are small, few pairs straddle a border: then a plain mean takes the place.
+// Where obstacles are small, few pairs straddle a border: after this many tries a plain mean is
+// drawn instead.
 constexpr std::size_t kBridgeTries = 1000;
 
+// Uniform parameters [σ₁, σ₂, ρ] of a sample (eq. 8).
 Gaussian with_random_shape(const Vec2& mean_m, const SamplerOptions& options, Rng& rng) {
   const double sigma1_m = uniform(rng, options.sigma_min_m, options.sigma_max_m);
   const double sigma2_m = uniform(rng, options.sigma_min_m, options.sigma_max_m);
@@ -24,6 +27,7 @@ Gaussian with_random_shape(const Vec2& mean_m, const SamplerOptions& options, Rn
                                    uniform(rng, -options.rho_max, options.rho_max));
 }
 
+// A random shape at a mean: squeezed into free space (kFit), or kept only if it is free as drawn.
 std::optional<Gaussian> shaped_at(const Vec2& mean_m, const World& world, double k, double delta_m,
                                   const SamplerOptions& options, Rng& rng) {
   const Gaussian desired = with_random_shape(mean_m, options, rng);
@@ -34,7 +38,8 @@ std::optional<Gaussian> shaped_at(const Vec2& mean_m, const World& world, double
   return desired;
 }
 
-// Bits of the cell numbers interleaved: cells near each other come near each other.
+// Morton order: the bits of column and row interleaved, so that cells near each other get near
+// numbers.
 std::uint32_t z_order(std::uint32_t column, std::uint32_t row, std::uint32_t bits) {
   std::uint32_t z = 0;
   for (std::uint32_t bit = 0; bit < bits; ++bit) {
@@ -43,8 +48,8 @@ std::uint32_t z_order(std::uint32_t column, std::uint32_t row, std::uint32_t bit
   return z;
 }
 
-// Neighbours in space become neighbours in memory, for what looks at pairs of them. Stable, by
-// counting.
+// Sorts samples by Morton order: neighbours in space become neighbours in memory, which speeds up
+// the passes over pairs. Counting sort, stable.
 std::vector<Gaussian> by_position(const std::vector<Gaussian>& samples, const Box& bounds_m) {
   std::uint32_t bits = 0;
   while (bits < 12 && (4ULL << (2 * bits)) <= samples.size()) ++bits;
@@ -75,7 +80,8 @@ std::optional<Gaussian> sample_at(const Vec2& mean_m, const World& world, const 
 std::vector<Gaussian> sample_free(const World& world, const RiskLimit& risk,
                                   const SamplerOptions& options, std::size_t count, Rng& rng) {
   const double k = cvar_coefficient(risk.alpha);
-  // The narrowest Gaussian that may be sampled needs this much room, so a mean nearer is no use.
+  // The narrowest Gaussian that may be sampled needs this much room, so that nearer means are
+  // rejected at once.
   const double clearance_m = k * options.sigma_min_m - risk.delta_m;
   HaltonMeans halton(world.bounds_m(), rng);
   std::vector<Gaussian> samples;

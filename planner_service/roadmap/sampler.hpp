@@ -21,6 +21,7 @@ enum class SamplerKind {
   kFit,      ///< Halton means; it is squeezed along the obstacle's normal instead
 };
 
+/// Distribution of the samples.
 struct SamplerOptions {
   SamplerKind kind = SamplerKind::kFit;
   double sigma_min_m = 1.0;  ///< range of σ₁ and σ₂
@@ -33,14 +34,14 @@ struct SamplerOptions {
 /// A squeezed Gaussian may be this much narrower than σ_min before it counts as too narrow.
 inline constexpr double kSqueezeBelowMin = 0.8;
 
-/// One try of SAMPLEFREE at a given place: a Gaussian of random shape that keeps the risk limit
+/// One try of SAMPLEFREE at a given mean: a Gaussian of random shape that keeps the risk limit
 /// (12), squeezed if need be when the kind is kFit.
 std::optional<Gaussian> sample_at(const Vec2& mean_m, const World& world, const RiskLimit& risk,
                                   const SamplerOptions& options, Rng& rng);
 
 /// SAMPLEFREE of SwarmPRM, Alg. 1: Gaussians [x, y, σ₁, σ₂, ρ] (eq. 8) that keep the risk limit
 /// (12). Returns fewer than `count` when free space is so scarce that 2000 tries a sample do not
-/// find it. Ordered by place, not by when they were drawn.
+/// find it. Ordered by position, not by when they were drawn.
 std::vector<Gaussian> sample_free(const World& world, const RiskLimit& risk,
                                   const SamplerOptions& options, std::size_t count, Rng& rng);
 

@@ -10,14 +10,18 @@ namespace swarm::planner {
 namespace {
 
 // Squeezing towards one obstacle may widen the Gaussian a little towards another; in a corner of
-// two walls three rounds settle it, more means a place too tight to be worth a sample.
+// two walls three rounds converge; a position that needs more is too tight to be worth a sample.
 constexpr int kRounds = 8;
+// Pushes from one obstacle may lead towards another; a mean between two is not pushed for ever.
 constexpr int kPushes = 3;
-// Aims a hair below the limit, so that rounding does not leave it a hair above.
+// Aims slightly below the limit, so that rounding does not leave the CVaR above it.
 constexpr double kShrink = 1.0 - 1e-9;
 
 }  // namespace
 
+// Per round: the obstacle with the largest CVaR, then the scaling of the deviation along its normal
+// that brings this CVaR to δ. The covariance is scaled on both sides, so that it stays symmetric
+// and positive definite.
 std::optional<Gaussian> squeeze_into_free(const Gaussian& g, const World& world, double k,
                                           double delta_m, double sigma_min_m) {
   const Vec2 mean_m = g.mean_m();
@@ -51,6 +55,7 @@ std::optional<Gaussian> squeeze_into_free(const Gaussian& g, const World& world,
   return std::nullopt;
 }
 
+// Each push moves the mean along the gradient of the distance to the nearest obstacle.
 Gaussian push_out(const Gaussian& g, const World& world, double room_m) {
   Vec2 mean_m = g.mean_m();
   for (int push = 0; push < kPushes; ++push) {

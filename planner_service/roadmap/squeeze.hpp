@@ -9,7 +9,7 @@
 
 namespace swarm::planner {
 
-/// Makes a Gaussian keep CVaR ≤ δ at its place by narrowing it towards the obstacles only:
+/// Makes a Gaussian keep CVaR ≤ δ at its mean by narrowing it towards the obstacles only:
 ///
 ///   Σ' = AΣA,  A = I − (1−q)nnᵀ,  q = (s(μ) + δ) / (k σₙ)
 ///
@@ -18,8 +18,8 @@ namespace swarm::planner {
 std::optional<Gaussian> squeeze_into_free(const Gaussian& g, const World& world, double k,
                                           double delta_m, double sigma_min_m);
 
-/// Moves the mean away from the nearest obstacles until it is `room_m` from them; in a place that
-/// is tighter than that, as far as a few pushes take it.
+/// Moves the mean away from the nearest obstacles until it is `room_m` from them; where there is
+/// less room, as far as a few pushes take it.
 Gaussian push_out(const Gaussian& g, const World& world, double room_m);
 
 }  // namespace swarm::planner

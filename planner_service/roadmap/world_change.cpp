@@ -33,6 +33,8 @@ bool same_shape(const ConvexObstacle& a, const ConvexObstacle& b) {
   return !shape_less(a, b) && !shape_less(b, a);
 }
 
+// Cuts off equal parts at both ends of the lists. A scene usually changes in one obstacle, so that
+// little is left to sort.
 void drop_common_ends(Parts& before, Parts& after) {
   while (!before.empty() && !after.empty() && same_shape(before.front(), after.front())) {
     before = before.subspan(1);
@@ -54,6 +56,7 @@ std::vector<const ConvexObstacle*> sorted(Parts parts) {
 
 }  // namespace
 
+// Merges the two sorted lists: a shape in one of them alone was added or removed.
 WorldChange world_change(const World& before, const World& after) {
   Parts old_parts = before.convex_obstacles();
   Parts new_parts = after.convex_obstacles();

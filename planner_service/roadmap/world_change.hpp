@@ -16,7 +16,7 @@ struct WorldChange {
   bool empty() const { return added.empty() && removed.empty(); }
 };
 
-/// Compares by shape and place, whatever the order and the numbers of the obstacles: O(n), and
+/// Compares by shape and position, independent of the order and numbers of the obstacles: O(n), and
 /// O(m log m) in those between the first and the last difference.
 WorldChange world_change(const World& before, const World& after);
 

@@ -15,7 +15,9 @@
 namespace swarm::planner {
 namespace {
 
+// Limits the memory of the grid to 10 MB.
 constexpr double kMaxCells = 1e7;
+// Cells farther than this are left out of the inner product: their share is below 1e-5.
 constexpr double kReachSigmas = 5.0;
 
 Result<void> check(const AdocOptions& options) {
@@ -47,6 +49,7 @@ Roadmap penalised_roadmap(std::vector<Gaussian> nodes, std::size_t terminals, co
 
 }  // namespace
 
+// Marks a cell as taken when its centre is in an obstacle.
 Result<ObstacleGrid> ObstacleGrid::make(const World& world, double cell_m) {
   const Vec2 size_m = world.bounds_m().max_m - world.bounds_m().min_m;
   const double columns = std::ceil(size_m.x() / cell_m);
@@ -71,6 +74,7 @@ Result<ObstacleGrid> ObstacleGrid::make(const World& world, double cell_m) {
   return grid;
 }
 
+// Midpoint rule over the taken cells in the box of 5 σ around the mean, clamped to the grid.
 double ObstacleGrid::inner_product(const Gaussian& g) const {
   const Mat2& covariance = g.covariance_m2();
   const auto range = [&](Eigen::Index axis, std::int64_t cells) {
@@ -93,6 +97,8 @@ double ObstacleGrid::inner_product(const Gaussian& g) const {
   return sum * cell_m_ * cell_m_;
 }
 
+// The same transport problem as SwarmPRM, but over penalised arc costs instead of arcs that are
+// proven.
 Result<std::vector<Route>> adoc_routes(const World& world, const Mixture& start,
                                        const Mixture& goal, const AdocOptions& options) {
   if (auto checked = check(options); !checked) return tl::unexpected(checked.error());

@@ -12,7 +12,7 @@ namespace swarm::planner {
 
 namespace {
 
-/// What a mission may set of adoc.
+/// Options of adoc in a mission.
 struct AdocKeys : CollocationKeys {
   double penalty = 20.0;
 };
@@ -48,6 +48,7 @@ Result<std::unique_ptr<PlanningMethod>> AdocMethod::make(const MethodContext& co
       leg_speed(spec.speed_mps, context.limits));
 }
 
+// Routes follow the collocation set; they are neither smoothed nor tested against the risk limit.
 Result<PlanResult> AdocMethod::plan(const PlanRequest& request, const PlanContext& context) {
   StageTimer stage(context.clock);
   const auto routes = adoc_routes(request.world, request.start, request.goal, options_);

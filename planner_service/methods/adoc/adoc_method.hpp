@@ -9,7 +9,7 @@
 
 namespace swarm::planner {
 
-/// The options of ADOC that a mission asks for.
+/// The options of ADOC in a mission.
 AdocOptions adoc_options(const Mission& mission);
 
 /// ADOC as a planning method. It promises nothing about risk and keeps nothing.
@@ -21,7 +21,7 @@ class AdocMethod final : public PlanningMethod {
 
   Result<PlanResult> plan(const PlanRequest& request, const PlanContext& context) override;
   const RiskLimit& risk() const override { return risk_; }
-  /// Of the groups that a plan in flight starts from; ADOC itself does not use it.
+  /// Used for the groups that a plan in flight starts from; ADOC itself does not use it.
   void set_risk(const RiskLimit& risk) override { risk_ = risk; }
   PlanningTraits traits() const override { return {.speed_mps = speed_.means_mps}; }
 

@@ -19,15 +19,21 @@
 namespace swarm::planner {
 namespace {
 
+// Points drawn per wanted sample before the free space counts as full.
 constexpr std::size_t kGuideTriesPerSample = 200;
+// Limit of the factor that repeated congestion may put on an edge: costs stay finite, and an edge
+// is never closed.
 constexpr double kCostliest = 1e6;
-// Leaves an obstacle at exactly its clearance on the right side of rounding.
+// An obstacle at exactly the clearance of an end must not count as nearer because of rounding.
 constexpr double kJustBelow = 1.0 - 1e-9;
 
+// A Gaussian with the same σ in all directions: the guide plans for points with a circle around
+// them.
 Gaussian round_at(const Vec2& mean_m, double sigma_m) {
   return Gaussian::from_parameters(mean_m, sigma_m, sigma_m, 0.0);
 }
 
+// Distance from p to the nearest point of a segment, which may be a single point.
 double distance_to_segment_m(const Vec2& p, const Vec2& from_m, const Vec2& to_m) {
   const Vec2 segment = to_m - from_m;
   const double squared = segment.squaredNorm();
@@ -51,10 +57,12 @@ std::size_t leg_at(const std::vector<std::uint32_t>& path, const std::vector<Vec
 
 }  // namespace
 
+// Each obstacle counts once, by its nearest convex part: how it is decomposed must not change its
+// weight. Boxes rule out parts that cannot be nearer.
 double clearance_weight(const World& world, const Vec2& point_m, double power) {
   const std::vector<ConvexObstacle>& parts = world.convex_obstacles();
   if (parts.empty()) return 1.0;
-  // The parts of an obstacle stand one after the other.
+  // The convex parts of one obstacle are adjacent in the list.
   double sum_m = 0.0;
   for (std::size_t i = 0; i < parts.size();) {
     const std::size_t obstacle = parts[i].obstacle;
@@ -83,6 +91,8 @@ CropsGuide::CropsGuide(const World& world, const RiskLimit& risk, const CropsOpt
   SWARM_ASSERT(options.goal_radius_m >= 2.0 * options.sigma_min_m && options.stuck_factor >= 1.0);
 }
 
+// Alternates sampling and searching: the first round draws N samples, each further one N/2 + 1,
+// until every pair of components is joined. Halton points of all rounds continue one sequence.
 Result<CropsGuide> CropsGuide::make(const World& world, const Mixture& start, const Mixture& goal,
                                     const RiskLimit& risk, const CropsOptions& options, Rng& rng) {
   CropsGuide guide(world, risk, options);
@@ -97,6 +107,8 @@ Result<CropsGuide> CropsGuide::make(const World& world, const Mixture& start, co
                               [](double cost) { return std::isfinite(cost); })) {
       return guide;
     }
+    // Out of space or rounds: a solution of the transport that avoids the unjoined pairs is
+    // accepted.
     if (full || round == options.rounds_max) {
       if (solved) return guide;
       break;
@@ -106,6 +118,7 @@ Result<CropsGuide> CropsGuide::make(const World& world, const Mixture& start, co
   return tl::unexpected(guide.no_path());
 }
 
+// Replaces the points of start and goal in front of the samples, which keep their order.
 Result<void> CropsGuide::set_ends(const Mixture& start, const Mixture& goal) {
   if (auto ok = check_endpoints(*world_, start, goal, risk_); !ok) return ok;
   std::vector<Vec2> ends_m;
@@ -126,6 +139,8 @@ Result<void> CropsGuide::set_ends(const Mixture& start, const Mixture& goal) {
   return {};
 }
 
+// connect() computes all costs anew. The congestion factors of edges between samples are taken off
+// the old graph first, by sample number, since node numbers shift with the number of ends.
 Result<void> CropsGuide::move_ends(const Mixture& start, const Mixture& goal) {
   struct Reweighted {
     std::uint32_t from, to;  // samples
@@ -155,7 +170,8 @@ Result<void> CropsGuide::move_ends(const Mixture& start, const Mixture& goal) {
   return {};
 }
 
-// Returns how many there was room for.
+// Draws free points of the Halton sequence. Returns the number found, fewer than `count` when the
+// tries are used up.
 std::size_t CropsGuide::add_samples(std::size_t count, HaltonMeans& means) {
   const double clearance_m = std::max(options_.clearance_min_m, edge_clearance_m_);
   // The bounds are walls to robots: a gap beside them is as wide as one between obstacles.
@@ -171,6 +187,8 @@ std::size_t CropsGuide::add_samples(std::size_t count, HaltonMeans& means) {
   return added;
 }
 
+// Rebuilds the graph: neighbours within the radius, tested for visibility nearest first, with the
+// cost of guide_cost() on each edge.
 void CropsGuide::connect() {
   for (std::size_t i = weights_.size(); i < points_m_.size(); ++i) {
     weights_.push_back(clearance_weight(*world_, points_m_[i], options_.clearance_power));
@@ -179,7 +197,8 @@ void CropsGuide::connect() {
   for (const Vec2& point_m : points_m_) {
     graph_.nodes.push_back(round_at(point_m, 0.5 * options_.goal_radius_m));
   }
-  // Start and goal may stand nearer to an obstacle than any sample does.
+  // A start or goal may be nearer to an obstacle than any sample: its edges need to keep only the
+  // clearance it has itself.
   const auto clearance_m = [&](std::uint32_t node) {
     return node < terminals() ? kJustBelow * world_->distance_m(points_m_[node])
                               : std::numeric_limits<double>::infinity();
@@ -189,7 +208,7 @@ void CropsGuide::connect() {
   std::sort(pairs.begin(), pairs.end(), [](const NeighbourPair& l, const NeighbourPair& r) {
     return std::tie(l.distance_m, l.a, l.b) < std::tie(r.distance_m, r.a, r.b);
   });
-  // Nearest first, an edge is taken as long as one of its ends still asks for neighbours.
+  // Nearest first, an edge is taken as long as one of its ends has fewer than k edges.
   std::vector<std::uint32_t> asked(points_m_.size(), 0);
   std::erase_if(pairs, [&](const NeighbourPair& pair) {
     if (std::min(asked[pair.a], asked[pair.b]) >= options_.neighbours_max) return true;
@@ -208,7 +227,8 @@ void CropsGuide::connect() {
   for (const Roadmap::Arc& arc : graph_.arcs) first_cost_.push_back(arc.length_m);
 }
 
-// Rounds and new ends ask again for the same pairs of samples; those are remembered.
+// Visibility between samples is cached by their numbers: further rounds and new ends test the same
+// pairs again. Pairs with a start or goal are not cached, since those move.
 bool CropsGuide::is_visible(const NeighbourPair& pair, double clearance_m) {
   const auto free = [&] {
     return world_->segment_is_free(points_m_[pair.a], points_m_[pair.b], clearance_m);
@@ -220,7 +240,8 @@ bool CropsGuide::is_visible(const NeighbourPair& pair, double clearance_m) {
   return known->second;
 }
 
-// Paths, transport, routes; false when no transport is possible.
+// Cheapest paths between all ends, the transport problem over their costs, and a route of Gaussians
+// for each shipment. False when no transport is possible.
 bool CropsGuide::search() {
   PathTransport transport = transport_on_paths(graph_, weights_of(starts_), weights_of(goals_));
   costs_ = std::move(transport.costs);
@@ -236,7 +257,9 @@ bool CropsGuide::search() {
   return true;
 }
 
-// Largest σ ≤ goal_radius_m/2 of a round Gaussian that keeps δ everywhere on a segment.
+// Largest σ ≤ goal_radius_m/2 of a round Gaussian that keeps δ everywhere on a segment: the segment
+// has to be k σ − δ from all obstacles. Found by bisection, since the visibility test is monotone
+// in σ.
 double CropsGuide::sigma_beside_m(const Vec2& from_m, const Vec2& to_m) const {
   const auto fits = [&](double sigma_m) {
     return world_->segment_is_free(from_m, to_m, k_ * sigma_m - risk_.delta_m);
@@ -253,6 +276,9 @@ double CropsGuide::sigma_beside_m(const Vec2& from_m, const Vec2& to_m) const {
   return low_m;
 }
 
+// Turns a path of points into Gaussians. A vertex takes the smaller σ of its two legs. Where the
+// leg from the start component would break δ, a round Gaussian at the start mean is inserted, so
+// that the component contracts in place before it moves; likewise at the goal.
 Waypoints CropsGuide::waypoints_along(const std::vector<std::uint32_t>& path, const Gaussian& start,
                                       const Gaussian& goal) const {
   std::vector<double> leg_sigma_m;
@@ -291,6 +317,8 @@ std::optional<std::size_t> CropsGuide::route_near(const Vec2& at_m) const {
   return nearest;
 }
 
+// Raises the cost of the edges ahead of the stuck robots in both directions, then searches all
+// paths again. The factors multiply when robots stay stuck there.
 bool CropsGuide::reweight(std::size_t route, const Vec2& stuck_at_m) {
   SWARM_ASSERT(route < paths_.size());
   const std::vector<std::uint32_t> path = paths_[route];

@@ -25,17 +25,17 @@ namespace swarm::planner {
 struct CropsOptions {
   std::size_t samples = 300;          ///< N
   double connection_radius_m = 4.0;   ///< 80 px
-  std::uint32_t neighbours_max = 20;  ///< k: at most so many edges are asked for by a node
+  std::uint32_t neighbours_max = 20;  ///< k: edges that a node requests at most
   double clearance_min_m = 0.5;  ///< 10 px; nodes nearer to an obstacle or the bounds are discarded
   double sigma_min_m = 0.05;     ///< edges have room for it: clearance ≥ k σ_min − δ
   /// p: 3 in the paper, 1 in its code. On the scenes of the code, paths at p = 1 are up to 18 %
   /// longer than the shortest on the graph, at p = 3 up to 23 %; around scattered obstacles p = 3
-  /// may double the way.
+  /// may double the path.
   double clearance_power = 3.0;
   double goal_radius_m = 1.0;     ///< 20 px; circle around a path vertex, two σ of its Gaussian
   std::uint32_t rounds_max = 20;  ///< how often N/2 + 1 samples are added until all is joined
-  double stuck_factor = 3.0;      ///< of the edges where robots are stuck …
-  std::uint32_t stuck_edges = 4;  ///< … towards so many next goals
+  double stuck_factor = 3.0;      ///< cost factor of edges where robots are stuck …
+  std::uint32_t stuck_edges = 4;  ///< … for this many edges ahead of them
 };
 
 /// w(q) = (Σ_o dist(q, o))^p over the obstacles of the world            [CRoPS, roadmap weights];
@@ -64,9 +64,9 @@ class CropsGuide {
   /// Samples and connects until every start component is joined to every goal component, or, when
   /// rounds_max is used up, until the transport problem has a solution.
   ///
-  /// kInfeasible: a component breaks the risk limit where it stands, or none of the above; says
-  /// which and what to loosen. \pre lengths ≥ 0, σ_min ≥ Gaussian::kMinSigma_m, goal_radius_m ≥ 2
-  /// σ_min, stuck_factor ≥ 1; asserted
+  /// kInfeasible: a component breaks the risk limit at its own position, or none of the above;
+  /// names it and the parameters to loosen. \pre lengths ≥ 0, σ_min ≥ Gaussian::kMinSigma_m,
+  /// goal_radius_m ≥ 2 σ_min, stuck_factor ≥ 1; asserted
   static Result<CropsGuide> make(const World& world, const Mixture& start, const Mixture& goal,
                                  const RiskLimit& risk, const CropsOptions& options, Rng& rng);
 
@@ -74,17 +74,17 @@ class CropsGuide {
   /// and end at the components. For build_plan().
   const std::vector<Route>& routes() const { return routes_; }
 
-  /// What was searched, for drawings. Nodes: start components, goal components, samples, each as
-  /// the Gaussian of a path vertex in the open. `Arc::length_m` holds the guide's cost (m^(1−p)),
-  /// not metres.
+  /// The graph that was searched, for drawings. Nodes: start components, goal components, samples,
+  /// each as the Gaussian of a path vertex in the open. `Arc::length_m` holds the guide's cost
+  /// (m^(1−p)), not metres.
   const Roadmap& roadmap() const { return graph_; }
 
-  /// Many robots of a route are stuck near this place: the edges of its path towards the
-  /// next goals cost stuck_factor times as much, and all paths are searched anew (edges that
-  /// cost 10⁶ times their first cost do not rise further). Returns whether any route changed.
+  /// Many robots of a route are stuck near this position: the edges of its path towards the next
+  /// goals cost stuck_factor times as much, and all paths are searched anew (edges that cost 10⁶
+  /// times their first cost do not rise further). Returns whether any route changed.
   bool reweight(std::size_t route, const Vec2& stuck_at_m);
 
-  /// The route with a waypoint nearest to a place; nothing without routes.
+  /// The route with a waypoint nearest to a position; nothing without routes.
   std::optional<std::size_t> route_near(const Vec2& at_m) const;
 
   /// New ends on the same samples, for a swarm in flight or another goal; what reweight() did to

@@ -12,7 +12,7 @@ namespace swarm::planner {
 
 namespace {
 
-/// What a mission may set of crops.
+/// Options of crops in a mission.
 struct CropsKeys : RoadmapKeys {
   double clearance_m = 0.5;
   double power = 3.0;
@@ -56,7 +56,8 @@ Result<std::unique_ptr<PlanningMethod>> CropsMethod::make(const MethodContext& c
       leg_speed(spec.speed_mps, context.limits));
 }
 
-/// A guide for the request: the one there is with new ends, or a new one on another map.
+/// Prepares the guide: keeps the present one with new ends while the map is the same, else samples
+/// a new one, also when the present samples do not join the new ends.
 Result<void> CropsMethod::prepare(const PlanRequest& request, Rng& rng) {
   if (guide_ && world_ == request.world && guide_->move_ends(request.start, request.goal)) {
     return {};
@@ -69,6 +70,7 @@ Result<void> CropsMethod::prepare(const PlanRequest& request, Rng& rng) {
   return {};
 }
 
+// The flow of the guide's routes. They are published as they are, without smoothing.
 Result<PlanResult> CropsMethod::plan(const PlanRequest& request, const PlanContext& context) {
   StageTimer stage(context.clock);
   if (auto ready = prepare(request, context.rng); !ready) return tl::unexpected(ready.error());
@@ -82,11 +84,14 @@ Result<PlanResult> CropsMethod::plan(const PlanRequest& request, const PlanConte
   return result;
 }
 
+// Edges and Gaussians depend on the risk limit: the guide is built again.
 void CropsMethod::set_risk(const RiskLimit& risk) {
   risk_ = risk;
   guide_.reset();
 }
 
+// Makes the route nearest to the congestion costlier where robots are stuck. True if routes
+// changed.
 bool CropsMethod::on_congestion(const Vec2& at_m) {
   if (!guide_) return false;
   const auto route = guide_->route_near(at_m);

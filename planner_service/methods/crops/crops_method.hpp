@@ -12,7 +12,7 @@
 
 namespace swarm::planner {
 
-/// The options of CRoPS that a mission asks for.
+/// The options of CRoPS in a mission.
 CropsOptions crops_options(const Mission& mission);
 
 /// The guide of CRoPS as a planning method. It keeps its graph while the map is the same, and with
@@ -29,7 +29,7 @@ class CropsMethod final : public PlanningMethod {
   PlanningTraits traits() const override {
     return {.risk_promise = RiskPromise::kEveryGaussian, .speed_mps = speed_.means_mps};
   }
-  /// The route that leads past there is searched again with costlier edges.
+  /// Searches the route nearest to the congestion again with costlier edges.
   bool on_congestion(const Vec2& at_m) override;
 
  private:

@@ -17,11 +17,13 @@
 namespace swarm::planner {
 namespace {
 
+// Robots that become one group, with the Gaussian of their positions.
 struct Cluster {
   Members members;
   Gaussian gaussian;
 };
 
+// The groups in the making: divided until each is narrow and clear, then joined where near.
 class Clusters {
  public:
   Clusters(const World& world, const FlowGroupOptions& options)
@@ -32,9 +34,11 @@ class Clusters {
     clusters_.push_back({std::move(members), shape});
   }
 
-  /// Divides what is too wide, or has its mean too near an obstacle, until one robot is left.
+  /// Divides groups that are too wide, or have their mean too near an obstacle, down to single
+  /// robots.
   void divide() {
     for (std::size_t i = 0; i < clusters_.size(); ++i) {
+      // Halves at the median along the longer axis, so that both parts are narrower.
       while (clusters_[i].members.size() > 1 && !fits(clusters_[i].gaussian)) {
         const Cluster whole = clusters_[i];
         Members ordered = whole.members;
@@ -51,6 +55,7 @@ class Clusters {
   void join() {
     for (;;) {
       const bool too_many = clusters_.size() > options_.groups_max;
+      // While there are too many groups any pair may be joined, however far apart.
       double nearest_m = too_many ? std::numeric_limits<double>::infinity() : options_.join_m;
       std::size_t first = 0;
       std::size_t second = 0;
@@ -82,6 +87,7 @@ class Clusters {
   bool is_clear(const Gaussian& g) const {
     return world_.is_clear(g.mean_m(), options_.clearance_m);
   }
+  // Whether a group may stay whole: narrow enough, and its mean clear of obstacles.
   bool fits(const Gaussian& g) const {
     return g.max_sigma_m() <= options_.sigma_max_m && is_clear(g);
   }
@@ -115,6 +121,8 @@ std::map<std::size_t, Members> most_likely(const RiskGraph& graph, const Members
 
 }  // namespace
 
+// Groups of arrived robots come first and are neither divided nor joined: they have to stay exactly
+// at the Gaussians of the goal.
 std::vector<RobotGroup> group_by_flow(std::span<const ReportedRobot> robots, const RiskGraph& graph,
                                       const Mixture& goal, const FlowGroupOptions& options) {
   SWARM_ASSERT(!robots.empty());
@@ -146,6 +154,9 @@ std::vector<RobotGroup> group_by_flow(std::span<const ReportedRobot> robots, con
   return groups;
 }
 
+// Rounds the goal weights to whole robots by largest remainders, components that already have more
+// robots than their share first. Other roundings are tried in order of preference, at most kTries,
+// until one keeps (11g).
 Mixture goal_in_robots(const Mixture& goal, std::span<const std::size_t> led, std::size_t robots,
                        const World& world, const RiskLimit& risk) {
   constexpr std::size_t kTries = 64;
@@ -160,7 +171,7 @@ Mixture goal_in_robots(const Mixture& goal, std::span<const std::size_t> led, st
     const double exact = goal.components()[j].weight / total * static_cast<double>(robots);
     whole[j] = static_cast<std::size_t>(exact + 1e-9);
     left -= std::min(left, whole[j]);
-    // Those who are led there already come first.
+    // Components that are assigned more robots than that already come first.
     wanted[j] = exact - static_cast<double>(whole[j]) + (led[j] > whole[j] ? 1.0 : 0.0);
   }
   std::vector<std::size_t> order(count);
@@ -175,7 +186,7 @@ Mixture goal_in_robots(const Mixture& goal, std::span<const std::size_t> led, st
     std::vector<std::size_t> rounded = whole;
     for (std::size_t i = 0; i < count; ++i) rounded[order[i]] += more[i];
     for (std::size_t j = 0; j < count; ++j) {
-      if (rounded[j] == 0) return goal;  // too few robots for all of it
+      if (rounded[j] == 0) return goal;  // too few robots for all components
       components.push_back({static_cast<double>(rounded[j]) / static_cast<double>(robots),
                             goal.components()[j].gaussian});
     }

@@ -30,16 +30,16 @@ std::vector<RobotGroup> group_by_flow(std::span<const ReportedRobot> robots, con
                                       const Mixture& goal, const FlowGroupOptions& options);
 
 /// The goal with its weights as whole numbers of robots, each the next below or above its exact
-/// share: what has arrived stays, and no fraction of a robot has to move. `led` counts the robots
-/// led to each component; of the choices the one that changes fewest goals and keeps the limit
-/// (11g), else the goal as it is.
+/// share: robots that have arrived stay, and no fraction of a robot has to move. `led` counts the
+/// robots led to each component; of the roundings, the one that changes fewest goals and keeps the
+/// limit (11g), else the goal as it is.
 Mixture goal_in_robots(const Mixture& goal, std::span<const std::size_t> led, std::size_t robots,
                        const World& world, const RiskLimit& risk);
 
-/// Orders each group's members by rank, so that their stratified shares lead them where it is
-/// nearest: for each group the assignment of robots to the routes that its ranks draw which costs
-/// least, the squared way to the end of the first leg and kOtherGoal_m2 for another goal than
-/// before. \pre group i is the plan's source i
+/// Orders each group's members by rank, so that their stratified shares assign them to near routes:
+/// in each group the assignment of robots to the routes that its ranks draw with the least total
+/// cost. The cost of a pair is the squared distance to the robot's position at the end of the first
+/// leg, and kOtherGoal_m2 more for another goal than before. \pre group i is the plan's source i
 void order_by_flow(std::vector<RobotGroup>& groups, const FlowPlan& plan, const Mixture& goal,
                    std::span<const ReportedRobot> robots);
 inline constexpr double kOtherGoal_m2 = 25.0;

@@ -22,6 +22,8 @@ struct SourceRoute {
   std::vector<std::uint32_t> ranks;
 };
 
+// Follows the share of every rank through the plan, as a robot does, and groups the ranks by first
+// leg and sink.
 std::vector<SourceRoute> routes_of(const FlowPlan& plan, std::size_t source, std::uint32_t size) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<std::uint32_t>> ranks;
   const MissionTime begin = plan.nodes()[plan.sources()[source]].time;
@@ -35,6 +37,7 @@ std::vector<SourceRoute> routes_of(const FlowPlan& plan, std::size_t source, std
   return routes;
 }
 
+// Costs of the assignment: squared distance to the end of the first leg.
 class Costs {
  public:
   Costs(const FlowPlan& plan, const Mixture& goal, const RobotGroup& group,
@@ -49,6 +52,7 @@ class Costs {
     }
   }
 
+  // The optimal transport map keeps the robot's offset within its group: it is carried to μ + T y.
   double of(const ReportedRobot& robot, std::size_t route) const {
     const End& end = ends_[route];
     const Vec2 to_m = end.mean_m + end.map * (robot.position_m - from_m_);
@@ -66,7 +70,8 @@ class Costs {
   std::vector<End> ends_;
 };
 
-/// The route of each member, as many on each as it has ranks.
+/// The route of each member, as many on each as it has ranks: an assignment problem, solved as
+/// min-cost flow, whose basic solution is integral (within rounding) for integral supplies.
 std::vector<std::size_t> cheapest(const std::vector<const ReportedRobot*>& members,
                                   const std::vector<SourceRoute>& routes, const Costs& costs) {
   const auto robots = static_cast<std::uint32_t>(members.size());
@@ -90,6 +95,8 @@ std::vector<std::size_t> cheapest(const std::vector<const ReportedRobot*>& membe
 
 }  // namespace
 
+// Routes are drawn by share, and shares by rank: the order of the members decides who takes which
+// route. A group with one route needs no order.
 void order_by_flow(std::vector<RobotGroup>& groups, const FlowPlan& plan, const Mixture& goal,
                    std::span<const ReportedRobot> robots) {
   std::map<std::uint32_t, const ReportedRobot*> by_id;

@@ -18,7 +18,8 @@
 namespace swarm::planner {
 namespace {
 
-// Rows stay this far, relatively, from their limit: what dropping dust moves stays within it.
+// Rows stay this far, relatively, from their limit: removing negligible masses changes a row by
+// less.
 constexpr double kRowMargin = 1e-4;
 
 // A constraint at more than this share of its limit becomes a row before it is violated.
@@ -40,14 +41,14 @@ constexpr double kNoExcess = 1e-6;
 // Densities beyond this Mahalanobis distance squared are below 1e-10 of the peak.
 constexpr double kDensityReach2 = 46.0;
 
-// A row leaves out what is this many σ before its tail: its share of the risk is below 1e-6, and
-// all of these together below the margin.
+// A row leaves out components whose mean is this many σ before its tail: the share of each in the
+// risk is below 1e-6, and of all together below the margin.
 constexpr double kNegligibleSigmas = 5.0;
 
-// The relative decrease of J below which the sequence has settled.
+// The relative decrease of J below which the sequence has converged.
 constexpr double kConverged = 1e-6;
 
-// What a row stands for.
+// The constraint that a row linearises: one obstacle, or one density point, at one time.
 struct Constraint {
   std::size_t step = 1;
   std::size_t part = 0;   // of the step: 0 at its end, else between; kDensity is none of both
@@ -55,6 +56,7 @@ struct Constraint {
 };
 constexpr std::size_t kDensity = static_cast<std::size_t>(-1);
 
+// How far a constraint is used up by the current weights.
 struct Use {
   Constraint constraint;
   double share = 0.0;  // of the limit; above 1 violates it
@@ -78,7 +80,7 @@ class Constraints {
 
   const std::vector<WeightRow>& rows() const { return rows_; }
 
-  // The rows of the step before.
+  // Adds the rows of the MPC step before, so that the first program starts near its optimum.
   void recall(HorizonMemory& memory) {
     for (std::size_t step = 1; step <= options_.costs.horizon; ++step) {
       for (std::size_t part = 0; part < parts(); ++part) {
@@ -146,6 +148,7 @@ class Constraints {
  private:
   std::size_t parts() const { return graph_.options().checks_between + 1; }
   std::size_t obstacles() const { return graph_.world().convex_obstacles().size(); }
+  // Index into rows_ of the row that stands for a constraint, −1 when there is none.
   int& risk_row(const Constraint& c) {
     return risk_row_[((c.step - 1) * parts() + c.part) * obstacles() + c.place];
   }
@@ -165,6 +168,9 @@ class Constraints {
     return row;
   }
 
+  // Writes the row (R) of tail_limit.hpp for the linearisation point z, divided by its right side α
+  // (1 − margin), so that the limit of every row is 1. Vertices that the swarm cannot reach in this
+  // step carry no mass and are left out.
   void set_risk_row(const Constraint& constraint, double from_m) {
     WeightRow& row = row_at(risk_row(constraint), constraint);
     for (const RiskGraph::Near& near : graph_.near(constraint.part, constraint.place)) {
@@ -175,6 +181,8 @@ class Constraints {
     }
   }
 
+  // Writes the row of (11f) for one density point. It is linear in the weights as it stands, so
+  // that it is never renewed.
   void add_density_row(const Constraint& constraint) {
     WeightRow& row = row_at(density_row(constraint), constraint);
     for (std::uint32_t v = 0; v < graph_.vertices().size(); ++v) {
@@ -185,7 +193,7 @@ class Constraints {
   }
 
   // Whether renewing a row would not change the optimum: its z hardly moves, or it does not bind.
-  // For the constraint risk_tail() was last asked for.
+  // \pre risk_tail() was called for the same constraint last: line_ holds its components
   bool stays(const TailAtLimit& tail, double from_m) const {
     if (std::abs(tail.from_m - from_m) <= kSameTail_m) return true;
     double used = 0.0;
@@ -193,6 +201,7 @@ class Constraints {
     return used < kBindingShare * risk_.alpha;
   }
 
+  // The tail of the current mixture at one obstacle, from the components near it that carry mass.
   TailAtLimit risk_tail(const Constraint& constraint, const StepWeights& weights) const {
     const std::span<const double> weight = weights.of(constraint.part);
     line_.clear();
@@ -203,6 +212,8 @@ class Constraints {
     return tail_at_limit(line_, risk_.delta_m);
   }
 
+  // Density that a whole swarm in one vertex would have at the mean of another, as a share of the
+  // cap.
   double density_share(std::uint32_t vertex, std::uint32_t place) const {
     const Gaussian& g = graph_.vertices()[vertex];
     const Vec2& at_m = graph_.vertices()[place].mean_m();
@@ -210,6 +221,7 @@ class Constraints {
     return options_.robots * g.density(at_m) / options_.density_cap_per_m2;
   }
 
+  // Share of the density cap that the current weights use at one density point.
   double density_use(std::uint32_t place, const StepWeights& weights) const {
     double share = 0.0;
     for (std::uint32_t v = 0; v < weights.vertex.size(); ++v) {
@@ -237,7 +249,8 @@ std::string Constraints::describe(const Use& use, const StepWeights& weights) co
         "{}; raise it to {:.3f}",
         density, at_m.x(), at_m.y(), c.step, options_.density_cap_per_m2, density * 1.01);
   }
-  // The near components as a mixture of their own would have a higher CVaR: the rest is far away.
+  // Without the rest of the mass the CVaR would be too high: the rest enters as one component 1 km
+  // from the obstacle.
   std::vector<LineComponent> line;
   double far = 1.0;
   for (const RiskGraph::Near& near : graph_.near(c.part, c.place)) {
@@ -276,6 +289,7 @@ std::vector<std::size_t> likely_columns(const HorizonNetwork& network, HorizonMe
   return likely;
 }
 
+// Euclidean norm ‖F^v − F^{v−1}‖ of Alg. 1.
 double distance(std::span<const double> a, std::span<const double> b) {
   double squared = 0.0;
   for (std::size_t i = 0; i < a.size(); ++i) squared += (a[i] - b[i]) * (a[i] - b[i]);
@@ -290,6 +304,7 @@ HorizonMemory::HorizonMemory(std::size_t horizon, std::size_t parts, std::size_t
       from_m_(horizon * parts * obstacles, std::numeric_limits<double>::quiet_NaN()),
       arcs_(horizon) {}
 
+// The last step keeps its linearisation, since no later one exists; its arcs are cleared.
 void HorizonMemory::shift() {
   std::copy(from_m_.begin() + static_cast<std::ptrdiff_t>(parts_ * obstacles_), from_m_.end(),
             from_m_.begin());
@@ -297,6 +312,8 @@ void HorizonMemory::shift() {
   arcs_.back().clear();
 }
 
+// Alg. 1: solve a linear program, linearise the violated constraints at its optimum, repeat. Rows
+// are added or renewed only; the program starts each time from the basis of the one before.
 Result<HorizonPlan> solve_ftmpc(const RiskGraph& graph, std::span<const VertexMass> sources,
                                 std::span<const double> goal_weights, const FtmpcOptions& options,
                                 HorizonMemory& memory) {
@@ -313,7 +330,8 @@ Result<HorizonPlan> solve_ftmpc(const RiskGraph& graph, std::span<const VertexMa
   double last_cost = std::numeric_limits<double>::infinity();
   std::size_t rows = 0;
   while (plan.iterations < options.max_iterations) {
-    // The cost of a program with new rows may rise, so that says nothing.
+    // New rows may raise the cost, so that costs are compared only between programs with the same
+    // rows.
     const bool same_rows = plan.iterations > 0 && constraints.rows().size() == rows;
     rows = constraints.rows().size();
     solution = program.solve(constraints.rows());
@@ -334,9 +352,10 @@ Result<HorizonPlan> solve_ftmpc(const RiskGraph& graph, std::span<const VertexMa
   }
   if (solution.status != LpStatus::kOptimal) {
     return fail(ErrorCode::kInfeasible,
-                "no ways that join the swarm with the goal's weights; enlarge the transport radius "
+                "no paths that join the swarm with the goal's weights; enlarge the transport radius "
                 "or shrink the mean clearance");
   }
+  // The rows are linearisations: the optimum is tested against the constraints themselves.
   Use most;
   for (std::size_t step = 1; step <= options.costs.horizon; ++step) {
     const StepWeights weights = weights_at(step, solution.x);
@@ -351,6 +370,7 @@ Result<HorizonPlan> solve_ftmpc(const RiskGraph& graph, std::span<const VertexMa
   plan.columns = static_cast<int>(network.columns().size());
   plan.optimum = solution.objective;
   if (options.keep_program) plan.program = program.whole(constraints.rows());
+  // Read the flow back; costs were scaled by the collocation spacing (horizon_network.hpp).
   const double unit_m = graph.options().collocation.spacing_m;
   plan.stages.resize(options.costs.horizon);
   for (auto& arcs : memory.arcs()) arcs.clear();

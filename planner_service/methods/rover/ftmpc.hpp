@@ -15,6 +15,7 @@
 
 namespace swarm::planner {
 
+/// Parameters of one FTMPC.
 struct FtmpcOptions {
   HorizonCosts costs{};
   /// (11f): robots times the mixture's density at the collocation means stays below this; 0 = off.
@@ -22,14 +23,14 @@ struct FtmpcOptions {
   double robots = 0.0;
   double eta = 1e-5;  ///< of Alg. 1, on ‖F^v − F^{v−1}‖
   int max_iterations = 50;
-  /// A swarm that breaks a constraint already, and cannot mend that within the horizon, gets the
+  /// A swarm that violates a constraint already, and cannot satisfy it within the horizon, gets the
   /// plan with the least excess instead of kInfeasible.
   bool soften = false;
   bool keep_program = false;
 };
 
-/// What a step hands to the next: where the risk rows were linearised last, by step, part of it and
-/// obstacle, and the arcs of its plan.
+/// The state that one MPC step passes to the next: the last linearisation point of each risk row,
+/// by step, part of it and obstacle, and the arcs of the plan.
 class HorizonMemory {
  public:
   HorizonMemory() = default;
@@ -42,7 +43,7 @@ class HorizonMemory {
   /// Arcs that carried mass, as (from, to), by stage.
   std::vector<std::vector<std::pair<std::uint32_t, std::uint32_t>>>& arcs() { return arcs_; }
 
-  /// One step later: what was of step p + 1 is now of step p.
+  /// Moves everything one step ahead: values of step p + 1 become those of step p.
   void shift();
 
  private:
@@ -52,12 +53,14 @@ class HorizonMemory {
   std::vector<std::vector<std::pair<std::uint32_t, std::uint32_t>>> arcs_;
 };
 
+/// Mass that one stage of the horizon moves along an arc, or keeps at a vertex (from = to).
 struct StageFlow {
   std::uint32_t from = 0;  ///< vertices of the RiskGraph
   std::uint32_t to = 0;
   double mass = 0.0;
 };
 
+/// The solution of one FTMPC, with the numbers a report needs.
 struct HorizonPlan {
   std::vector<std::vector<StageFlow>> stages;  ///< π_{k+p−1}(i, j), p = 1 … h
   double cost_m2 = 0.0;                        ///< J of (11a)
@@ -76,13 +79,13 @@ struct HorizonPlan {
 /// programs (as in the paper's third version; its τ = 10⁻³ is a tie-break).
 ///
 /// Only constraints that bind are rows: after each program every step and obstacle is tested in
-/// full and what is violated joins. Any linearisation (R) of tail_limit.hpp implies (11g), so a
+/// full and violated constraints join. Any linearisation (R) of tail_limit.hpp implies (11g), so a
 /// feasible start is not needed: excess is penalised exactly, the weights of each optimum give the
-/// next linearisation, and the penalised cost never rises. Stops when the flow settles, or the cost
-/// does.
+/// next linearisation, and the penalised cost never rises. Stops when the flow or the cost has
+/// converged.
 ///
-/// kInfeasible names the step, the obstacle or place, and by how much α, ε or the cap would have to
-/// give way. \pre source masses positive, summing to 1; goal weights to 1.
+/// kInfeasible names the step, the obstacle or position, and by how much α, ε or the cap would have
+/// to be raised. \pre source masses positive, summing to 1; goal weights to 1.
 Result<HorizonPlan> solve_ftmpc(const RiskGraph& graph, std::span<const VertexMass> sources,
                                 std::span<const double> goal_weights, const FtmpcOptions& options,
                                 HorizonMemory& memory);

@@ -15,6 +15,9 @@ constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
+// Unrolls the graph over h stages, breadth first from the sources: a vertex enters layer p when an
+// arc from layer p − 1 reaches it. Columns are appended stage by stage; the order is relied upon
+// below.
 HorizonNetwork::HorizonNetwork(const RiskGraph& graph, std::span<const VertexMass> sources,
                                std::span<const double> goal_weights, const HorizonCosts& costs)
     : horizon_(costs.horizon),
@@ -26,6 +29,7 @@ HorizonNetwork::HorizonNetwork(const RiskGraph& graph, std::span<const VertexMas
   const double unit_m = graph.options().collocation.spacing_m;
   row_of_.assign(horizon_ + 1, std::vector<int>(vertices_, -1));
   std::vector<std::uint32_t> layer;
+  // Adds a vertex to a layer with its balance row; the right side is its mass in layer 0, else 0.
   const auto join = [&](std::size_t step, std::uint32_t vertex, double mass,
                         std::vector<std::uint32_t>& members) {
     row_of_[step][vertex] = static_cast<int>(right_side_.size());
@@ -46,6 +50,8 @@ HorizonNetwork::HorizonNetwork(const RiskGraph& graph, std::span<const VertexMas
     }
     layer = std::move(next);
   }
+  // The terminal transport (11e): from every vertex of the last layer to every goal component that
+  // a path of the graph reaches, at the cost of the squared path length Q.
   goal_row_ = right_side_.size();
   right_side_.insert(right_side_.end(), goal_weights.begin(), goal_weights.end());
   for (const std::uint32_t from : layer) {
@@ -58,6 +64,7 @@ HorizonNetwork::HorizonNetwork(const RiskGraph& graph, std::span<const VertexMas
   }
 }
 
+// Cheapest path to one goal from every row, by backward dynamic programming: O(columns).
 HorizonNetwork::Paths HorizonNetwork::paths_to(std::size_t goal) const {
   Paths paths{std::vector<double>(goal_row_, kUnbounded),
             std::vector<std::size_t>(goal_row_, columns_.size())};
@@ -75,6 +82,8 @@ HorizonNetwork::Paths HorizonNetwork::paths_to(std::size_t goal) const {
   return paths;
 }
 
+// The first rows are the sources, in their order; from each the stored columns are followed to the
+// terminal transport.
 std::vector<std::size_t> HorizonNetwork::cheapest_routes() const {
   std::vector<std::size_t> routes;
   for (std::size_t n = 0; n < goals_; ++n) {
@@ -90,11 +99,13 @@ std::vector<std::size_t> HorizonNetwork::cheapest_routes() const {
   return routes;
 }
 
+// For each goal one forward pass adds costs from the sources to the costs to go: O(columns ·
+// goals).
 std::vector<double> HorizonNetwork::detours() const {
   std::vector<double> least(columns_.size(), kUnbounded);
   for (std::size_t n = 0; n < goals_; ++n) {
     const std::vector<double> to_go = paths_to(n).cost;
-    // Least cost from a source, less all that this source's cheapest way costs.
+    // Least cost from a source, minus the cost of that source's cheapest path to the goal.
     std::vector<double> so_far(goal_row_, kUnbounded);
     for (std::size_t c = 0; c < columns_.size(); ++c) {
       const Column& column = columns_[c];

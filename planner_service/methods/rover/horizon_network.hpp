@@ -10,17 +10,19 @@
 
 namespace swarm::planner {
 
+/// Mass of the swarm at a vertex of the graph.
 struct VertexMass {
   std::uint32_t vertex = 0;
   double mass = 0.0;
 };
 
+/// Length of the horizon and weights of the cost (11a).
 struct HorizonCosts {
   std::size_t horizon = 3;       ///< h
   double lambda_stage = 1.0;     ///< λ_k … λ_{k+h−1}
   double lambda_terminal = 3.0;  ///< λ_{k+h}
-  /// Stage p costs λ (1 + p · this): of two ways that differ only in when they wait, the one that
-  /// waits later is taken, else a plan might be put off for ever.
+  /// Stage p costs λ (1 + p · this): of two flows that differ only in when they wait, the one that
+  /// waits later is chosen. Without it a plan could be put off at every step.
   double impatience = 1e-3;
 };
 
@@ -29,11 +31,12 @@ struct HorizonCosts {
 /// a row for every component of every layer (11b–d, with the weights ω eliminated) and for every
 /// goal component (11e). Path flows F of the paper are not needed: CVaR depends on weights alone,
 /// which are sums of arc flows. Costs (11a) are W₂² for the stages and Q(m, n), the square of the
-/// shortest way's length, for the terminal transport. (A sum of squares over the arcs instead would
-/// make a staircase cost no more than its diagonal.) Lengths are in units of the collocation
+/// length of the shortest path, for the terminal transport. (A sum of squares over the arcs instead
+/// would make a staircase cost no more than its diagonal.) Lengths are in units of the collocation
 /// spacing, which keeps the numbers of the program near 1.
 class HorizonNetwork {
  public:
+  /// A variable of the program: the flow along an arc in one stage.
   struct Column {
     std::uint32_t stage = 0;  ///< 0 … h; stage h is the terminal transport
     std::uint32_t from = 0;   ///< vertex
@@ -61,12 +64,13 @@ class HorizonNetwork {
     return row_of_[layer][vertex] >= 0;
   }
 
-  /// The columns of the cheapest way from every source to every goal. Without them a program of few
-  /// columns might have no solution.
+  /// The columns of the cheapest path from every source to every goal. Without them a program of
+  /// few columns might have no solution.
   std::vector<std::size_t> cheapest_routes() const;
 
-  /// How much dearer than the cheapest way from some source to some goal the cheapest one is that
-  /// takes this column: by column, never negative, +∞ where no way leads on.
+  /// Detour of each column: the cost of the cheapest path through it minus the cost of the cheapest
+  /// path between the same source and goal, the least over all sources and goals. Never negative;
+  /// +∞ where no path leads to a goal.
   std::vector<double> detours() const;
 
   /// Weights ω at a step, by vertex, 0 where there is no mass. `x` by column.
@@ -75,6 +79,7 @@ class HorizonNetwork {
   std::vector<double> arc_weights(std::size_t step, std::span<const double> x) const;
 
  private:
+  // Cheapest paths to one goal component.
   struct Paths {
     std::vector<double> cost;         // by row below goal_row(0), +∞ where there is none
     std::vector<std::size_t> column;  // taken first

@@ -23,6 +23,8 @@ constexpr int kMaxRounds = 1000;
 
 }  // namespace
 
+// Chooses the first columns: the cheapest path from each source to each goal, which make the
+// program feasible, the likely ones, and the share kFirstShare with the smallest detour.
 HorizonProgram::HorizonProgram(const HorizonNetwork& network, std::span<const std::size_t> likely)
     : network_(&network),
       by_vertex_(network.horizon()),
@@ -35,6 +37,7 @@ HorizonProgram::HorizonProgram(const HorizonNetwork& network, std::span<const st
   const auto last = static_cast<std::ptrdiff_t>(kFirstShare * static_cast<double>(sorted.size()));
   std::nth_element(sorted.begin(), sorted.begin() + last, sorted.end());
   const double limit = sorted[static_cast<std::size_t>(last)];
+  // Goal rows end a path; they need no column onward.
   for (std::size_t n = network.goal_row(0); n < is_met_.size(); ++n) is_met_[n] = 1;
   const Offers paths = offers(std::vector<double>(network.right_side().size(), 0.0));
   for (const std::size_t c : network.cheapest_routes()) enter(c, paths);
@@ -44,13 +47,16 @@ HorizonProgram::HorizonProgram(const HorizonNetwork& network, std::span<const st
   }
 }
 
+// Prices all columns outside the program, O(columns). A row that the program does not contain yet
+// has no dual price; it gets the reduced cost of the cheapest path from it, by dynamic programming
+// over the layers, so that a column into it is judged with all that has to follow.
 HorizonProgram::Offers HorizonProgram::offers(std::span<const double> row_price) const {
   std::vector<double> price(row_price.begin(), row_price.end());
   for (std::size_t row = 0; row < is_met_.size(); ++row) {
     if (is_met_[row] == 0) price[row] = kInfinity;
   }
   Offers offers{std::vector<std::size_t>(is_met_.size(), is_active_.size()), {}};
-  // From the last stage to the first: what a column leads to has its price when it is read.
+  // From the last stage to the first, so that the row a column leads to has its price already.
   for (std::size_t c = is_active_.size(); c-- > 0;) {
     if (is_active_[c] != 0) continue;
     const HorizonNetwork::Column& column = network_->columns()[c];
@@ -69,6 +75,7 @@ HorizonProgram::Offers HorizonProgram::offers(std::span<const double> row_price)
   return offers;
 }
 
+// Adds a column and, at its two ends, the rows it needs with their paths onward.
 void HorizonProgram::enter(std::size_t index, const Offers& offers) {
   const HorizonNetwork::Column& column = network_->columns()[index];
   meet(network_->row(column.stage, column.from), offers);
@@ -77,8 +84,8 @@ void HorizonProgram::enter(std::size_t index, const Offers& offers) {
   meet(network_->row(column.stage + 1, column.to), offers);
 }
 
-// Takes a row into the program with the way on from there. Its first column takes the row's place
-// in the basis, which stays triangular and as feasible as it was.
+// Adds a row to the program with the cheapest path onward from it. The first column of that path
+// replaces the row in the basis, which stays triangular and as feasible as it was.
 void HorizonProgram::meet(std::size_t row, const Offers& offers) {
   while (is_met_[row] == 0 && offers.path_on[row] < is_active_.size()) {
     const std::size_t c = offers.path_on[row];
@@ -98,6 +105,8 @@ void HorizonProgram::activate(std::size_t column, bool is_basic) {
   column_basic_.push_back(is_basic ? 1 : 0);
 }
 
+// Groups the coefficients of the weight rows by vertex and arc, so that visit_column() finds those
+// of a column without a search.
 void HorizonProgram::ask(std::span<const WeightRow> rows) {
   for (std::vector<Asks>* asks : {&by_vertex_, &by_arc_}) {
     for (Asks& step : *asks) {
@@ -137,6 +146,8 @@ void HorizonProgram::visit_column(std::size_t index, Visit visit) const {
   if (column.stage + 1 < network_->horizon()) visit_asks(by_vertex_[column.stage], column.to);
 }
 
+// The linear program of the given columns. Each weight row has a further column of its own, the
+// excess s, which costs kExcessCost: the program is feasible even where the constraints are not.
 LinearProgram HorizonProgram::program(std::span<const std::size_t> columns) const {
   LinearProgram lp;
   lp.row_lower = network_->right_side();
@@ -165,6 +176,8 @@ LinearProgram HorizonProgram::whole(std::span<const WeightRow> rows) {
   return program(all);
 }
 
+// Column generation: solve, price, add, until no column outside has a negative reduced cost. The
+// first round follows a change of rows, hence the dual simplex.
 LpSolution HorizonProgram::solve(std::span<const WeightRow> rows) {
   ask(rows);
   int pivots = 0;

@@ -13,8 +13,11 @@
 namespace swarm::planner {
 namespace {
 
+// Limit of pivots per row and column: far more than our programs need, it ends a solve that cycles.
 constexpr int kPivotsPerRowAndColumn = 50;
 
+// Hands a basis to the solver. Every nonbasic variable needs the bound at which it rests: columns
+// rest at 0, rows at their finite side.
 void set_basis(ClpSimplex& model, const LinearProgram& program, const LpBasis& basis) {
   for (int i = 0; i < program.columns(); ++i) {
     model.setColumnStatus(i, basis.column_basic[static_cast<std::size_t>(i)] != 0
@@ -31,6 +34,7 @@ void set_basis(ClpSimplex& model, const LinearProgram& program, const LpBasis& b
   }
 }
 
+// Reads the optimal basis back, from which the next program starts.
 void get_basis(const ClpSimplex& model, LpBasis& basis) {
   for (std::size_t i = 0; i < basis.column_basic.size(); ++i) {
     basis.column_basic[i] = model.getColumnStatus(static_cast<int>(i)) == ClpSimplex::basic ? 1 : 0;
@@ -42,11 +46,14 @@ void get_basis(const ClpSimplex& model, LpBasis& basis) {
 
 }  // namespace
 
+// The basis of all row variables: always a valid start, without knowledge of the program.
 LpBasis slack_basis(const LinearProgram& program) {
   return {std::vector<std::uint8_t>(program.cost.size(), 0),
           std::vector<std::uint8_t>(program.row_lower.size(), 1)};
 }
 
+// Solves by dual or primal simplex from a given basis. Dual simplex suits a basis that was optimal
+// before rows were added, primal simplex one before columns were added.
 LpSolution solve(const LinearProgram& program, LpBasis& basis, LpMethod method) {
   SWARM_ASSERT(basis.column_basic.size() == program.cost.size() &&
                basis.row_basic.size() == program.row_lower.size());

@@ -31,9 +31,12 @@ struct LpBasis {
   std::vector<std::uint8_t> row_basic;  ///< a row whose slack is basic does not bind
 };
 
+/// How a solve ended; kStopped: at the limit of pivots or for numerical reasons.
 enum class LpStatus { kOptimal, kInfeasible, kStopped };
+/// The simplex variant of a solve.
 enum class LpMethod { kDualSimplex, kPrimalSimplex };
 
+/// The optimum of a linear program with its dual prices.
 struct LpSolution {
   LpStatus status = LpStatus::kStopped;
   double objective = 0.0;

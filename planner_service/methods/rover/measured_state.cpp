@@ -15,11 +15,14 @@ namespace {
 constexpr int kMaxFlowRounds = 2000;
 constexpr double kConverged = 1e-9;
 
-// A robot speaks for this many components: those around it on the grid.
+// Components considered for each robot: those around it on the collocation grid.
 constexpr std::size_t kPerRobot = 4;
 
+// A component with less than this share of a robot is left out.
 constexpr double kLeastRobots = 0.25;
 
+// Logarithm of the density up to a constant that all Gaussians share. Logarithms, because a density
+// of a far robot underflows.
 double log_density(const Gaussian& g, const Vec2& at_m) {
   return -0.5 * (g.mahalanobis_squared(at_m) + std::log(g.determinant()));
 }
@@ -32,7 +35,8 @@ std::vector<std::uint32_t> likeliest(const RiskGraph& graph, const Vec2& robot_m
   }
   std::sort(ranked.begin(), ranked.end());
   std::vector<std::uint32_t> chosen;
-  // Beyond the nearest dozen a wall must be all around: then whatever is nearest.
+  // Only components in line of sight count. If none of the nearest dozen is, walls surround the
+  // robot, and the likeliest component is taken through the wall.
   for (std::size_t i = 0; i < std::min<std::size_t>(ranked.size(), 3 * kPerRobot); ++i) {
     const Vec2& mean_m = graph.vertices()[ranked[i].second].mean_m();
     if (!graph.world().segment_is_free(robot_m, mean_m, 0.0)) continue;
@@ -45,6 +49,8 @@ std::vector<std::uint32_t> likeliest(const RiskGraph& graph, const Vec2& robot_m
 
 }  // namespace
 
+// EM with fixed components. Each robot's likelihoods are scaled by the largest, which cancels in
+// the update and prevents underflow.
 std::vector<double> estimate_weights(std::span<const Gaussian> components,
                                      std::span<const Vec2> positions_m) {
   SWARM_ASSERT(!components.empty() && !positions_m.empty());
@@ -69,7 +75,7 @@ std::vector<double> estimate_weights(std::span<const Gaussian> components,
       const double* row = &likelihood[i * count];
       double sum = 0.0;
       for (std::size_t j = 0; j < count; ++j) sum += weights[j] * row[j];
-      if (!(sum > 0.0)) continue;  // all its components have died out
+      if (!(sum > 0.0)) continue;  // the weights of all its components are 0
       for (std::size_t j = 0; j < count; ++j) next[j] += weights[j] * row[j] / sum;
     }
     double total = 0.0;
@@ -85,6 +91,8 @@ std::vector<double> estimate_weights(std::span<const Gaussian> components,
   return weights;
 }
 
+// Candidates are the components around any robot; components that EM leaves next to no mass are
+// removed and the rest scaled to sum to 1.
 Mixture measured_mixture(const RiskGraph& graph, std::span<const Vec2> positions_m) {
   SWARM_ASSERT(!positions_m.empty());
   std::vector<std::uint8_t> is_candidate(graph.own_vertices(), 0);
@@ -96,7 +104,7 @@ Mixture measured_mixture(const RiskGraph& graph, std::span<const Vec2> positions
     if (is_candidate[v] != 0) components.push_back(graph.vertices()[v]);
   }
   const std::vector<double> weights = estimate_weights(components, positions_m);
-  // Never all: the heaviest holds at least a robot's share of those it is one of.
+  // The threshold is at most the largest weight, so that one component always remains.
   const double heaviest = *std::max_element(weights.begin(), weights.end());
   const double least = std::min(heaviest, kLeastRobots / static_cast<double>(positions_m.size()));
   std::vector<WeightedGaussian> kept;

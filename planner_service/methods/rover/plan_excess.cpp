@@ -10,8 +10,10 @@
 namespace swarm::planner {
 namespace {
 
+// Excess below this counts as rounding.
 constexpr double kKept_m = 1e-6;
 
+// The distinct times of the nodes: ROVER's nodes lie at the ends of its steps.
 std::vector<MissionTime> step_ends(const FlowPlan& plan) {
   std::vector<MissionTime> times;
   for (const PlanNode& node : plan.nodes()) times.push_back(node.time);
@@ -22,6 +24,8 @@ std::vector<MissionTime> step_ends(const FlowPlan& plan) {
 
 }  // namespace
 
+// Tests the mixture of the plan itself, not the rows of the linear programs, so that it also finds
+// errors of the linearisation.
 PlanExcess excess_of(const FlowPlan& plan, const World& world, const RiskLimit& risk,
                      std::size_t between) {
   PlanExcess most{.by_m = kKept_m};

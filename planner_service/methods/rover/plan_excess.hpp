@@ -11,10 +11,10 @@
 
 namespace swarm::planner {
 
-/// By how much a plan breaks (11g), where it does so most: of the mixture itself, at the times at
-/// which ROVER keeps the limit, that is the start, the end of each step, and `between` times evenly
-/// spread over it. Below 1e-6 m, what a row's margin leaves to rounding, counts as kept. A plan
-/// that was softened breaks it where the swarm already does.
+/// The largest violation of (11g) by a plan, and where it occurs: of the mixture itself, at the
+/// times at which ROVER keeps the limit, that is the start, the end of each step, and `between`
+/// times evenly spread over it. An excess below 1e-6 m counts as rounding. A softened plan violates
+/// the limit where the swarm already does.
 PlanExcess excess_of(const FlowPlan& plan, const World& world, const RiskLimit& risk,
                      std::size_t between);
 

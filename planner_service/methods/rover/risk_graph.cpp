@@ -19,12 +19,14 @@ namespace {
 
 constexpr double kUnreachable = std::numeric_limits<double>::infinity();
 
-// A source that stands nearer to an obstacle than others may leaves with all but this of its
-// clearance.
+// A source whose mean is nearer to an obstacle than the mean clearance allows must keep this share
+// of its own clearance on its arcs instead.
 constexpr double kOwnClearance = 0.99;
 
+// Cost and memory grow with the checks between steps.
 constexpr std::size_t kMaxChecksBetween = 9;
 
+// Equal but for rounding, so that find() maps a mixture that a step returned back to its vertices.
 bool same(const Gaussian& a, const Gaussian& b) {
   return (a.mean_m() - b.mean_m()).cwiseAbs().maxCoeff() < 1e-9 &&
          (a.covariance_m2() - b.covariance_m2()).cwiseAbs().maxCoeff() < 1e-9;
@@ -81,6 +83,8 @@ Result<RiskGraph> RiskGraph::make(const World& world, const Mixture& goal,
   return graph;
 }
 
+// Computes the risk r of a vertex and enters it in the lists of the convex obstacles its tail may
+// reach. Bounding boxes rule out most obstacles.
 void RiskGraph::add_vertex(const Gaussian& g) {
   const auto index = static_cast<std::uint32_t>(vertices_.size());
   vertices_.push_back(g);
@@ -91,6 +95,7 @@ void RiskGraph::add_vertex(const Gaussian& g) {
   for (std::size_t o = 0; o < obstacles.size(); ++o) {
     if (obstacles[o].box.distance_m(g.mean_m()) > reach_m) continue;
     const SignedDistance at_mean = obstacles[o].signed_distance(g.mean_m());
+    // −sd is linearised at the mean: normal with mean −s(μ) and the variance along the gradient.
     const double sigma_m = std::sqrt(g.variance_along_m2(at_mean.gradient));
     worst_m = std::max(worst_m, -at_mean.distance_m + k_ * sigma_m);
     clearance_m = std::min(clearance_m, at_mean.distance_m);
@@ -101,7 +106,8 @@ void RiskGraph::add_vertex(const Gaussian& g) {
   clearance_m_.push_back(clearance_m);
 }
 
-// The arcs from `first` on join what the obstacles have near them between the steps.
+// Enters the arcs from `first` on in the lists of the obstacles near them, at each check between
+// two steps: the Gaussian on the W₂ geodesic of the arc at that time.
 void RiskGraph::see_arcs_from(std::uint32_t first) {
   const std::vector<ConvexObstacle>& obstacles = world_->convex_obstacles();
   const auto parts = static_cast<double>(near_.size());
@@ -123,11 +129,13 @@ void RiskGraph::see_arcs_from(std::uint32_t first) {
   }
 }
 
+// The length of an arc as in the class comment: W₂ (1 + κ (rᵢ + rⱼ)/2).
 double RiskGraph::arc_length_m(double w2_m, std::uint32_t from, std::uint32_t to) const {
   return w2_m * (1.0 + 0.5 * options_.risk_weight * (risk_[from] + risk_[to]));
 }
 
-// Appends the arcs of the last vertex that has none yet, to the first `among` vertices.
+// Appends the arcs of a vertex to the first `among` vertices. Arcs are stored in compressed rows,
+// so that vertices have to be added in order.
 void RiskGraph::add_arcs(std::uint32_t from, std::uint32_t among) {
   const Gaussian& g = vertices_[from];
   const double clearance_m =
@@ -155,7 +163,8 @@ void RiskGraph::add_arcs(std::uint32_t from, std::uint32_t among) {
   arc_offset_.push_back(static_cast<std::uint32_t>(arcs_.size()));
 }
 
-// Dijkstra against the arcs. Arcs between base vertices come in pairs of one length.
+// Dijkstra from the goal. It follows arcs backwards, which needs no reverse graph: arcs between
+// base vertices come in pairs of the same length.
 void RiskGraph::search(std::size_t goal) {
   using Entry = std::pair<double, std::uint32_t>;
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
@@ -183,6 +192,8 @@ std::optional<std::uint32_t> RiskGraph::find(const Gaussian& g) const {
   return std::nullopt;
 }
 
+// Adds a vertex with arcs out of it alone, so that the path lengths of all others stay as they are;
+// its own follow from its arcs and their ends.
 std::optional<std::uint32_t> RiskGraph::add_source(const Gaussian& g) {
   if (world_->distance_m(g.mean_m()) <= 0.0) return std::nullopt;
   const auto index = static_cast<std::uint32_t>(vertices_.size());
@@ -199,6 +210,7 @@ std::optional<std::uint32_t> RiskGraph::add_source(const Gaussian& g) {
   return index;
 }
 
+// Sources were appended last, so that everything is cut back to the base sizes.
 void RiskGraph::drop_sources() {
   for (std::size_t part = 0; part < near_.size(); ++part) {
     const std::uint32_t kept = part == 0 ? base_ : arc_offset_[base_];

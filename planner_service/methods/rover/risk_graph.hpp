@@ -15,10 +15,12 @@
 
 namespace swarm::planner {
 
+/// Parameters of the graph G.
 struct RiskGraphOptions {
   CollocationOptions collocation{};
   double transport_radius_m = 22.5;  ///< of Assumption 2, in W₂: here 20 directions and waiting
-  /// Means and their ways keep this from obstacles: robots near one ride on the mean's way.
+  /// Distance that means and the segments between them keep from obstacles: robots near the mean
+  /// follow its path.
   double mean_clearance_m = 1.0;
   double risk_weight = 1.0;  ///< κ of the arc lengths below
   /// (11g) is kept at this many times between two steps too, evenly spread: a step is long enough
@@ -27,16 +29,19 @@ struct RiskGraphOptions {
   RiskLimit risk{};  ///< δ is ROVER's ε
 };
 
-/// The directed graph G of ROVER, sec. III-A, and what of the world the FTMPC needs, made once
-/// (offline): vertices are the goal's components, then the collocation set but for members whose
-/// mean is too near an obstacle. Arcs join vertices within the transport radius (Assumption 2) when
-/// the mean's way is clear; every vertex has an arc to itself, which is waiting. The lengths
+/// The directed graph G of ROVER, sec. III-A, and the distances to obstacles that the FTMPC needs,
+/// made once (offline): vertices are the goal's components, then the collocation set but for
+/// members whose mean is too near an obstacle. Arcs join vertices within the transport radius
+/// (Assumption 2) when the segment between the means is clear; every vertex has an arc to itself,
+/// which is waiting. The lengths
 ///
 ///   W₂(i, j) (1 + κ (rᵢ + rⱼ)/2),   r = max(0, CVaR_α(−sd) − ε) / (k(α) σ_max)
 ///
-/// of the Gaussians' own risk lead the shortest ways to the target around narrow places.
+/// with r the risk of a single Gaussian, lead the shortest paths to the goal around narrow
+/// passages.
 class RiskGraph {
  public:
+  /// A directed edge of the graph.
   struct Arc {
     std::uint32_t to = 0;
     double w2_m = 0.0;
@@ -50,11 +55,11 @@ class RiskGraph {
     LineComponent line;
   };
 
-  /// Beyond this many σ the tail is below 1e-9, and what it holds below that.
+  /// Beyond this many σ the tail has a probability below 1e-9 and an excess below that.
   static constexpr double kNearSigmas = 6.0;
 
   /// Keeps a reference to the world. O(vertices · (arcs + obstacles)) with boxes that rule most
-  /// out. kBadInput for options out of range; kInfeasible when a goal component stands too near an
+  /// out. kBadInput for options out of range; kInfeasible when a goal component is too near an
   /// obstacle.
   static Result<RiskGraph> make(const World& world, const Mixture& goal,
                                 const RiskGraphOptions& options);
@@ -73,14 +78,14 @@ class RiskGraph {
   std::span<const Arc> arcs() const { return arcs_; }
   std::uint32_t first_arc_of(std::uint32_t vertex) const { return arc_offset_[vertex]; }
 
-  /// Length of the shortest way from a vertex to a goal component [m], +∞ when there is none: the
+  /// Length of the shortest path from a vertex to a goal component [m], +∞ when there is none: the
   /// root of Q(m, n) of (11a). Dijkstra from every goal, once.
   double to_goal_m(std::uint32_t vertex, std::size_t goal) const {
     return to_goal_m_[vertex * goals_ + goal];
   }
 
-  /// What a convex obstacle of the world has near it, by index. Part 0: vertices. Part f = 1 …
-  /// checks_between: arcs, at f/(checks_between + 1) of their W₂ geodesic.
+  /// The Gaussians near a convex obstacle of the world, by its index. Part 0: vertices. Part f = 1
+  /// … checks_between: arcs, at f/(checks_between + 1) of their W₂ geodesic.
   std::span<const Near> near(std::size_t part, std::size_t obstacle) const {
     return near_[part][obstacle];
   }
@@ -88,9 +93,9 @@ class RiskGraph {
   /// The vertex that equals a Gaussian to 1e-9, if any.
   std::optional<std::uint32_t> find(const Gaussian& g) const;
 
-  /// Adds a Gaussian the swarm is in without it being of C: arcs lead out of it, none in. They
-  /// reach at least twice as far as to the nearest vertex, since its shape alone may be farther
-  /// than a small radius. Nothing when its mean lies in an obstacle.
+  /// Adds a Gaussian of the swarm that is not in C: arcs lead out of it, none in. They reach at
+  /// least twice as far as to the nearest vertex, since its shape alone may be farther than a small
+  /// radius. Nothing when its mean lies in an obstacle.
   std::optional<std::uint32_t> add_source(const Gaussian& g);
 
   /// Forgets all added sources.

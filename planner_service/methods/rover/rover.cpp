@@ -20,9 +20,11 @@ namespace {
 // Flows below this join the others that leave the same component: no robot would ride them.
 constexpr double kNegligibleMass = 1e-6;
 
-// What joining dust of dozens of sources may have moved: a tenth of one of 500 robots.
+// Error of a goal weight that still counts as arrived: removing the negligible flows of dozens of
+// sources may have moved this much, a tenth of one of 500 robots.
 constexpr double kArrivedTolerance = 2e-4;
 
+// Weights of the components, scaled to sum to 1: the masses of the FTMPC.
 std::vector<double> normalised_weights(const Mixture& mixture) {
   std::vector<double> weights;
   double total = 0.0;
@@ -34,7 +36,8 @@ std::vector<double> normalised_weights(const Mixture& mixture) {
   return weights;
 }
 
-// The constraint a mixture breaks most, for an error; empty when it keeps all.
+// The GMM-CVaR constraint (11g) that a mixture violates most, as an error text with the parameter
+// values that would admit the mixture; empty when it keeps all constraints.
 std::string broken_limit(const Mixture& mixture, const World& world, const RiskLimit& risk) {
   std::string text;
   double worst_m = risk.delta_m;
@@ -50,6 +53,8 @@ std::string broken_limit(const Mixture& mixture, const World& world, const RiskL
   return text;
 }
 
+// Highest density of the swarm at the means of its components [robots/m²]. Constraint (11f) tests
+// the density at the same points.
 double highest_density_per_m2(const Mixture& mixture, double robots) {
   double highest = 0.0;
   for (const WeightedGaussian& component : mixture.components()) {
@@ -58,13 +63,14 @@ double highest_density_per_m2(const Mixture& mixture, double robots) {
   return highest;
 }
 
-// Without dust: what leaves each vertex is what was there.
+// Removes flows of negligible mass and scales the others, so that what leaves each vertex is
+// exactly the mass that was there: the solver keeps (11b) to its tolerance alone.
 std::vector<StageFlow> without_negligible(std::span<const StageFlow> flows,
                                     std::span<const VertexMass> sources) {
   std::vector<StageFlow> kept;
   for (const VertexMass& source : sources) {
     const std::size_t first = kept.size();
-    StageFlow largest{source.vertex, source.vertex, 0.0};  // what the solver lost stays
+    StageFlow largest{source.vertex, source.vertex, 0.0};  // waits if the solver lost it
     double sum = 0.0;
     for (const StageFlow& flow : flows) {
       if (flow.from != source.vertex) continue;
@@ -82,6 +88,7 @@ std::vector<StageFlow> without_negligible(std::span<const StageFlow> flows,
   return kept;
 }
 
+// Mass at each vertex after a stage. Scaled to sum to 1, so that errors do not add up over steps.
 std::vector<VertexMass> masses_after(std::span<const StageFlow> flows) {
   std::map<std::uint32_t, double> masses;
   for (const StageFlow& flow : flows) masses[flow.to] += flow.mass;
@@ -100,6 +107,8 @@ class FlowBuilder {
       nodes_.push_back({c.gaussian, MissionTime(0.0), c.weight});
     }
   }
+  // Appends a step. Its arcs begin at the nodes that the step before appended last, so that
+  // step.from has to be the mixture that the step before ended with.
   void append(const RoverStep& step) {
     const std::size_t first = nodes_.size() - step.from.components().size();
     const std::size_t next = nodes_.size();
@@ -130,6 +139,8 @@ Rover::Rover(RiskGraph graph, const Mixture& goal, const RoverOptions& options)
   forget();
 }
 
+// The offline stage. The goal itself is tested against (11f) and (11g) first: no sequence of steps
+// could end in a mixture that violates its constraints.
 Result<Rover> Rover::make(const World& world, const Mixture& goal, const RoverOptions& options) {
   const bool valid = options.mpc.costs.horizon >= 1 && options.mpc.costs.horizon <= 10 &&
                      options.mpc.costs.lambda_stage > 0.0 &&
@@ -164,6 +175,9 @@ void Rover::forget() {
                           graph_.world().convex_obstacles().size());
 }
 
+// Maps each component of the current mixture to a vertex of the graph. A component that is not a
+// vertex, or whose vertex another component has taken, is added as a temporary source. An error
+// names a component that no path joins to any goal component, before a linear program is built.
 Result<std::vector<VertexMass>> Rover::locate(const Mixture& current) {
   graph_.drop_sources();
   std::vector<VertexMass> masses;
@@ -186,7 +200,7 @@ Result<std::vector<VertexMass>> Rover::locate(const Mixture& current) {
     if (!leads_on) {
       return fail(
           ErrorCode::kInfeasible,
-          fmt::format("component {} at ({:.2f}, {:.2f}): no way to any goal component; "
+          fmt::format("component {} at ({:.2f}, {:.2f}): no path to any goal component; "
                       "enlarge the transport radius ({} m), or shrink the mean clearance "
                       "({} m) or the spacing ({} m)",
                       i, g.mean_m().x(), g.mean_m().y(), options_.graph.transport_radius_m,
@@ -207,6 +221,8 @@ Mixture Rover::mixture_of(std::span<const VertexMass> masses) const {
   return *std::move(mixture);
 }
 
+// Plans h steps from the sources and takes the first. All stages are cleaned of negligible flows,
+// so that the CVaR reported for each step is that of the mixture the robots would follow.
 Result<RoverStep> Rover::step_from(std::span<const VertexMass> sources) {
   auto horizon = solve_ftmpc(graph_, sources, goal_weights_, options_.mpc, memory_);
   if (!horizon) return tl::unexpected(horizon.error());
@@ -221,6 +237,7 @@ Result<RoverStep> Rover::step_from(std::span<const VertexMass> sources) {
     step.cvar_m.push_back(max_mixture_cvar_m(mixture, graph_.world(), options_.graph.risk.alpha));
     if (p == 0) {
       step.to = std::move(mixture);
+      // Index of a vertex among the components of a mixture.
       const auto place = [](std::span<const VertexMass> in, std::uint32_t vertex) {
         const auto at = std::find_if(in.begin(), in.end(),
                                      [&](const VertexMass& m) { return m.vertex == vertex; });
@@ -245,6 +262,7 @@ Result<RoverStep> Rover::step(const Mixture& current) {
   return step_from(*sources);
 }
 
+// The swarm has arrived when its mass is at goal components alone, each with its weight.
 bool Rover::arrived(std::span<const VertexMass> masses) const {
   return std::all_of(masses.begin(), masses.end(), [&](const VertexMass& m) {
     return m.vertex < graph_.goals() &&
@@ -252,6 +270,8 @@ bool Rover::arrived(std::span<const VertexMass> masses) const {
   });
 }
 
+// Receding horizon over the whole mission: step after step, each from the mixture where the one
+// before ended, until the goal weights are reached.
 Result<RoverMission> Rover::plan(const Mixture& start, const Mixture& goal) {
   SWARM_ASSERT(goal.components().size() == goal_weights_.size());
   goal_weights_ = normalised_weights(goal);
@@ -280,7 +300,8 @@ Result<RoverMission> Rover::plan(const Mixture& start, const Mixture& goal) {
                               options_.graph.risk.delta_m, options_.mpc.costs.horizon));
     }
     if (!moves) {
-      // Linearised elsewhere there may be a way.
+      // A swarm that stops short of its goal may be held by rows that were linearised around other
+      // weights. Without them the same step is solved once more; a second stop is an error.
       forget();
       is_retry = true;
       continue;

@@ -12,6 +12,7 @@
 
 namespace swarm::planner {
 
+/// Parameters of ROVER: its graph, its FTMPC, and the time scale of its steps.
 struct RoverOptions {
   RiskGraphOptions graph{};
   FtmpcOptions mpc{};
@@ -21,6 +22,7 @@ struct RoverOptions {
 
 /// One step of the mission: from the current mixture to the next.
 struct RoverStep {
+  /// Mass that moves from a component of `from` to one of `to`.
   struct Arc {
     std::size_t from = 0;  ///< component of `from`
     std::size_t to = 0;    ///< component of `to`
@@ -35,6 +37,7 @@ struct RoverStep {
   HorizonPlan horizon;
 };
 
+/// A whole mission: the flow, and the steps it was made of.
 struct RoverMission {
   FlowPlan plan;
   std::vector<RoverStep> steps;
@@ -55,9 +58,9 @@ class Rover {
 
   /// The whole mission from `start`, step by step, as one flow: FlowPlan::sources()[i] is start
   /// component i, sinks()[j] goal component j, with the weights of `goal`, which are otherwise
-  /// those of make(). (11g) holds at every step, start included, else kInfeasible says what to
-  /// loosen. With FtmpcOptions::soften the start, and the steps it takes to mend it, may break it:
-  /// for a swarm that flies already.
+  /// those of make(). (11g) holds at every step, start included, else kInfeasible names the
+  /// parameter to loosen. With FtmpcOptions::soften the start, and the steps until it is satisfied,
+  /// may break it: for a swarm that flies already.
   Result<RoverMission> plan(const Mixture& start, const Mixture& goal);
   Result<RoverMission> plan(const Mixture& start) { return plan(start, goal_); }
 

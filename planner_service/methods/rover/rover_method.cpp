@@ -14,7 +14,7 @@
 namespace swarm::planner {
 namespace {
 
-/// But for their weights, which may differ from one plan to the next.
+/// Whether two mixtures differ in their weights at most: the graph depends on the components alone.
 bool have_same_components(const Mixture& a, const Mixture& b) {
   return std::equal(a.components().begin(), a.components().end(), b.components().begin(),
                     b.components().end(), [](const auto& l, const auto& r) {
@@ -32,7 +32,7 @@ std::vector<std::size_t> led_to(const MeasuredSwarm& swarm) {
   return led;
 }
 
-/// What a mission may set of rover.
+/// Options of rover in a mission.
 struct RoverKeys : CollocationKeys {
   std::uint32_t horizon = 3;
   double replan_period_s = 1.0;
@@ -84,6 +84,8 @@ PlanningTraits RoverMethod::traits() const {
   return traits;
 }
 
+// The planner of a map and a goal. Making one builds the risk graph, the offline stage of the
+// paper, so that it is kept until the map or the goal components change.
 Result<Rover*> RoverMethod::rover_for(const World& world, const Mixture& goal) {
   if (!rover_ || !(world_ == world) || !have_same_components(goal_, goal)) {
     rover_.reset();
@@ -111,11 +113,14 @@ Result<PlanResult> RoverMethod::plan(const PlanRequest& request, const PlanConte
   return result;
 }
 
+// The risk enters the arc lengths of the graph: it is built again.
 void RoverMethod::set_risk(const RiskLimit& risk) {
   options_.graph.risk = risk;
   rover_.reset();
 }
 
+// Robots in motion may already violate (11g), and an infeasible plan would leave them without one:
+// from here on excess is penalised instead of refused.
 Result<std::vector<RobotGroup>> RoverMethod::measure(const MeasuredSwarm& swarm) {
   if (!options_.mpc.soften) {
     options_.mpc.soften = true;

@@ -13,7 +13,7 @@
 
 namespace swarm::planner {
 
-/// The options of ROVER that a mission asks for.
+/// The options of ROVER in a mission.
 RoverOptions rover_options(const Mission& mission);
 
 /// ROVER as a planning method: a plan from where the robots are at each period, in whole robots.
@@ -29,8 +29,8 @@ class RoverMethod final : public PlanningMethod {
   void set_risk(const RiskLimit& risk) override;
   PlanningTraits traits() const override;
   std::optional<Duration> replan_period() const override { return replan_period_; }
-  /// The robots of a leg are a group. From the first call on plans may break (11g) where the swarm
-  /// does so already: the way out of that comes first.
+  /// The robots of a leg are a group. From the first call on a plan may violate (11g) where the
+  /// swarm does so already; such a plan first reduces the violation.
   Result<std::vector<RobotGroup>> measure(const MeasuredSwarm& swarm) override;
   /// Weights as whole numbers of robots.
   Mixture goal_from(const MeasuredSwarm& swarm) const override;

@@ -13,13 +13,15 @@ namespace {
 constexpr int kDoublings = 60;
 constexpr int kRounds = 100;  // bisection alone would need 60
 
-// Of a component beyond z: probability, E[(Y − z)⁺] and density.
+// The part of a component beyond z: its probability, its E[(Y − z)⁺] and its density at z.
 struct Tail {
   double probability = 0.0;
   double excess_m = 0.0;
   double density = 0.0;
 };
 
+// For a normal Y with mean m and deviation σ, and u = (z − m)/σ: P(Y > z) = erfc(u/√2)/2 and E[(Y −
+// z)⁺] = σ (φ(u) − u P). The difference is clamped at 0, where cancellation may make it negative.
 Tail tail_of(const LineComponent& c, double z_m) {
   const double u = (z_m - c.mean_m) / c.sigma_m;
   if (u > 38.0) return {};  // below the smallest double
@@ -28,6 +30,7 @@ Tail tail_of(const LineComponent& c, double z_m) {
   return {probability, std::max(0.0, c.sigma_m * (bell - u * probability)), bell / c.sigma_m};
 }
 
+// The tail of a mixture is the sum of its components' tails, by weight.
 Tail tail_of(std::span<const LineComponent> components, double z_m) {
   Tail sum;
   for (const LineComponent& c : components) {
@@ -39,13 +42,17 @@ Tail tail_of(std::span<const LineComponent> components, double z_m) {
   return sum;
 }
 
-// Positive where the tail's mean is below ε.
+// (ε − z) P(Y > z) − E[(Y − z)⁺]: positive where the mean of the tail beyond z is below ε. Its
+// slope in z is −(ε − z) times the density at z.
 double slack_m(const Tail& tail, double z_m, double epsilon_m) {
   return (epsilon_m - z_m) * tail.probability - tail.excess_m;
 }
 
 }  // namespace
 
+// First a bracket [low, high] with the root inside is found by doubling the distance below ε, then
+// Newton steps narrow it. A step that would leave the bracket is replaced by bisection, so that the
+// search converges even where the density vanishes.
 TailAtLimit tail_at_limit(std::span<const LineComponent> components, double epsilon_m) {
   double sigma_m = 0.0;
   for (const LineComponent& c : components) {

@@ -17,7 +17,7 @@
 /// With z = VaR_α(Y) it is the paper's linearisation (22), which touches (11g) at the weights where
 /// it was made. Where these keep (11g) with slack, the z that admits most of them, ω times the
 /// largest factor, is better: it touches (11g) where the ray through ω meets it. That z cuts off
-/// the tail whose mean is ε, and the tail's probability against α tells whether (11g) holds.
+/// the tail whose mean is ε, and (11g) holds exactly when the tail's probability is at most α.
 namespace swarm::planner {
 
 struct TailAtLimit {

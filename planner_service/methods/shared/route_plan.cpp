@@ -7,6 +7,7 @@
 
 namespace swarm::planner {
 
+// A speed of 0 means that the bodies are not known: then robots do not limit the legs.
 LegSpeed leg_speed(double speed_mps, const SwarmLimits& limits) {
   LegSpeed speed{.means_mps = speed_mps};
   if (limits.robot_speed_mps > 0.0) speed.robots_mps = limits.robot_speed_mps;
@@ -29,6 +30,7 @@ Result<FlowPlan> flow_of(std::span<const Route> routes, const PlanRequest& reque
                            request.goal.components().size(), speed);
 }
 
+// Mean path of a robot as the mass-weighted length of the means' paths.
 double mean_path_m(const FlowPlan& flow) {
   double path_m = 0.0;
   for (const PlanLeg& leg : flow.legs()) {
@@ -38,6 +40,7 @@ double mean_path_m(const FlowPlan& flow) {
   return path_m;
 }
 
+// The cost is Σ λᵢⱼ Lᵢⱼ of (13), with W₂ lengths; the paths count the means alone.
 void measure_routes(PlanStats& stats, std::span<const Route> raw, std::span<const Route> routes) {
   for (const Route& route : raw) {
     stats.raw_mean_path_m += route.mass * mean_length_m(route.waypoints);
@@ -48,6 +51,8 @@ void measure_routes(PlanStats& stats, std::span<const Route> raw, std::span<cons
   }
 }
 
+// A flow has no routes before smoothing: raw and planned length are the same until the caller
+// replaces the raw one.
 void measure_flow(PlanStats& stats, const FlowPlan& flow) {
   stats.planned_mean_path_m = mean_path_m(flow);
   stats.raw_mean_path_m = stats.planned_mean_path_m;

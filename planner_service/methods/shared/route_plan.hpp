@@ -13,7 +13,7 @@
 #include "swarmflow/mission/body_limits.hpp"
 #include "swarmflow/core/flow_plan.hpp"
 
-/// What methods share that end in routes or a flow.
+/// Functions shared by methods that end in routes or a flow.
 namespace swarm::planner {
 
 /// How fast the legs of a plan may be: means at `speed_mps`, robots as their bodies allow, where

@@ -9,7 +9,7 @@
 /// Keys of the mission's planner section that more than one built-in method reads.
 namespace swarm::planner {
 
-inline constexpr double kLongest_m = 1e6;  ///< beyond this it is no place robots drive in
+inline constexpr double kLongest_m = 1e6;  ///< no robot drives farther than this
 
 /// Of methods with a roadmap.
 struct RoadmapKeys {

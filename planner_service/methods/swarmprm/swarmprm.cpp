@@ -27,7 +27,7 @@
 namespace swarm::planner {
 namespace {
 
-// What a cap has to leave above the density of start and goal for mass to move at all.
+// Ratio of a cap to the density of start and goal that leaves room for mass to move at all.
 constexpr double kAboveEnds = 1.05;
 
 std::string in_one_line(std::string text) {
@@ -49,7 +49,7 @@ double density_of_ends_per_m2(const PlanRequest& request, double robots) {
   return highest;
 }
 
-// One plan in the making: what its stages share.
+// A plan while it is made: the data that its stages share.
 class PlanInProgress {
  public:
   PlanInProgress(const PlanRequest& request, const SwarmPrmOptions& options, const SwarmPrmRun& run)
@@ -142,6 +142,8 @@ Result<std::vector<Route>> PlanInProgress::choose_routes(Roadmap& roadmap, PlanS
   }
 }
 
+// Shortcuts remove large detours, tightening pulls the rest straight around corners, and waypoints
+// that tightening added without need are dropped last.
 void PlanInProgress::smooth(Waypoints& waypoints) {
   take_shortcuts(waypoints, options_.shortcuts, checker_, run_.rng);
   const TightenOptions band{.sigma_min_m = kSqueezeBelowMin * options_.sampler.sigma_min_m};
@@ -149,7 +151,9 @@ void PlanInProgress::smooth(Waypoints& waypoints) {
   drop_superfluous(waypoints, checker_);
 }
 
-// The flow under a density cap, node by node or time by time.
+// The flow under a density cap: mass counted at each node over all time (static), or at each node
+// and time (timed). A static flow is not smoothed: smoothing would move mass away from the nodes
+// whose capacities bound it.
 Result<PlanResult> PlanInProgress::capped(PlanResult result, const DensityCap& cap) {
   result.stats.cap_per_m2 = cap.max_per_m2;
   if (!options_.density_is_timed) {
@@ -180,6 +184,7 @@ Result<PlanResult> PlanInProgress::capped(PlanResult result, const DensityCap& c
   return result;
 }
 
+// Alg. 2 without a cap: routes, smoothing, merged flow.
 Result<PlanResult> PlanInProgress::uncapped(PlanResult result) {
   auto routes = choose_routes(result.roadmap, result.stats);
   if (!routes) return tl::unexpected(routes.error());
@@ -195,8 +200,9 @@ Result<PlanResult> PlanInProgress::uncapped(PlanResult result) {
   return result;
 }
 
-// The plan under the cap of the bodies, where the uncapped one is denser than they can be. Start
-// and goal stay as they are: where they are denser than the cap themselves it is raised to them.
+// Plans again under the cap of the bodies where the uncapped plan is denser than bodies can be
+// packed. Start and goal are given: where they are denser than the cap, the cap is raised above
+// them. If the capped plan fails the uncapped one is returned with a warning.
 PlanResult PlanInProgress::capped_where_needed(PlanResult uncapped) {
   const double robots = options_.density.robots;
   if (densest_disc_of(uncapped.plan, robots).per_m2 <= options_.limits.packing_per_m2) {
@@ -228,6 +234,7 @@ PlanResult PlanInProgress::capped_where_needed(PlanResult uncapped) {
 
 }  // namespace
 
+// Start and goal components come first, the samples after them.
 Roadmap make_roadmap(const PlanRequest& request, const SwarmPrmOptions& options, Rng& rng) {
   std::vector<Gaussian> nodes = terminals_of(request);
   const std::size_t terminals = nodes.size();

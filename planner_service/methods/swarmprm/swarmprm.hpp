@@ -16,7 +16,7 @@ namespace swarm::planner {
 /// request, the next its goal components.
 Roadmap make_roadmap(const PlanRequest& request, const SwarmPrmOptions& options, Rng& rng);
 
-/// Chance and time of a plan in the making.
+/// Random numbers and stage times of a plan while it is made.
 struct SwarmPrmRun {
   Rng& rng;
   StageTimer& stage;  ///< runs since the roadmap was begun
@@ -24,7 +24,7 @@ struct SwarmPrmRun {
 
 /// SwarmPRM, Alg. 2, lines 3–7, on a roadmap of the request: shortest routes, transport problem,
 /// smoothing; with a density cap min-cost flow instead. kInfeasible names the components that no
-/// route joins, or what is denser than the cap, and what to loosen.
+/// route joins, or those denser than the cap, and the parameters to loosen.
 Result<PlanResult> plan_on_roadmap(Roadmap roadmap, const PlanRequest& request,
                                    const SwarmPrmOptions& options, const SwarmPrmRun& run);
 

@@ -9,7 +9,7 @@
 
 namespace swarm::planner {
 
-/// What a mission may set of swarmprm.
+/// Options of swarmprm in a mission; the text of each is shown by --describe.
 struct SwarmPrmKeys : RoadmapKeys {
   std::string sampler = "fit";
   std::string density_cap = "timed";

@@ -30,6 +30,8 @@ PlanningTraits SwarmPrmMethod::traits() const {
   return traits;
 }
 
+// A roadmap for the request: a new one for a single plan, else the kept one, repaired where the
+// world or the ends changed.
 Roadmap SwarmPrmMethod::roadmap_for(const PlanRequest& request, Rng& rng) {
   if (!options_.keeps_roadmap) return make_roadmap(request, options_, rng);
   if (live_) {
@@ -44,6 +46,7 @@ Roadmap SwarmPrmMethod::roadmap_for(const PlanRequest& request, Rng& rng) {
   return live_->roadmap();
 }
 
+// Ends are checked first: an error there is clearer than a roadmap that does not reach them.
 Result<PlanResult> SwarmPrmMethod::plan(const PlanRequest& request, const PlanContext& context) {
   StageTimer stage(context.clock);
   const auto checked = check_endpoints(request.world, request.start, request.goal, options_.risk);
@@ -52,6 +55,7 @@ Result<PlanResult> SwarmPrmMethod::plan(const PlanRequest& request, const PlanCo
                          {context.rng, stage});
 }
 
+// Nodes and edges depend on the risk limit: the roadmap is sampled again.
 void SwarmPrmMethod::set_risk(const RiskLimit& risk) {
   options_.risk = risk;
   live_.reset();

@@ -10,6 +10,7 @@
 namespace swarm::planner {
 namespace {
 
+// The key has been validated: any other name is "fit".
 SamplerKind sampler_named(std::string_view word) {
   if (word == "uniform") return SamplerKind::kUniform;
   return word == "halton" ? SamplerKind::kHalton : SamplerKind::kFit;
@@ -17,6 +18,8 @@ SamplerKind sampler_named(std::string_view word) {
 
 }  // namespace
 
+// A roadmap is kept only for missions in flight, where obstacles may change; the speed is lowered
+// to that of the bodies where the cap is chosen automatically.
 SwarmPrmOptions swarmprm_options(const MethodContext& context) {
   const PlannerSpec& spec = context.mission.planner;
   const SwarmPrmKeys keys = swarmprm_keys().read(context.options());

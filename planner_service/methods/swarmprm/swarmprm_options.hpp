@@ -22,15 +22,15 @@ struct SwarmPrmOptions {
   std::uint32_t shortcuts =
       200;                  ///< smoothing tries per route; 0 leaves the roadmap's routes alone
   double speed_mps = 1.25;  ///< of the means along a route
-  DensityCap density{};     ///< asked for; 0 = none
+  DensityCap density{};     ///< requested; 0 = none
   SwarmLimits limits{};     ///< what the bodies can follow; zeros: not known, nothing is limited
   bool cap_is_automatic = false;  ///< no cap unless the plan is denser than `limits`
   bool density_is_timed = true;   ///< counts mass at each time; else all that ever passes
   bool keeps_roadmap = true;      ///< for the next plan, which repairs it; costs more at first
 };
 
-/// The options that a mission asks for. Where its density cap is `auto` the speed is that of the
-/// limits at most.
+/// The options of a mission. Where its density cap is `auto` the speed is that of the limits at
+/// most.
 SwarmPrmOptions swarmprm_options(const MethodContext& context);
 
 }  // namespace swarm::planner

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-// The bodies of fallen robots in the planner's scene.
+// The bodies of failed robots in the planner's scene.
 #include <gtest/gtest.h>
 
 #include "swarmflow/core/cvar.hpp"
@@ -69,7 +69,7 @@ TEST(PlannedBodies, CarryNoMass) {
   const auto entry = [&] { return bench.keeper.newest().entries.at(3).source; };
   EXPECT_EQ(entry(), PlanEntry::kAnywhere) << "it is in no group";
 
-  bench.report(RobotId(3));  // sent before it fell
+  bench.report(RobotId(3));  // sent before it failed
   bench.step_after(SetRisk{0.06});
   EXPECT_EQ(entry(), PlanEntry::kAnywhere);
 

@@ -86,11 +86,11 @@ class KeeperBench {
   SteadyTime now{std::chrono::seconds(100)};
   UtcTime utc{std::chrono::seconds(100)};
   std::vector<Vec2> positions_m;
-  // What robots report beside their positions.
+  // Values that robots report besides their positions.
   double lag_s = 0.0;
   double robots_plan_time_s = 0.0;
   std::uint32_t robots_version = 1;
-  // What all steps so far have given.
+  // Results of all steps so far.
   std::vector<PlanClock> readings;
   std::vector<planner::PlanKeeper::Notice> notices;
   int published = 0;

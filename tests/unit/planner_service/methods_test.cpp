@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-// What all planning methods have in common, and what Planner keeps from one plan to the next.
+// The contract of all planning methods, and the state that Planner keeps from one plan to the next.
 #include <gtest/gtest.h>
 
 #include "planner_service/flow/plan_density.hpp"
@@ -126,7 +126,7 @@ TEST_P(KeptPlanners, FollowTheMapTheGoalAndTheRisk) {
   EXPECT_TRUE(keeps(plan_in(scene().world, scene().goal), scene().world));
 }
 
-TEST_P(KeptPlanners, PlanAnewFromWhereRobotsAre) {
+TEST_P(KeptPlanners, PlanAnewFromTheRobotPositions) {
   Planner planner = testing::planner_of(mission_of(GetParam()));
   Rng rng(1);
   const auto first =

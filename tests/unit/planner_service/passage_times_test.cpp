@@ -60,7 +60,7 @@ TEST(PassageTimes, AreThoseOfEachGroup) {
   EXPECT_DOUBLE_EQ(groups[0].share, 0.75);
   EXPECT_DOUBLE_EQ(groups[0].leaves.first.count(), 0.0);
   EXPECT_DOUBLE_EQ(groups[1].leaves.first.count(), 10.0);
-  // A quarter of the way of the legs from x = 20 m to 60 m.
+  // A quarter of the legs from x = 20 m to 60 m.
   ASSERT_TRUE(groups[0].passes && groups[1].passes);
   EXPECT_DOUBLE_EQ(groups[0].passes->half.count(), 20.0 + 50.0 / 4.0);
   EXPECT_DOUBLE_EQ(groups[1].passes->half.count(), 30.0 + 40.0 / 4.0);
@@ -74,7 +74,7 @@ double speed_mps(const Mission& mission) {
   return testing::planner_of(mission).method().traits().speed_mps;
 }
 
-// When half of the second group passes where no density is asked for.
+// When half of the second group passes without a density cap.
 MissionTime free_half(Mission mission, std::uint64_t seed) {
   mission.planner.density_cap_per_m2 = 0.0;
   Rng rng(seed);

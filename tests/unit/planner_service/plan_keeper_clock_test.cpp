@@ -22,14 +22,14 @@ TEST(PlanKeeperClock, RunsWithTheMissionAndStopsInAPause) {
   bench.keeper.set_phase(MissionPhase::kRunning);
   bench.run_for(5);
   const double running_s = bench.keeper.clock(bench.utc).plan_time_s;
-  EXPECT_NEAR(running_s, 4.9, 1e-9);  // from the first step on that knows of the start
+  EXPECT_NEAR(running_s, 4.9, 1e-9);  // from the first step after the start
 
   bench.keeper.set_phase(MissionPhase::kPaused);
   bench.run_for(5);
   EXPECT_NEAR(bench.keeper.clock(bench.utc).plan_time_s, running_s, 1e-9);
 }
 
-/// What is written down and told is the clock: its readings interpolate to it.
+/// Published and recorded readings are those of the clock: they interpolate to it.
 TEST(PlanKeeperClock, ItsReadingsAreTheClock) {
   Bench bench;
   bench.keeper.set_phase(MissionPhase::kRunning);

@@ -89,7 +89,7 @@ TEST(PlanLimits, NameThePositionAndTimeOfADensityThatIsNotCapped) {
                         densest.per_m2, densest.at_m.x(), densest.at_m.y(), densest.time.count()));
 }
 
-TEST(PlanLimits, LowerTheSpeedOfBodiesWithLagUnlessADensityIsAskedFor) {
+TEST(PlanLimits, LowerTheSpeedOfBodiesWithLagUnlessADensityIsGiven) {
   Mission mission = standin(100);
   mission.robots.model = "unicycle";
   mission.robots.lag_s = declared_lag_s(mission.robots, {.accelerates = true, .turns = true});

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-// A method of a guest beside the built-in ones, and what the keeper asks it in flight.
+// A method of a guest beside the built-in ones, and the calls it gets from the keeper in flight.
 #include "swarmflow/planning/planning_registry.hpp"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-/// What the guest's method was asked.
+/// The calls that the guest's method received.
 struct Calls {
   int plans = 0;
   int orders = 0;
@@ -143,7 +143,7 @@ TEST(PlanKeeperMethod, PassesStuckRobotsAndAllowedRiskToTheMethod) {
   EXPECT_EQ(calls.risk.alpha, 0.11);
 }
 
-/// A plan from the wrong number of groups would lead robots anywhere.
+/// A plan with another number of sources would assign robots to wrong groups.
 TEST(Planner, RefusesAPlanWithOtherSourcesThanTheRequest) {
   class OneSource final : public PlanningMethod {
    public:

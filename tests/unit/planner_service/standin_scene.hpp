@@ -9,7 +9,7 @@
 
 namespace swarm::testing {
 
-/// Shortest way from start to goal means on the stand-in scene, obstacles grown by 0.2 m, means
+/// Shortest path from start to goal means on the stand-in scene, obstacles grown by 0.2 m, means
 /// assigned as the transport problem does [m].
 inline constexpr double kStandinMeanBound_m = 182.4;
 

@@ -32,7 +32,7 @@ void receive(link::StreamMeter& meter, std::uint32_t robot, std::uint32_t number
 TEST(StreamMeter, CountsWhatIsSkipped) {
   link::StreamMeter meter(2);
   for (const std::uint32_t number : {1U, 2U, 5U, 6U, 8U}) receive(meter, 0, number);
-  receive(meter, 1, 40);  // begins wherever it is first heard
+  receive(meter, 1, 40);  // counting begins with the first state received
 
   EXPECT_EQ(meter.counts().received, 6U);
   EXPECT_EQ(meter.counts().lost, 3U);

@@ -96,13 +96,13 @@ TEST(CappedFlow, RoutesCarryTheWeightsAndKeepTheCapacities) {
     for (std::size_t i = 0; i < 2; ++i) EXPECT_NEAR(out[i], scene.supplies[i], 1e-8);
     for (std::size_t j = 0; j < 2; ++j) EXPECT_NEAR(in[j], scene.demands[j], 1e-8);
     for (const auto& [mean, node] : load) EXPECT_LE(node.first, node.second + 1e-9);
-    EXPECT_NEAR(cost_m, flow->cost_m, 1e-6);  // masses to 1e-8, ways of 50 m
+    EXPECT_NEAR(cost_m, flow->cost_m, 1e-6);  // masses to 1e-8, paths of 50 m
     several += flow->routes.size() > 4 ? 1 : 0;
   }
   EXPECT_GT(several, 10);
 }
 
-TEST(CappedFlow, ReportsWhichDensityEveryoneNeeds) {
+TEST(CappedFlow, ReportsTheDensityThatTheWholeSwarmNeeds) {
   int checked = 0;
   for (std::uint64_t seed = 1; seed <= 30; ++seed) {
     FlowScene scene = flow_scene(seed, 25);

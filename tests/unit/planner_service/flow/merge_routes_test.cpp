@@ -57,7 +57,7 @@ TEST(MergeRoutes, SharesTheStretchThatTwoRoutesHaveInCommon) {
 }
 
 TEST(MergeRoutes, DelaysNoRouteToMerge) {
-  // Route 0 passes the crossing early and has a long way behind it, route 1 comes there late.
+  // Route 0 passes the crossing early and has a long path behind it, route 1 reaches it late.
   const Gaussian crossing = at(10, 0);
   const std::vector<Route> routes{{0, 0, 0.5, {at(0, 0), crossing, at(90, 0)}},
                                   {1, 1, 0.5, {at(10, 70), crossing, at(10, -10)}}};
@@ -80,7 +80,7 @@ TEST(MergeRoutes, KeepsRoutesApartThatRunAgainstEachOther) {
 
   const auto plan = build_merged_plan(routes, 2, 2, {1.0});
 
-  // At most one of the two places is passed together: both would be a circle.
+  // At most one of the two nodes is merged: merging both would close a cycle.
   ASSERT_TRUE(plan.has_value()) << plan.error().message;
   EXPECT_GE(plan->nodes().size(), 7U);
 }
@@ -109,7 +109,7 @@ TEST(MergeRoutes, KeepsEveryRouteSpeedAndArrivalOnRandomGrids) {
   std::size_t nodes_merged = 0;
   Rng rng(1);
   for (int round = 0; round < 100; ++round) {
-    // Ways from three starts on the left to two goals on the right over a few shared places.
+    // Routes from three starts on the left to two goals on the right over a few shared nodes.
     std::vector<Route> routes;
     for (std::size_t i = 0; i < 3; ++i) {
       for (std::size_t j = 0; j < 2; ++j) {

@@ -75,7 +75,7 @@ TEST(MinCostFlow, IsAsCheapAsALinearProgram) {
       left[net.arcs[a].from] -= x;
       left[net.arcs[a].to] += x;
     }
-    for (const double rest : left) EXPECT_NEAR(rest, 0.0, 1e-11);  // some arcs' dust
+    for (const double rest : left) EXPECT_NEAR(rest, 0.0, 1e-11);  // negligible flow of some arcs
     EXPECT_NEAR(cost, *best, 1e-9 * *best);
   }
   EXPECT_GT(feasible, 50);
@@ -83,7 +83,7 @@ TEST(MinCostFlow, IsAsCheapAsALinearProgram) {
 }
 
 TEST(MinCostFlow, LeavesOutWhatOnlyRoundingSends) {
-  // 0.1 + 0.2 is not 0.3: the difference of 5e-17 would go a way of its own.
+  // 0.1 + 0.2 is not 0.3: the difference of 5e-17 would take a path of its own.
   const std::vector<double> balance{0.1 + 0.2, 0.7, -0.3, -0.7};
   const std::vector<FlowArc> arcs{{.from = 0, .to = 2, .cost = 1.0},
                                   {.from = 1, .to = 3, .cost = 1.0},

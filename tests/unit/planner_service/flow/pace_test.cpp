@@ -25,17 +25,17 @@ TEST(Pace, SpreadsWaitingEvenlyOverTheShorterPath) {
 }
 
 TEST(Pace, PacesTheTightestPathFirst) {
-  // 0 -8- 2 -2- 3 and 1 -2- 2 -6- 4; both goals, 3 and 4, are also reached by slower ways.
+  // 0 -8- 2 -2- 3 and 1 -2- 2 -6- 4; both goals, 3 and 4, are also reached by slower paths.
   const auto times_s =
       paced(5, {{0, 2, 8}, {2, 3, 2}, {1, 2, 2}, {2, 4, 6}, {0, 3, 20}, {0, 4, 15}});
 
-  // The ways through 2 take 10 of 20 and 14 of 15 s (0 to 4), the tightest: 8 / 14 of 15 s.
+  // The paths through 2 take 10 of 20 and 14 of 15 s (0 to 4), the tightest: 8 / 14 of 15 s.
   EXPECT_DOUBLE_EQ(times_s[3], 20.0);
   EXPECT_DOUBLE_EQ(times_s[4], 15.0);
   EXPECT_DOUBLE_EQ(times_s[2], 15.0 * 8.0 / 14.0);
 }
 
-TEST(Pace, HasNoTimesForACircle) {
+TEST(Pace, HasNoTimesForACycle) {
   const std::vector<PacedLeg> circle{{0, 1, 1}, {1, 2, 1}, {2, 1, 1}};
 
   EXPECT_FALSE(earliest_times_s(3, circle).has_value());

@@ -150,7 +150,7 @@ TEST(PlanDensity, SharesOfAPeakAddUpToIt) {
   EXPECT_TRUE(peaks_above(plan, 100.0, 0.5, highest + 1e-5).empty());
 }
 
-TEST(PlanDensity, CountsWhatRestsBeforeAndAfter) {
+TEST(PlanDensity, CountsMassAtRestBeforeAndAfter) {
   const auto plan =
       FlowPlan::make({{at(0, 0, 0.5), MissionTime(3), 1.0}, {at(9, 0, 2.0), MissionTime(8), 1.0}},
                      {{0, 1, 1.0}})

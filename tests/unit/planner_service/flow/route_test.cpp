@@ -19,7 +19,7 @@ Gaussian round(double x, double y, double sigma_m) {
   return Gaussian::from_parameters({x, y}, sigma_m, sigma_m, 0.0);
 }
 
-// The longest way of points that are sampled on the border of the 2σ ellipse and within it.
+// The longest path of points that are sampled on the border of the 2σ ellipse and within it.
 double sampled_path_m(const Gaussian& from, const Gaussian& to) {
   const Mat2 map = transport_map(from, to);
   const Mat2 root = cholesky_lower(from.covariance_m2());
@@ -56,8 +56,8 @@ TEST(EndLegs, FindTheLongestPathOfAnEllipse) {
   }
 }
 
-TEST(EndLegs, HandleWhatHasNoDirection) {
-  // The mean stands still: every direction is as long, or one of two is.
+TEST(EndLegs, HandleLegsWithoutADirection) {
+  // The mean is at rest: all directions are equally long, or two opposite ones are the longest.
   EXPECT_NEAR(longest_robot_path_m(round(3, 4, 10), round(3, 4, 2)), 16.0, 1e-9);
   const Gaussian thin = Gaussian::from_parameters({3, 4}, 10.0, 2.0, 0.0);
   EXPECT_NEAR(longest_robot_path_m(round(3, 4, 10), thin), 16.0, 1e-9);

@@ -77,7 +77,7 @@ TEST_F(Smoothing, TighteningComesNearTheTautBand) {
   expect_same_ends(waypoints);
   expect_free(waypoints);
   EXPECT_LT(w2_length_m(waypoints), before_m);
-  // A point past both corners cannot have a shorter way.
+  // The path of a point past both corners cannot be shorter.
   const Vec2 leg = Vec2(30, 40) - Vec2(10, 10);
   EXPECT_GT(w2_length_m(waypoints), 2.0 * leg.norm() + 40.0);
   // Without any change of shape the band is two tangents, two arcs at the clearance k·1.5 m − δ and

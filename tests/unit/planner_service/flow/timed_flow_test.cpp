@@ -20,7 +20,7 @@ namespace {
 using testing::flow_scene;
 using testing::FlowScene;
 
-// Looks at the mixture alone, on a grid and at the means, between the times the planner looked at.
+// Evaluates the mixture alone, on a grid and at the means, between the times the planner sampled.
 double sampled_density_per_m2(const FlowPlan& plan, double robots, double step_s) {
   double highest = 0.0;
   for (double t = 0.0; t < plan.duration().count() + step_s; t += step_s) {
@@ -121,7 +121,7 @@ TEST(TimedFlow, PassesFiveHundredRobotsWhereTheStaticCapHasNoFlow) {
             options.risk.delta_m + kPlanTolerance_m);
 }
 
-TEST(TimedFlow, RefusesWhatIsTooDenseBeforeItMoves) {
+TEST(TimedFlow, RefusesAStartThatIsTooDense) {
   const FlowScene scene = flow_scene(1, 30);
   EdgeChecker checker(scene.world, scene.risk);
 
@@ -171,7 +171,7 @@ TEST(TimedFlow, ReportsHowManyFitWhenTimeIsShort) {
       << flow.error().message;
 }
 
-TEST(TimedFlow, ReportsWhenNoPathLeads) {
+TEST(TimedFlow, ReportsWhenNoPathExists) {
   const FlowScene scene = flow_scene(1, 0);
   EdgeChecker checker(scene.world, scene.risk);
 

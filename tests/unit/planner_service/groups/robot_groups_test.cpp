@@ -56,7 +56,7 @@ TEST(RobotGroups, DoNotReachThroughWalls) {
   }
 }
 
-TEST(RobotGroups, LetThoseWhoArrivedStay) {
+TEST(RobotGroups, LetArrivedRobotsStay) {
   const Gaussian& home = scene().goal.components()[1].gaussian;
   const std::vector<ReportedRobot> robots{{RobotId(0), home.mean_m(), true},
                                           {RobotId(1), home.mean_m() + Vec2(3, 2), true},

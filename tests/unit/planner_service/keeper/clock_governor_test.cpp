@@ -28,7 +28,7 @@ ClockGovernor running() {
 TEST(ClockGovernor, StartsAtZeroAndRunsWithTheMission) {
   ClockGovernor sut(PlanClockSpec{});
   sut.issue(1, at_s(0));
-  sut.advance(at_s(5), false);  // everyone waits for the start
+  sut.advance(at_s(5), false);  // all robots wait for the start
   EXPECT_EQ(sut.plan_time_s(), 0.0);
   EXPECT_EQ(sut.rate(), 0.0);
 
@@ -76,7 +76,7 @@ TEST(ClockGovernor, ArrivedRobotsAreInTime) {
   EXPECT_EQ(sut.rate(), 1.0);
 }
 
-TEST(ClockGovernor, GoesOnWhereTheRobotsAreAndNeverBack) {
+TEST(ClockGovernor, ContinuesWhereTheRobotsAreAndNeverGoesBack) {
   ClockGovernor sut = running();
   sut.catch_up(40.0);
   EXPECT_EQ(sut.plan_time_s(), 40.0);

@@ -25,7 +25,7 @@ TEST(RobotWatch, ForgetsRobotsWithoutUpdates) {
 TEST(RobotWatch, DistinguishesStuckFromRestingAndSlowRobots) {
   RobotWatch watch(3, seconds(5));
   for (int s = 0; s <= 10; ++s) {
-    watch.receive({RobotId(0), {1.0 + 0.01 * s, 1}, false}, true, at(s));  // wants to, cannot
+    watch.receive({RobotId(0), {1.0 + 0.01 * s, 1}, false}, true, at(s));  // under way but blocked
     watch.receive({RobotId(1), {2, 2}, true}, false, at(s));               // arrived
     watch.receive({RobotId(2), {3.0 + 0.1 * s, 3}, false}, true, at(s));   // 0.5 m every 5 s
   }

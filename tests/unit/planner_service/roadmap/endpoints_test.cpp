@@ -20,7 +20,7 @@ TEST(Endpoints, HaveNothingToReportWhenTheLimitHolds) {
   EXPECT_EQ(describe_violations(scene.goal, "goal", scene.world, {}), "");
 }
 
-TEST(Endpoints, NameComponentObstacleAndCure) {
+TEST(Endpoints, NameComponentObstacleAndRemedy) {
   const auto scene = testing::standin_scene();
   const RiskLimit strict{.alpha = 0.01, .delta_m = -0.2};
 

@@ -36,7 +36,7 @@ World with(const World& world, std::vector<Obstacle> obstacles) {
   return World::make(world.bounds_m(), std::move(obstacles)).value();
 }
 
-// What connect() makes of the same nodes in the same world, and nothing known before.
+// The roadmap that connect() builds from the same nodes in the same world, without earlier results.
 void expect_as_from_scratch(const LiveRoadmap& live, std::size_t terminals,
                             const LiveRoadmapOptions& options) {
   const Roadmap kept = live.roadmap();
@@ -131,7 +131,7 @@ TEST(LiveRoadmap, ChecksNothingWhenNothingHasChanged) {
   EXPECT_EQ(edges_of(live.roadmap()), before);
 }
 
-TEST(LiveRoadmap, LooksOnlyAtWhatAChangeCanTouch) {
+TEST(LiveRoadmap, ChecksOnlyEdgesThatAChangeCanAffect) {
   const auto scene = testing::standin_scene();
   LiveRoadmapOptions options;
   options.samples = 2000;
@@ -144,8 +144,8 @@ TEST(LiveRoadmap, LooksOnlyAtWhatAChangeCanTouch) {
 
   live.update(with(scene.world, obstacles), terminals_of(scene), rng);
 
-  // Ways that come within r + kσ of the obstacle, in the worst case: a disc of 2 + 10 + 9 m of
-  // 20 000 m² free, and a sample drawn for each that was lost, with all its edges.
+  // Edges that come within r + kσ of the obstacle, in the worst case: a disc of 2 + 10 + 9 m of 20
+  // 000 m² free, and a sample drawn for each that was lost, with all its edges.
   EXPECT_GT(live.work().edges_checked, 0U);
   EXPECT_GT(live.work().samples_lost, 0U);
   EXPECT_LT(live.work().edges_checked, all / 10);

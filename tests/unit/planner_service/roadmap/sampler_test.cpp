@@ -13,7 +13,7 @@ namespace {
 
 class Samplers : public ::testing::TestWithParam<SamplerKind> {};
 
-TEST_P(Samplers, DrawTheAskedNumberInFreeSpaceAndInRange) {
+TEST_P(Samplers, DrawTheRequestedNumberInFreeSpaceAndInRange) {
   const auto scene = testing::standin_scene();
   const RiskLimit risk;
   const SamplerOptions options{.kind = GetParam()};

@@ -25,7 +25,7 @@ TEST(Squeeze, NarrowsTowardsAWallExactlyToTheLimit) {
   ASSERT_TRUE(squeezed.has_value());
   EXPECT_EQ(squeezed->mean_m(), wide.mean_m());
   EXPECT_NEAR(std::sqrt(squeezed->covariance_m2()(1, 1)), (5.0 + kDelta_m) / k, 1e-6);
-  EXPECT_NEAR(squeezed->covariance_m2()(0, 0), 9.0, 1e-12);  // nothing to fear along the wall
+  EXPECT_NEAR(squeezed->covariance_m2()(0, 0), 9.0, 1e-12);  // unchanged along the wall
   EXPECT_LE(max_cvar_m(*squeezed, world, k), kDelta_m);
 }
 

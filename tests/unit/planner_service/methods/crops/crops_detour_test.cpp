@@ -12,7 +12,7 @@ namespace swarm::planner {
 namespace {
 
 TEST(CropsGuide, LeavesAPathWhereManyAreStuck) {
-  // One block in the middle, a way on either side.
+  // One block in the middle with a passage on either side.
   const World world = World::make({{0, 0}, {20, 20}}, {box(8, 6, 12, 14)}).value();
   int changed_sides = 0;
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
@@ -43,7 +43,7 @@ TEST(CropsGuide, TriplesTheCostOfTheNextEdges) {
   const Waypoints path = guide->routes()[0].waypoints;
   ASSERT_GE(path.size(), 7U);
 
-  // Between the second and the third place of the path: its edges 1, 2, 3 and 4.
+  // Between the second and the third node of the path: its edges 1, 2, 3 and 4.
   guide->reweight(0, 0.5 * (path[1].mean_m() + path[2].mean_m()));
 
   const auto is_costly = [&](const Vec2& a, const Vec2& b) {
@@ -105,7 +105,7 @@ TEST(CropsGuide, FollowsTheSwarmOnItsSamples) {
     EXPECT_EQ(route.waypoints.front().mean_m(), start->components()[route.from].gaussian.mean_m());
     EXPECT_EQ(route.waypoints.back().mean_m(), Vec2(17, 10));
     EXPECT_LE(worst_cvar_m(route.waypoints, world), RiskLimit{}.delta_m + kPlanTolerance_m);
-    // What was dear is still dear.
+    // Edges whose cost was raised keep the raised cost.
     EXPECT_EQ(mean_y_at(route.waypoints, 10.0) > 10.0, is_above);
   }
   EXPECT_FALSE(guide->move_ends(start.value(), single(10, 10, 0.6)).has_value());

@@ -84,7 +84,7 @@ TEST(CropsGuide, IsTheUnionOfEachNodesNearestVisibleNeighbours) {
   const double clearance_m = cvar_coefficient(0.05) * options.sigma_min_m + 0.2;
   const std::size_t n = graph.nodes.size();
 
-  // Start and goal reach farther when they are alone; the samples are enough to tell.
+  // Start and goal reach farther when they are isolated; it is enough to compare the samples.
   std::set<std::pair<std::uint32_t, std::uint32_t>> expected;
   for (std::uint32_t a = 2; a < n; ++a) {
     const Vec2& from = graph.nodes[a].mean_m();

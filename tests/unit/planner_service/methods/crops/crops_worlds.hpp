@@ -10,7 +10,7 @@
 #include "planner_service/methods/crops/crops_guide.hpp"
 #include "swarmflow/mission/mission_file.hpp"
 
-/// Worlds for guides, and what is looked at of their ways.
+/// Worlds for guides, and measures of their paths.
 namespace swarm::planner {
 
 inline Polygon box(double x0, double y0, double x1, double y1) {
@@ -54,7 +54,7 @@ inline double mean_y_at(const Waypoints& waypoints, double x) {
   return std::numeric_limits<double>::quiet_NaN();
 }
 
-// A wall with a gap of 2 m on the direct way; above the wall all is open.
+// A wall with a gap of 2 m on the direct path; above the wall all is open.
 //
 //   20  .                 .
 //   11  .       ##        .      start (2, 5), goal (18, 5)

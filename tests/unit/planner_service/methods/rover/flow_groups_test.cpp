@@ -39,7 +39,7 @@ std::vector<RobotGroup> grouped(const std::vector<ReportedRobot>& robots) {
   return group_by_flow(robots, scene().graph, scene().mission.goal, {});
 }
 
-/// `count` robots around a place, on a leg.
+/// `count` robots around a position, on a leg.
 void add(std::vector<ReportedRobot>& robots, const Vec2& mean_m, double sigma_m,
          std::uint32_t count, std::optional<std::uint32_t> leg, Rng& rng) {
   for (std::uint32_t i = 0; i < count; ++i) {
@@ -78,7 +78,7 @@ TEST(FlowGroups, AreTheRobotsOfALegWithTheirOwnMoments) {
   EXPECT_LT((groups[0].gaussian.covariance_m2() - covariance).norm(), 1e-6);
 }
 
-TEST(FlowGroups, JoinWhatCameTogetherAndDivideWhatIsWide) {
+TEST(FlowGroups, JoinNearGroupsAndDivideWideOnes) {
   Rng rng(2);
   std::vector<ReportedRobot> robots;
   add(robots, {25, 40}, 3.0, 60, 1, rng);
@@ -109,7 +109,7 @@ TEST(FlowGroups, HaveNoMeanInAnObstacle) {
   }
 }
 
-TEST(FlowGroups, LetThoseWhoArrivedStayWhereTheyWereLedTo) {
+TEST(FlowGroups, LetArrivedRobotsStayAtTheGoalTheyWereAssigned) {
   // Between two goals that overlap: nearer to the first, led to the second.
   const Vec2 between{175, 49};
   const std::vector<ReportedRobot> robots{
@@ -160,7 +160,7 @@ TEST(GoalInRobots, GivesWholeRobotsAndKeepsThoseWhoAreLed) {
   }
 }
 
-/// A source with two ways, whose second begins with a longer leg.
+/// A source with two routes, whose second begins with a longer leg.
 FlowPlan fork() {
   std::vector<PlanNode> nodes{{disc(0, 0, 3), MissionTime(0), 1.0},
                               {disc(20, 8, 5), MissionTime(18), 0.5},

@@ -39,7 +39,7 @@ LinearProgram random_program(Rng& rng, int rows, int columns) {
   return lp;
 }
 
-// Primal and dual feasibility and equal objectives prove the optimum, whoever found it.
+// Primal and dual feasibility and equal objectives prove the optimum, independently of the solver.
 void expect_optimal(const LinearProgram& lp, const LpSolution& solution) {
   ASSERT_EQ(solution.status, LpStatus::kOptimal);
   std::vector<double> activity(lp.row_lower.size(), 0.0);

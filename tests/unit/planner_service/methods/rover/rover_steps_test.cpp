@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-// ROVER in the loop: a plan each second from where the robots are.
+// ROVER in the loop: a plan each second from the positions of the robots.
 #include <algorithm>
 #include <optional>
 
@@ -24,7 +24,7 @@ using std::chrono::milliseconds;
 
 using testing::has;
 
-/// A keeper and robots that go exactly where its plans say.
+/// A keeper, and robots that follow its plans exactly.
 struct Bench {
   Mission mission = testing::rover_scene(2);
   std::optional<PlanKeeper> keeper;
@@ -65,7 +65,7 @@ struct Bench {
     const PlanEntry& entry = newest.entries[robot.robot.value()];
     return position_in_flow(plan, entry.source, entry.share / 65536.0, MissionTime(0));
   }
-  /// Each robot by a second along its first leg.
+  /// Moves each robot along its first leg for a second.
   void move() {
     const FlowPlan& plan = keeper->newest().planned.plan;
     for (ReportedRobot& robot : robots) {
@@ -91,7 +91,7 @@ struct Bench {
   }
 };
 
-TEST(RoverSteps, APlanEachSecondFromWhereTheRobotsAre) {
+TEST(RoverSteps, APlanEachSecondFromTheRobotPositions) {
   Bench bench;
   EXPECT_TRUE(bench.step_after(milliseconds(50)).publish);
   bench.report();
@@ -184,7 +184,7 @@ TEST(RoverSteps, CountTheLagOfRobotsAFewPlansBehind) {
   EXPECT_EQ(rate_of_plans_back(5), 1.0);
 }
 
-TEST(RoverSteps, APlannerThatComesBackPlansFromWhereTheRobotsAre) {
+TEST(RoverSteps, ARestartedPlannerPlansFromTheRobotPositions) {
   Bench bench;
   bench.step_after(milliseconds(50));
   bench.keeper->set_phase(MissionPhase::kRunning);
@@ -211,7 +211,7 @@ TEST(RoverSteps, ReportByHowMuchAPlanBreaksTheLimit) {
   bench.step_after(milliseconds(50));
   EXPECT_EQ(bench.keeper->newest().planned.excess.by_m, 0.0);
   bench.keeper->set_phase(MissionPhase::kRunning);
-  // A tenth of the robots stands with its mean 1 m beside the first obstacle, spread along it.
+  // A tenth of the robots is at rest with its mean 1 m beside the first obstacle, spread along it.
   for (std::size_t i = 0; i < 6; ++i) {
     bench.robots[i].position_m = {50.0 - 2.0, 60.0 + static_cast<double>(i)};
   }

@@ -58,7 +58,7 @@ TEST_P(RoverMissions, KeepTheirRiskAtEveryStepAndHalfway) {
     }
     tightest_m = std::max(tightest_m, cvar_m(times_s[i]));
   }
-  // Risk is used where it saves way: somewhere the promise is just kept.
+  // Risk is used where it shortens paths: somewhere the promise is just kept.
   EXPECT_GT(tightest_m, risk.delta_m - 0.01);
 }
 
@@ -155,7 +155,7 @@ TEST(Rover, KeepsTheDensityCap) {
   EXPECT_LE(capped, 0.8 * uncapped * (1.0 + 1e-6));
 }
 
-TEST(Rover, GoesOnFromWhereTheRobotsAre) {
+TEST(Rover, ContinuesFromTheRobotPositions) {
   const Mission mission = testing::rover_scene(1);
   RoverOptions options;
   options.mpc.soften = true;  // what is measured may break the limit
@@ -204,7 +204,8 @@ TEST(Rover, ReportsWhatToLoosen) {
     return mission.error().message;
   };
 
-  EXPECT_NE(message(closed, at(50, 80), at(150, 80)).find("no way to any goal"), std::string::npos);
+  EXPECT_NE(message(closed, at(50, 80), at(150, 80)).find("no path to any goal"),
+            std::string::npos);
   const std::string start = message(beside, at(90, 80), at(150, 20));
   EXPECT_NE(start.find("start: CVaR"), std::string::npos) << start;
   EXPECT_NE(start.find("obstacle 0"), std::string::npos) << start;
@@ -252,8 +253,8 @@ TEST(Rover, WithoutObstaclesThereIsNoRisk) {
 
   ASSERT_TRUE(mission.has_value()) << mission.error().message;
   for (const RoverStep& step : mission->steps) EXPECT_EQ(step.horizon.iterations, 1);
-  // 152.4 m straight from start to goal means; ways of the grid are at most 2.7 % longer but for
-  // the first and last leg, which join a component beside the grid's.
+  // 152.4 m straight from start to goal means; paths on the grid are at most 2.7 % longer but for
+  // the first and last leg, which join a component that is not on the grid.
   EXPECT_LT(mean_path_m(mission->plan), 1.05 * 152.4);
 }
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-// What nobody should ask for and somebody will: a clear error or a right plan, and never a hang.
+// Extreme and invalid inputs: each gives a clear error or a correct plan, and none hangs.
 #include <cmath>
 #include <limits>
 #include <string>
@@ -108,7 +108,7 @@ TEST(HardInputs, WorldThatIsFull) {
   }
 }
 
-TEST(HardInputs, WeightsOfNothing) {
+TEST(HardInputs, InvalidAndTinyWeights) {
   const Gaussian a = round(20, 20, 3);
   const Gaussian b = round(20, 60, 3);
 
@@ -120,7 +120,7 @@ TEST(HardInputs, WeightsOfNothing) {
     EXPECT_NE(mixture.error().message.find("weight"), std::string::npos);
   }
 
-  // Next to nothing is a weight: everything arrives.
+  // A tiny weight is a weight: all mass arrives.
   const StandinScene scene{world_of({}), Mixture::make({{1e-14, a}, {1.0 - 1e-14, b}}).value(),
                            one(round(150, 60, 3))};
   const auto planned = plan_scene(scene);
@@ -131,7 +131,7 @@ TEST(HardInputs, WeightsOfNothing) {
 TEST(HardInputs, TinyCovariances) {
   const StandinScene scene = standin_scene();
   const double least = Gaussian::kMinSigma_m;
-  // 1 mm wide, 0.3 m from a wall: nothing of the sampler's fits there, the way out must still.
+  // 1 mm wide, 0.3 m from a wall: no sample fits there, but the leg that leaves the start must.
   const StandinScene tiny{scene.world, one(round(49.6, 100, least)), one(round(150.4, 60, least))};
 
   expect_safe(plan_scene(tiny), scene.world);
@@ -196,7 +196,7 @@ TEST(HardInputs, OptionsAtTheirEnds) {
 }
 
 TEST(HardInputs, WorldsOfOddSize) {
-  // A hair across, and a thousand kilometres.
+  // A micrometre wide, a thousand kilometres wide, and a line.
   const World dot = World::make({{0, 0}, {1e-6, 1e-6}}, {}).value();
   const auto in_dot = plan_scene({dot, one(round(0, 0, 1)), one(round(1e-6, 0, 1))});
   EXPECT_TRUE(in_dot.has_value());
