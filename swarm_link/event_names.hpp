@@ -8,7 +8,7 @@
 
 #include "swarm_link/messages.hpp"
 
-/// How events are told in files and to people.
+/// Names of severities and event sources in files and messages.
 namespace swarm::link {
 
 constexpr std::string_view to_string(Severity severity) {
@@ -23,6 +23,7 @@ constexpr std::string_view to_string(Severity severity) {
   return "unknown";
 }
 
+/// "planner", "launcher" or "robot-7".
 inline std::string source_name(std::uint32_t source) {
   if (source == kPlannerSource) return "planner";
   if (source == kLauncherSource) return "launcher";

@@ -18,9 +18,9 @@
 namespace swarm::link::cdr {
 
 /// Reads what an Encoder of either byte order wrote. Nothing in the bytes is trusted: every value
-/// must lie within them, and a sequence gets no room before its elements could fit into what is
-/// left: one corrupt length would exhaust memory. Whether it keeps to its bound is the Gate's to
-/// judge, who counts it by reason.
+/// must lie within them, and a sequence is allocated only if its elements could fit into the
+/// remaining bytes, so that one corrupt length cannot exhaust memory. Sequence bounds are checked
+/// by the Gate, which counts such messages by reason.
 template <bool Swap>
 class Decoder {
  public:
@@ -49,6 +49,7 @@ class Decoder {
   }
 
  private:
+  /// Numbers are aligned to their own size, counted from the end of the encapsulation.
   template <class T>
   bool get_number(T& value) {
     static_assert(std::is_arithmetic_v<T> || std::is_enum_v<T>);
@@ -65,6 +66,7 @@ class Decoder {
     return true;
   }
 
+  /// Checks the length against the remaining bytes before it allocates.
   template <class T>
   bool get_sequence(std::vector<T>& elements) {
     std::uint32_t length = 0;
@@ -73,7 +75,7 @@ class Decoder {
     return std::all_of(elements.begin(), elements.end(), [this](T& e) { return get(e); });
   }
 
-  /// A text that is too long is cut, as where it is written.
+  /// A text that is longer than its bound is truncated, as the encoder does.
   bool get_text(std::string& text, std::size_t bound) {
     std::uint32_t length = 0;
     if (!get(length) || length > size_ - at_) return false;

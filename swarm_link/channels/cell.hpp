@@ -17,10 +17,11 @@ struct Cell {
   auto operator<=>(const Cell&) const = default;
 };
 
-/// The cell a point lies in. Far or non-finite coordinates are clamped to ±10⁶ cells.
+/// The cell that contains a point. Far or non-finite coordinates are clamped to ±10⁶ cells, so that
+/// a forged position cannot overflow the index.
 Cell cell_of(const Vec2& point_m, double cell_size_m);
 
-/// All cells that the disc touches, in order.
+/// All cells that the disc touches, sorted. O(cells of its bounding square).
 std::vector<Cell> cells_touching(const Vec2& center_m, double radius_m, double cell_size_m);
 
 }  // namespace swarm::link

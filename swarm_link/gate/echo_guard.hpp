@@ -10,8 +10,9 @@
 
 namespace swarm::link {
 
-/// Remembers the last 64 states that a robot of ours published, by number and stamp. A received
-/// state under its id is either one of them, which the bus sent back, or forged.
+/// Remembers the last 64 states that a robot of this process published, by sequence number and
+/// stamp. A received state under its id is either one of these, which the bus delivered back, or
+/// forged.
 class EchoGuard {
  public:
   void record_sent(const RobotStateMessage& state) {

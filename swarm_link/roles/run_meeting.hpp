@@ -9,7 +9,7 @@
 
 namespace swarm::link {
 
-/// The meeting place that a run directory tells of.
+/// The meeting of a run, from the file in its run directory.
 inline Meeting meeting_of(const shell::RunInfo& run, ReceptionFaults faults = {}) {
   const auto vendor = [](bool cyclone) { return cyclone ? Vendor::kCycloneDds : Vendor::kFastDds; };
   return {.domain = run.domain,

@@ -16,6 +16,8 @@
 
 namespace swarm::link::fastdds {
 
+/// A data writer of Fast DDS. Exceptions of the vendor do not leave it. \pre publisher and registry
+/// outlive it
 class FastDdsWriter final : public RawWriter {
  public:
   FastDdsWriter(eprosima::fastdds::dds::Publisher& publisher,
@@ -33,7 +35,8 @@ class FastDdsWriter final : public RawWriter {
   std::string topic_;
 };
 
-/// A reader's hold on the multicast group it listens to.
+/// Membership of one reader in the multicast group it receives from, for as long as this object
+/// exists. The participant's socket leaves the group with its last member.
 class GroupMembership {
  public:
   GroupMembership(std::shared_ptr<ReceiveSockets> sockets, const ReceiveSockets::Locator& group)
@@ -43,6 +46,7 @@ class GroupMembership {
   }
   GroupMembership(const GroupMembership&) = delete;
   GroupMembership& operator=(const GroupMembership&) = delete;
+  /// False when the kernel refused the group: then this reader receives nothing.
   bool joined() const { return joined_; }
 
  private:
@@ -51,6 +55,7 @@ class GroupMembership {
   bool joined_;
 };
 
+/// A data reader of Fast DDS, polled by its owner. \pre subscriber and registry outlive it
 class FastDdsReader final : public RawReader {
  public:
   FastDdsReader(eprosima::fastdds::dds::Subscriber& subscriber,
@@ -70,8 +75,8 @@ class FastDdsReader final : public RawReader {
   eprosima::fastdds::dds::DataReader* reader_;
   TopicRegistry& topics_;
   std::string topic_;
-  std::unique_ptr<GroupMembership> group_;  // null: receives at the participant's own address
-  ByteSample sample_;                       // kept for its memory
+  std::unique_ptr<GroupMembership> group_;  // null: unicast, at the participant's address
+  ByteSample sample_;                       // reused, so that take() does not allocate
 };
 
 }  // namespace swarm::link::fastdds

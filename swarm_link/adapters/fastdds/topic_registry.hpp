@@ -12,14 +12,16 @@
 
 namespace swarm::link::fastdds {
 
-/// The vendor's topics of one participant, shared by its endpoints and deleted with the last of
-/// them: cell topics come and go for hours.
+/// The vendor's topics of one participant, counted by their endpoints. The last endpoint deletes
+/// its topic, because cell topics come and go for hours. Not thread-safe.
 class TopicRegistry {
  public:
   explicit TopicRegistry(eprosima::fastdds::dds::DomainParticipant& participant)
       : participant_(participant) {}
 
+  /// Creates the topic, or adds a user to it. Fails when it exists with another type.
   Result<eprosima::fastdds::dds::Topic*> acquire(const std::string& name, const std::string& type);
+  /// Removes a user. \pre acquired before
   void release(const std::string& name);
 
  private:
