@@ -53,7 +53,7 @@ class EncodingWriter final : public Writer<M> {
   int matched() const override { return raw_->matched(); }
 
  private:
-  RawWriterPtr raw_;
+  RawWriterPtr raw_;  ///< of the backend
   std::vector<std::byte> bytes_;  // reused between messages
 };
 
@@ -76,8 +76,8 @@ class DecodingReader final : public Reader<M> {
   std::uint64_t undecodable() const override { return undecodable_; }
 
  private:
-  RawReaderPtr raw_;
-  std::uint64_t undecodable_ = 0;
+  RawReaderPtr raw_;               ///< of the backend
+  std::uint64_t undecodable_ = 0;  ///< since the start
 };
 
 }  // namespace swarm::link

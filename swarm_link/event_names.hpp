@@ -11,6 +11,8 @@
 /// Names of severities and event sources in files and messages.
 namespace swarm::link {
 
+/// Lower case, as in the event log. "unknown" for a value that is not of the enumeration, which a
+/// message may contain before it is checked.
 constexpr std::string_view to_string(Severity severity) {
   switch (severity) {
     case Severity::kInfo:

@@ -17,8 +17,8 @@ namespace swarm::link {
 /// A sequence or text with its bound in the IDL.
 template <class M, class T>
 struct BoundedMember {
-  T M::*member;
-  std::size_t bound;
+  T M::*member;       ///< to the field
+  std::size_t bound;  ///< most elements, or characters of a text
 };
 /// An entry of a field list with its bound: up_to(5, &M::b).
 template <class M, class T>

@@ -42,11 +42,11 @@ enum class Severity : std::uint8_t { kInfo = 0, kWarning = 1, kError = 2 };
 /// The planner's sign of life and the clock of the plan: at `stamp_utc_ns` plan `version` is at
 /// `plan_time_s` and advances by `plan_rate` seconds of plan time per second.
 struct HeartbeatMessage {
-  std::uint16_t schema_version = kSchemaVersion;
-  MissionPhase phase = MissionPhase::kReady;  ///< of the mission, as the planner has it
-  std::uint32_t version = 0;
-  std::uint64_t epoch = 0;
-  std::uint64_t sequence_number = 0;  ///< from 1 in each epoch
+  std::uint16_t schema_version = kSchemaVersion;  ///< of the IDL the sender was built with
+  MissionPhase phase = MissionPhase::kReady;      ///< of the mission, as the planner has it
+  std::uint32_t version = 0;                      ///< of the plan
+  std::uint64_t epoch = 0;                        ///< of its planner, UTC [ns] of its start
+  std::uint64_t sequence_number = 0;              ///< from 1 in each epoch
   std::int64_t stamp_utc_ns = 0;
   double mission_time_s = 0;  ///< since the start of the mission
   double plan_time_s = 0;
@@ -63,9 +63,9 @@ struct HeartbeatMessage {
 
 /// State of one robot, at control rate; sent in batches per cell.
 struct RobotStateMessage {
-  std::uint32_t robot_id = 0;
-  std::uint32_t sequence_number = 0;
-  std::int64_t stamp_utc_ns = 0;
+  std::uint32_t robot_id = 0;                       ///< below the number of robots
+  std::uint32_t sequence_number = 0;                ///< consecutive
+  std::int64_t stamp_utc_ns = 0;                    ///< time of position and velocity
   double x_m = 0, y_m = 0, vx_mps = 0, vy_mps = 0;  ///< in the world frame, ENU
   RobotMode mode = RobotMode::kWaiting;
   bool operator==(const RobotStateMessage&) const = default;
@@ -81,7 +81,7 @@ struct RobotStateMessage {
 struct CellStatesMessage {
   std::uint16_t schema_version = kSchemaVersion;
   std::int32_t cell_x = 0, cell_y = 0;
-  std::vector<RobotStateMessage> states{};
+  std::vector<RobotStateMessage> states{};  ///< several batches if there are more
   bool operator==(const CellStatesMessage&) const = default;
 
   using M = CellStatesMessage;
@@ -95,7 +95,7 @@ struct CellStatesMessage {
 struct CommandMessage {
   std::uint16_t schema_version = kSchemaVersion;
   CommandKind kind = CommandKind::kStart;
-  std::uint64_t command_id = 0;
+  std::uint64_t command_id = 0;  ///< UTC [ns], so it increases
   std::int64_t stamp_utc_ns = 0;
   bool operator==(const CommandMessage&) const = default;
 
@@ -107,7 +107,7 @@ struct CommandMessage {
 
 /// A bin of a Histogram that is not empty.
 struct HistogramBinMessage {
-  std::uint16_t bin = 0;
+  std::uint16_t bin = 0;  ///< index, see Histogram
   std::uint32_t count = 0;
   bool operator==(const HistogramBinMessage&) const = default;
 
@@ -143,13 +143,13 @@ struct RobotStatusMessage {
 struct StatusMessage {
   std::uint32_t first_robot_id = 0;  ///< the key: names the group
   std::uint16_t schema_version = kSchemaVersion;
-  std::uint32_t process_id = 0;
+  std::uint32_t process_id = 0;    ///< of the operating system
   std::uint32_t plan_version = 0;  ///< of the plan it follows; 0: none
   std::uint64_t plan_epoch = 0;
   std::uint64_t plan_scene_version = 0;  ///< scene that the plan was made for
   std::int64_t stamp_utc_ns = 0;
-  double plan_time_s = 0;  ///< of the plan's clock, as the process has it
-  std::vector<RobotStatusMessage> robots{};
+  double plan_time_s = 0;                        ///< of the plan's clock, as the process has it
+  std::vector<RobotStatusMessage> robots{};      ///< the group, by id
   std::vector<std::uint32_t> refused{};          ///< by RefusalReason
   std::vector<HistogramBinMessage> state_age{};  ///< bins of Histogram that are not empty
   bool operator==(const StatusMessage&) const = default;

@@ -27,7 +27,7 @@ inline Topic<EventMessage> relayed_event_topic() {
 /// A topic of recordings and the topic of the bus that carries it.
 struct MonitorTopic {
   std::string recorded{};  ///< its name in a recording
-  RawTopic wire{};
+  RawTopic wire{};         ///< its topic on the bus
 };
 
 /// All topics a monitor reads except robot states, which are sent by cells. A replay publishes

@@ -56,10 +56,10 @@ class StreamMeter {
     std::uint64_t received = 0;  // bit k: highest − k
   };
 
-  std::vector<Stream> streams_;
+  std::vector<Stream> streams_;  ///< by robot
   Counts counts_;
   Histogram latency_;
-  Histogram recent_;
+  Histogram recent_;  ///< since take_recent_latency()
   Worst worst_;
 };
 

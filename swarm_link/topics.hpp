@@ -19,10 +19,10 @@ enum class Ownership { kShared, kExclusive };
 
 /// QoS of a topic, the same for its writers and readers.
 struct Qos {
-  Reliability reliability = Reliability::kReliable;
-  Durability durability = Durability::kVolatile;
-  int depth = 1;  ///< keep-last, per instance
-  Ownership ownership = Ownership::kShared;
+  Reliability reliability = Reliability::kReliable;  ///< best effort: losses are not repaired
+  Durability durability = Durability::kVolatile;  ///< transient-local: late readers get the history
+  int depth = 1;  ///< keep-last history, per instance
+  Ownership ownership = Ownership::kShared;  ///< exclusive: strongest writer only
   bool large =
       false;  ///< may exceed one datagram (64 KiB): fragmented, sent asynchronously
   bool many_readers = false;  ///< sent by multicast where possible
@@ -44,7 +44,7 @@ std::string type_name() {
 /// A topic of message type M.
 template <class M>
 struct Topic {
-  std::string name;
+  std::string name;  ///< as DDS tools display it
   Qos qos;
 };
 

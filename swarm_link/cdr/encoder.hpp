@@ -30,6 +30,7 @@ std::size_t room_for(const M& message) {
     using T = typename F::Type;
     room += most_bytes < T, kIsText<T> ? F::kBound : 0 > ();
     if constexpr (kIsSequence<T>) {
+      // Elements must have a fixed size; no message contains sequences of sequences.
       static_assert(!kIsSequence<typename T::value_type> && !kIsText<typename T::value_type>);
       room += (message.*F::kMember).size() * most_bytes<typename T::value_type>();
     }
@@ -49,7 +50,8 @@ class Encoder {
   /// Bytes written, without the encapsulation.
   std::size_t size() const { return at_; }
 
-  /// Appends one value: a message field by field, a sequence or text after its length.
+  /// Appends one value: a message field by field, a sequence or text after its length. `Bound`
+  /// truncates a text; a sequence must respect its bound already (fits_wire()).
   template <std::size_t Bound = 0, class T>
   void put(const T& value) {
     if constexpr (Message<T>) {
@@ -82,8 +84,8 @@ class Encoder {
     begin_[at_++] = std::byte{0};
   }
 
-  std::byte* begin_;
-  std::size_t at_ = 0;
+  std::byte* begin_;    ///< of the caller, after the encapsulation
+  std::size_t at_ = 0;  ///< bytes written
 };
 
 }  // namespace swarm::link::cdr

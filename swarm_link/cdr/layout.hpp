@@ -14,6 +14,7 @@ namespace swarm::link::cdr {
 
 /// Two bytes of representation identifier (byte order), two of options.
 inline constexpr std::size_t kEncapsulationBytes = 4;
+/// Of the length before a sequence or text.
 inline constexpr std::size_t kLengthBytes = sizeof(std::uint32_t);
 
 /// Rounds up to a multiple of `size`, a power of two.
@@ -50,6 +51,8 @@ constexpr std::size_t most_bytes() {
   return most;
 }
 
+/// Elements of a sequence are counted with their worst alignment, so the result is an upper bound,
+/// not always exact.
 template <class T, std::size_t Bound>
 constexpr std::size_t most_end(std::size_t at) {
   if constexpr (Message<T>) {

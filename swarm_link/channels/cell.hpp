@@ -12,8 +12,8 @@ namespace swarm::link {
 
 /// A square of the spatial grid that robot states are sorted into: [x, x+1) × [y, y+1) cell sizes.
 struct Cell {
-  std::int32_t x = 0;
-  std::int32_t y = 0;
+  std::int32_t x = 0;  ///< east
+  std::int32_t y = 0;  ///< north
   auto operator<=>(const Cell&) const = default;
 };
 

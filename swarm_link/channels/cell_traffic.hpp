@@ -25,7 +25,7 @@ class CellInterest {
 
  private:
   CellOptions options_;
-  std::vector<Cell> wanted_;
+  std::vector<Cell> wanted_;  ///< sorted
 };
 
 /// Robot states sorted into one batch per cell, or several of at most kMaxCellStates.
@@ -38,8 +38,8 @@ class CellBatches {
 
  private:
   double cell_size_m_;
-  std::vector<std::pair<Cell, std::size_t>> order_;
-  std::vector<CellStatesMessage> batches_;
+  std::vector<std::pair<Cell, std::size_t>> order_;  ///< cell and index of each state
+  std::vector<CellStatesMessage> batches_;           ///< more than the last call needed, reused
 };
 
 /// Sorted union of the cells that discs around the points touch.

@@ -103,9 +103,9 @@ class Gate {
   Checked<void> order(const StatusMessage& message, UtcTime now) const;
 
   GateOptions options_;
-  RefusalCounters refused_;
-  std::uint64_t undecodable_ = 0;
-  NewestKey<Version> plan_{{0, 0}};
+  RefusalCounters refused_;          ///< since the start
+  std::uint64_t undecodable_ = 0;    ///< already counted
+  NewestKey<Version> plan_{{0, 0}};  ///< the newest of each topic
   NewestKey<std::uint64_t> scene_;
   NewestKey<Version> heartbeat_{{0, 0}};
   NewestKey<std::uint64_t> command_{0};

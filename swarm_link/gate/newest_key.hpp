@@ -25,7 +25,7 @@ class NewestKey {
   }
 
  private:
-  std::optional<Key> newest_{};
+  std::optional<Key> newest_{};  ///< empty: nothing accepted yet
 };
 
 }  // namespace swarm::link

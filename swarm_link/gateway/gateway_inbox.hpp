@@ -27,7 +27,7 @@ class GatewayInbox {
   const RefusalCounters& refused() const { return gate_.refused(); }
 
  private:
-  Gate gate_;
+  Gate gate_;  ///< keeps the newest stamp of each robot
 };
 
 }  // namespace swarm::link

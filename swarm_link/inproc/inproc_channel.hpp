@@ -20,7 +20,7 @@ namespace swarm::link::inproc {
 /// A sample, shared by all histories that store it. Histories and ownership are per instance.
 struct Sample {
   std::shared_ptr<const std::vector<std::byte>> bytes;
-  std::uint32_t instance = 0;
+  std::uint32_t instance = 0;  ///< value of the key; 0 if the topic has none
 };
 
 /// The key of a keyed topic: its first member. \pre the bytes are little-endian, as our encoder's
@@ -61,9 +61,9 @@ class History {
   const std::deque<Sample>& samples() const { return samples_; }
 
  private:
-  int depth_;
-  std::deque<Sample> samples_;
-  std::map<std::uint32_t, int> counts_;
+  int depth_;                            ///< per instance
+  std::deque<Sample> samples_;           ///< of all instances, oldest first
+  std::map<std::uint32_t, int> counts_;  ///< samples by instance
 };
 
 class InprocWriter;
@@ -95,6 +95,7 @@ class InprocReader final : public RawReader {
   }
   ~InprocReader() override { std::erase(channel_->readers, this); }
 
+  /// Hands over what was delivered since the last call.
   std::size_t take(const Sink& sink) override { return history_.hand_over(sink); }
 
   int matched() const override;
@@ -134,19 +135,21 @@ class InprocWriter final : public RawWriter {
     for (auto* reader : channel_->readers) reader->writer_gone(*this);
   }
 
+  /// False only for bytes without encapsulation or key.
   bool write(std::span<const std::byte> bytes) override;
   int matched() const override;
 
   const Qos& qos() const { return qos_; }
   std::uint32_t strength() const { return strength_; }
+  /// What a late transient-local reader receives.
   const std::deque<Sample>& history() const { return history_.samples(); }
 
  private:
   std::shared_ptr<Channel> channel_;
   Qos qos_;
   bool keyed_;
-  std::uint32_t strength_;
-  History history_;  ///< of a transient-local writer, for late readers
+  std::uint32_t strength_;  ///< for exclusive ownership
+  History history_;         ///< of a transient-local writer, for late readers
 };
 
 }  // namespace swarm::link::inproc

@@ -28,7 +28,7 @@ class DomainLock {
  private:
   DomainLock() = default;
   std::uint32_t domain_ = 0;
-  std::vector<int> files_;
+  std::vector<int> files_;  ///< of the block; closing releases the locks
 };
 
 }  // namespace swarm::link

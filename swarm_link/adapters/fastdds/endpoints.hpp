@@ -24,13 +24,15 @@ class FastDdsWriter final : public RawWriter {
                 eprosima::fastdds::dds::DataWriter* writer, TopicRegistry& topics,
                 std::string topic)
       : publisher_(publisher), writer_(writer), topics_(topics), topic_(std::move(topic)) {}
+  /// Deletes the vendor's writer, then releases the topic.
   ~FastDdsWriter() override;
+  /// See RawWriter. Large samples are only queued here, see writer_qos().
   bool write(std::span<const std::byte> bytes) override;
   int matched() const override;
 
  private:
   eprosima::fastdds::dds::Publisher& publisher_;
-  eprosima::fastdds::dds::DataWriter* writer_;
+  eprosima::fastdds::dds::DataWriter* writer_;  ///< owned; deleted through its publisher
   TopicRegistry& topics_;
   std::string topic_;
 };
@@ -66,13 +68,14 @@ class FastDdsReader final : public RawReader {
         topics_(topics),
         topic_(std::move(topic)),
         group_(std::move(group)) {}
+  /// Deletes the vendor's reader, then releases the topic; the group is left last.
   ~FastDdsReader() override;
   std::size_t take(const Sink& sink) override;
   int matched() const override;
 
  private:
   eprosima::fastdds::dds::Subscriber& subscriber_;
-  eprosima::fastdds::dds::DataReader* reader_;
+  eprosima::fastdds::dds::DataReader* reader_;  ///< owned; deleted through its subscriber
   TopicRegistry& topics_;
   std::string topic_;
   std::unique_ptr<GroupMembership> group_;  // null: unicast, at the participant's address

@@ -35,7 +35,9 @@ class Entities {
   const FastDdsOptions& options() const { return options_; }
   eprosima::fastdds::dds::Publisher& publisher() { return *publisher_; }
   eprosima::fastdds::dds::Subscriber& subscriber() { return *subscriber_; }
+  /// For endpoints, which release their topics.
   TopicRegistry& topics() { return topics_; }
+  /// For readers, which join and leave multicast groups.
   const std::shared_ptr<ReceiveSockets>& sockets() { return sockets_; }
 
   /// Makes a type known to the participant; needed before the first endpoint of that type.
@@ -58,12 +60,12 @@ class Entities {
 
  private:
   FastDdsOptions options_;
-  Ports ports_;
-  std::shared_ptr<ReceiveSockets> sockets_;
+  Ports ports_;                              ///< the first ones tried, for messages
+  std::shared_ptr<ReceiveSockets> sockets_;  ///< shared with the transport
   eprosima::fastdds::dds::DomainParticipant* participant_;
   eprosima::fastdds::dds::Publisher* publisher_;
   eprosima::fastdds::dds::Subscriber* subscriber_;
-  TopicRegistry topics_;
+  TopicRegistry topics_;  ///< of writers and readers
 };
 
 }  // namespace swarm::link::fastdds

@@ -72,19 +72,19 @@ class ReceiveSockets {
   /// An open socket and the vendor's object that its datagrams are delivered to.
   struct Socket {
     int fd;
-    Locator locator;
+    Locator locator;  ///< as the vendor knows it
     Receiver* receiver;
     int members = 0;  // readers of a multicast group; 0: not joined
   };
   Socket* find(const Locator& locator);
   const Socket* find(const Locator& locator) const;
-  std::uint16_t first_data_port_;
-  bool at_tick_;
-  int buffer_bytes_;
-  in_addr interface_;
+  std::uint16_t first_data_port_;  ///< 0: the vendor receives everything
+  bool at_tick_;                   ///< false: the vendor's threads receive data, too
+  int buffer_bytes_;               ///< of each socket
+  in_addr interface_;              ///< joins groups there
   mutable std::mutex mutex_;
-  std::vector<Socket> sockets_;
-  std::vector<std::uint32_t> opened_;
+  std::vector<Socket> sockets_;        ///< data ports and groups
+  std::vector<std::uint32_t> opened_;  ///< ports, also the vendor's
   std::optional<DatagramDrain> drain_;  // of owned sockets
   std::atomic<bool> silent_ = false;
 };

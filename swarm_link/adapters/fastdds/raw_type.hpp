@@ -24,13 +24,16 @@ struct ByteSample {
 /// so malformed samples reach our own decoder, which counts them.
 class RawType final : public eprosima::fastdds::dds::TopicDataType {
  public:
+  /// Takes name, key and initial buffer size from the topic.
   explicit RawType(const RawTopic& topic);
 
   using Payload = eprosima::fastrtps::rtps::SerializedPayload_t;
   /// Copies the bytes into the vendor's payload. False if they do not fit.
   bool serialize(void* data, Payload* payload) override;
+  /// Copies the received bytes into the sample; never fails.
   bool deserialize(Payload* payload, void* data) override;
   std::function<std::uint32_t()> getSerializedSizeProvider(void* data) override;
+  /// The vendor creates and deletes samples of its readers through these.
   void* createData() override { return new ByteSample; }
   void deleteData(void* data) override { delete static_cast<ByteSample*>(data); }
   /// Computes the instance from the first four bytes of a keyed sample.

@@ -16,6 +16,7 @@ namespace swarm::link::fastdds {
 /// its topic, because cell topics come and go for hours. Not thread-safe.
 class TopicRegistry {
  public:
+  /// \pre the participant outlives the registry
   explicit TopicRegistry(eprosima::fastdds::dds::DomainParticipant& participant)
       : participant_(participant) {}
 
@@ -27,10 +28,10 @@ class TopicRegistry {
  private:
   struct Entry {
     eprosima::fastdds::dds::Topic* topic = nullptr;
-    int uses = 0;
+    int uses = 0;  ///< endpoints of it
   };
   eprosima::fastdds::dds::DomainParticipant& participant_;
-  std::map<std::string, Entry> entries_;
+  std::map<std::string, Entry> entries_;  ///< by name
 };
 
 }  // namespace swarm::link::fastdds

@@ -14,8 +14,8 @@
 namespace swarm::link {
 
 /// Multicast address of the states of a cell, for tools that observe the network. Cells may share a
-/// group, which costs additional datagrams but is not an error; any two cells less than 181 × 179
-/// cells apart have different groups.
+/// group, which costs additional datagrams but is not an error; any two cells at most 181 columns
+/// and 179 rows apart have different groups.
 struct GroupAddress {
   std::string host;        ///< 239.255.h.h
   std::uint16_t port = 0;  ///< the same for all groups of a domain
