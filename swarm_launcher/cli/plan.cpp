@@ -8,6 +8,7 @@
 
 namespace swarm::launcher::cli {
 
+// The table of --times is part of the text: --json omits it.
 Command add_plan(CLI::App& program) {
   const auto o = std::make_shared<PlanCommandOptions>();
   CLI::App* const plan = program.add_subcommand("plan", "Plan a mission without flying it");
@@ -19,7 +20,7 @@ Command add_plan(CLI::App& program) {
   plan->add_option("--out", o->out, "Directory for plan.json and plan.svg");
   plan->add_flag("--json", o->json, "Print the result as JSON");
   plan->add_flag("--times", o->times,
-                 "Print when the groups of the first plan pass its narrowest place");
+                 "Print when the groups of the first plan pass its narrowest passage");
   return {plan, [o] { return plan_mission(*o); }};
 }
 
