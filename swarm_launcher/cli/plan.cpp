@@ -20,7 +20,7 @@ Command add_plan(CLI::App& program) {
   plan->add_option("--out", o->out, "Directory for plan.json and plan.svg");
   plan->add_flag("--json", o->json, "Print the result as JSON");
   plan->add_flag("--times", o->times,
-                 "Print when the groups of the first plan pass its narrowest passage");
+                 "Print when the groups of the first plan pass its narrowest place");
   return {plan, [o] { return plan_mission(*o); }};
 }
 

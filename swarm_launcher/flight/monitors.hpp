@@ -38,7 +38,7 @@ class Monitors {
   /// A message for the log if the child that ended was a monitor.
   std::optional<std::string> on_exit(pid_t pid);
 
-  /// Asks them to end and waits until the recording is whole, a few seconds at most.
+  /// Requests their end and waits until the recording is complete, a few seconds at most.
   void finish();
 
  private:

@@ -101,7 +101,7 @@ LineSocket::~LineSocket() {
 }
 
 // A non-blocking connect: the socket becomes writable when the connection is made or has failed,
-// and SO_ERROR tells which.
+// and SO_ERROR then contains the result.
 Result<LineSocket> LineSocket::connect(const HostPort& to) {
   const auto addresses = resolve(to);
   if (!addresses) return tl::unexpected(addresses.error());

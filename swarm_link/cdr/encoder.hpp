@@ -30,7 +30,8 @@ std::size_t room_for(const M& message) {
     using T = typename F::Type;
     room += most_bytes < T, kIsText<T> ? F::kBound : 0 > ();
     if constexpr (kIsSequence<T>) {
-      // Elements must have a fixed size; no message contains sequences of sequences.
+      // Elements that are sequences or texts would need a sum over all elements; no message has
+      // such.
       static_assert(!kIsSequence<typename T::value_type> && !kIsText<typename T::value_type>);
       room += (message.*F::kMember).size() * most_bytes<typename T::value_type>();
     }

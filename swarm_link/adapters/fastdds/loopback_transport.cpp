@@ -115,7 +115,7 @@ ReceiveSockets::~ReceiveSockets() {
   for (const auto& socket : sockets_) ::close(socket.fd);
 }
 
-// The vendor adds 2 to a port that is taken, so parity tells data from metatraffic ports.
+// The vendor adds 2 to a port that is taken, so parity distinguishes data from metatraffic ports.
 bool ReceiveSockets::is_data_port(std::uint32_t port) const {
   return first_data_port_ != 0 && port >= first_data_port_ && (port - first_data_port_) % 2 == 0;
 }

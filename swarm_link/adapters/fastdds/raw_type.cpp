@@ -35,7 +35,7 @@ bool RawType::deserialize(Payload* payload, void* data) {
   return true;
 }
 
-// Tells the vendor how large a payload buffer serialize() needs.
+// The vendor asks this for the size of the payload buffer that serialize() needs.
 std::function<std::uint32_t()> RawType::getSerializedSizeProvider(void* data) {
   return
       [data] { return static_cast<std::uint32_t>(static_cast<ByteSample*>(data)->bytes.size()); };
