@@ -53,7 +53,7 @@ class EncodingWriter final : public Writer<M> {
   int matched() const override { return raw_->matched(); }
 
  private:
-  RawWriterPtr raw_;  ///< of the backend
+  RawWriterPtr raw_;              ///< of the backend
   std::vector<std::byte> bytes_;  // reused between messages
 };
 

@@ -21,10 +21,9 @@ enum class Ownership { kShared, kExclusive };
 struct Qos {
   Reliability reliability = Reliability::kReliable;  ///< best effort: losses are not repaired
   Durability durability = Durability::kVolatile;  ///< transient-local: late readers get the history
-  int depth = 1;  ///< keep-last history, per instance
-  Ownership ownership = Ownership::kShared;  ///< exclusive: strongest writer only
-  bool large =
-      false;  ///< may exceed one datagram (64 KiB): fragmented, sent asynchronously
+  int depth = 1;                                  ///< keep-last history, per instance
+  Ownership ownership = Ownership::kShared;       ///< exclusive: strongest writer only
+  bool large = false;         ///< may exceed one datagram (64 KiB): fragmented, sent asynchronously
   bool many_readers = false;  ///< sent by multicast where possible
   bool operator==(const Qos&) const = default;
 };

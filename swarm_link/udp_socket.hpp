@@ -57,7 +57,7 @@ class DatagramDrain {
 
  private:
   int drain_batch(int fd, DatagramSink& sink);
-  std::optional<FaultyPath> path_;  ///< set if faults are simulated
+  std::optional<FaultyPath> path_;        ///< set if faults are simulated
   std::unique_ptr<std::byte[]> buffers_;  // pages that are never written take no memory
 };
 

@@ -18,8 +18,8 @@ struct HostOffer {
   std::uint32_t robots = 0;
   std::uint32_t per_process = 1;
   std::uint32_t first_process = 0;  ///< number of its first agent process in the run, from 0
-  std::string fault{};       ///< simulated network faults, see parse_link_faults()
-  std::string mission_yaml;  ///< the resolved mission
+  std::string fault{};              ///< simulated network faults, see parse_link_faults()
+  std::string mission_yaml;         ///< the resolved mission
 };
 
 /// One line of JSON. A received one is not trusted: every field is checked.

@@ -202,7 +202,7 @@ class Supervisor {
   std::vector<Robot> robots_;
   std::vector<LogEvent> pending_log_;
   std::vector<CommandKind> pending_commands_;
-  std::vector<RobotId> fallen_;  // since the last step
+  std::vector<RobotId> fallen_;   // since the last step
   std::vector<RobotId> risen_;    ///< received again since the last step
   std::uint32_t next_start_ = 0;  ///< first process that was never started
   SteadyTime begun_;

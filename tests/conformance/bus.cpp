@@ -146,7 +146,8 @@ const std::vector<Backend>& backends() {
       {"inproc", [] { return make_inproc_bus(); }},
       {"fastdds_at_tick", [] { return make_fastdds_bus(true); }},
       {"fastdds_threads", [] { return make_fastdds_bus(false); }},
-      {"fastdds_peers", []() -> std::unique_ptr<Bus> { return std::make_unique<TestStaticPeersBus>(); }},
+      {"fastdds_peers",
+       []() -> std::unique_ptr<Bus> { return std::make_unique<TestStaticPeersBus>(); }},
       {"cyclone", []() -> std::unique_ptr<Bus> { return std::make_unique<TestCycloneBus>(); }}};
   return all;
 }

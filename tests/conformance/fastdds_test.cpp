@@ -77,7 +77,7 @@ TEST_F(FastDds, ReportsThatItCannotReceiveWhenNoPortIsFree) {
     ASSERT_FALSE(checked);
     EXPECT_EQ(checked.error().code, ErrorCode::kEnvironment);
     EXPECT_NE(checked.error().message.find("cannot receive"), std::string::npos)
-      << checked.error().message;
+        << checked.error().message;
   }
 }
 

@@ -25,7 +25,7 @@ struct DiscoveryAddress {
 /// and to no other participant. So the cost of discovery does not grow with the square of the
 /// swarm.
 struct StaticPeers {
-  bool is_relay = false;  ///< peers know its port: it must get the port of its index
+  bool is_relay = false;               ///< peers know its port: it must get the port of its index
   std::vector<std::uint32_t> peers{};  ///< indices of the relay participants it announces itself to
   std::string host = "127.0.0.1";      ///< address of those peers
 };
@@ -48,8 +48,8 @@ struct FastDdsOptions {
   bool cells_by_multicast = true;
   bool receive_at_tick = true;  ///< no receive thread on data ports; see Participant::receive
   int receive_buffer_bytes = 4 << 20;  ///< of each socket, asked of the kernel
-  ReceptionFaults faults{};  ///< simulated loss and delay of received data
-  std::uint32_t port_tries = 4000;  ///< occupied ports to skip; then self_check() fails
+  ReceptionFaults faults{};            ///< simulated loss and delay of received data
+  std::uint32_t port_tries = 4000;     ///< occupied ports to skip; then self_check() fails
 };
 
 /// The discovery server of a run, in the launcher's process, bound to loopback. It ends when the

@@ -83,8 +83,8 @@ class ReceiveSockets {
   int buffer_bytes_;               ///< of each socket
   in_addr interface_;              ///< joins groups there
   mutable std::mutex mutex_;
-  std::vector<Socket> sockets_;        ///< data ports and groups
-  std::vector<std::uint32_t> opened_;  ///< ports, also the vendor's
+  std::vector<Socket> sockets_;         ///< data ports and groups
+  std::vector<std::uint32_t> opened_;   ///< ports, also the vendor's
   std::optional<DatagramDrain> drain_;  // of owned sockets
   std::atomic<bool> silent_ = false;
 };
