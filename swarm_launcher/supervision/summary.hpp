@@ -17,7 +17,7 @@ struct Measurements {
   Outcome outcome = Outcome::kNone;
   std::optional<Channel> channel;  ///< empty: in lock-step
   double discovery_s = -1.0;       ///< negative: never complete
-  double neighbour_discovery_s = -1.0;  ///< then until all receive their neighbours
+  double neighbour_discovery_s = -1.0;  ///< from then until all receive their neighbours
   double cpu_s = 0.0;       ///< of all processes of the run
   double max_rss_mb = 0.0;  ///< of the largest child
   std::uint64_t refused_by_launcher = 0;

@@ -260,7 +260,7 @@ void Supervisor::gather(SteadyTime now, std::vector<Action>& actions) {
   command(CommandKind::kStart, now, actions);
 }
 
-// Repetitions that are overdue are not made up for: the next one follows a full interval later.
+// A delayed step sends at most two repetitions, so that overdue ones do not come as a burst.
 void Supervisor::repeat_stop(SteadyTime now, std::vector<Action>& actions) {
   while (stops_to_send_ > 0 && now >= next_stop_) {
     actions.emplace_back(SendCommand{CommandKind::kStop});
@@ -357,7 +357,7 @@ void Supervisor::end(SteadyTime now, std::vector<Action>& actions) {
 }
 
 // Commands of the user are applied before the stage is advanced, so that an emergency stop works in
-// every stage.
+// every stage up to the ending.
 std::vector<Action> Supervisor::step(SteadyTime now) {
   std::vector<Action> actions;
   if (interrupts_ > 0) begin_ending(Outcome::kInterrupted, now);
