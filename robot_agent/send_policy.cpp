@@ -7,15 +7,9 @@
 namespace swarm::agent {
 namespace {
 
-<<<<<<< HEAD
 constexpr double kSendsNothingBelow_mps = 0.01;
-constexpr double kOfGap = 0.2;          // an error of this share of the nearest gap matters
-constexpr double kLeastError_m = 0.01;  // and of less than this never
-=======
-constexpr double kAtRest_mps = 0.01;
 constexpr double kOfGap = 0.2;          // tolerated error, as a share of the nearest gap …
 constexpr double kLeastError_m = 0.01;  // … but no less than this
->>>>>>> 61827a4
 
 }  // namespace
 
@@ -31,12 +25,8 @@ bool SendPolicy::must_send(const SendInput& input) const {
   // and the next chance to send is a period away: send while one of them still fits in.
   if (silent_s + std::max(period_s, input.link.late_s) > input.listeners.timeout_s) return true;
   const bool is_stopped =
-<<<<<<< HEAD
       input.velocity_mps == last_->velocity_mps && input.velocity_mps.norm() < kSendsNothingBelow_mps;
-=======
-      input.velocity_mps == last_->velocity_mps && input.velocity_mps.norm() < kAtRest_mps;
   // Messages may be lost: near others every tick carries a state, except where nothing changes.
->>>>>>> 61827a4
   if (input.link.poor && input.listeners.nearest_gap_m < options_->near_m && !is_stopped) return true;
   // Also the error of the extrapolation one period ahead: a robot that has just turned is off only
   // by then, and cannot publish in between.

@@ -16,6 +16,7 @@ int main(int argc, char** argv) {
     app.require_subcommand(1);
     shell::add_common_options(app);
     using namespace launcher::cli;
+    // The order is the one of --help.
     const Command commands[] = {
         add_run(app),
         add_gateway(app),
@@ -31,9 +32,11 @@ int main(int argc, char** argv) {
         add_sibling(app, "soak",
                     "Keep a swarm moving, and measure what its link and its processes do",
                     {"swarm_experiments", "soak"})};
+    // Parsing may already complete the program: --help, --version or an error.
     const auto done = shell::parse(app, argc, argv, builtin_catalogue());
     if (!done) return tl::unexpected(done.error());
     if (*done) return **done;
+    // Before the command starts threads and children.
     shell::catch_stop_signals();
     for (const Command& command : commands) {
       if (command.app->parsed()) return command.act();

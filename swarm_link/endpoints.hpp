@@ -11,7 +11,8 @@
 #include "swarm_link/cdr/codec.hpp"
 #include "swarm_link/raw_port.hpp"
 
-/// Writers and readers of messages: the same over every back.
+/// Typed writers and readers: they encode and decode, and use a RawWriter or RawReader of any
+/// backend.
 namespace swarm::link {
 
 /// Sends messages of one topic, as RawWriter.
@@ -19,7 +20,7 @@ template <class M>
 class Writer {
  public:
   virtual ~Writer() = default;
-  /// False when the message is beyond the contract, or the back refused it; never throws.
+  /// False when a sequence exceeds its bound or the backend refused the message; never throws.
   virtual bool write(const M& message) = 0;
   /// Readers this writer is matched with at the moment.
   virtual int matched() const = 0;
@@ -30,10 +31,11 @@ template <class M>
 class Reader {
  public:
   virtual ~Reader() = default;
-  /// Appends every message that arrived since the last call, oldest first; returns how many.
-  /// Samples that do not decode are dropped and counted in undecodable().
+  /// Appends every message that arrived since the last call, oldest first, and returns their
+  /// number. Samples that cannot be decoded are dropped and counted in undecodable().
   virtual std::size_t take(std::vector<M>& out) = 0;
   virtual int matched() const = 0;
+  /// Samples dropped since the start because they could not be decoded.
   virtual std::uint64_t undecodable() const = 0;
 };
 
@@ -42,6 +44,7 @@ using WriterPtr = std::unique_ptr<Writer<M>>;
 template <class M>
 using ReaderPtr = std::unique_ptr<Reader<M>>;
 
+/// Encodes messages and writes their bytes.
 template <Message M>
 class EncodingWriter final : public Writer<M> {
  public:
@@ -50,10 +53,11 @@ class EncodingWriter final : public Writer<M> {
   int matched() const override { return raw_->matched(); }
 
  private:
-  RawWriterPtr raw_;
-  std::vector<std::byte> bytes_;  // kept for its memory
+  RawWriterPtr raw_;              ///< of the backend
+  std::vector<std::byte> bytes_;  // reused between messages
 };
 
+/// Takes bytes and decodes them. The content is not checked here; that is the Gate's.
 template <Message M>
 class DecodingReader final : public Reader<M> {
  public:
@@ -72,8 +76,8 @@ class DecodingReader final : public Reader<M> {
   std::uint64_t undecodable() const override { return undecodable_; }
 
  private:
-  RawReaderPtr raw_;
-  std::uint64_t undecodable_ = 0;
+  RawReaderPtr raw_;               ///< of the backend
+  std::uint64_t undecodable_ = 0;  ///< since the start
 };
 
 }  // namespace swarm::link

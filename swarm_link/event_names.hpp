@@ -8,9 +8,11 @@
 
 #include "swarm_link/messages.hpp"
 
-/// How events are told in files and to people.
+/// Names of severities and event sources in files and messages.
 namespace swarm::link {
 
+/// Lower case, as in the event log. "unknown" for a value that is not of the enumeration, which a
+/// message may contain before it is checked.
 constexpr std::string_view to_string(Severity severity) {
   switch (severity) {
     case Severity::kInfo:
@@ -23,6 +25,7 @@ constexpr std::string_view to_string(Severity severity) {
   return "unknown";
 }
 
+/// "planner", "launcher" or "robot-7".
 inline std::string source_name(std::uint32_t source) {
   if (source == kPlannerSource) return "planner";
   if (source == kLauncherSource) return "launcher";

@@ -10,16 +10,17 @@
 #include <type_traits>
 #include <vector>
 
-/// What a message is made of, listed once beside its members. The bytes on the wire, the bounds and
-/// the JSON of a message follow from its list: nothing else names its fields.
+/// The fields of a message, listed once beside its members. The bytes on the wire, the bounds and
+/// the JSON of a message are derived from this list; no other code names its fields.
 namespace swarm::link {
 
 /// A sequence or text with its bound in the IDL.
 template <class M, class T>
 struct BoundedMember {
-  T M::*member;
-  std::size_t bound;
+  T M::*member;       ///< to the field
+  std::size_t bound;  ///< most elements, or characters of a text
 };
+/// An entry of a field list with its bound: up_to(5, &M::b).
 template <class M, class T>
 consteval BoundedMember<M, T> up_to(std::size_t bound, T M::*member) {
   return {member, bound};
@@ -40,6 +41,7 @@ constexpr std::string_view member_name() {
   return text.substr(text.rfind(':') + 1);
 }
 
+/// Type, member pointer, bound (0: none) and name of one entry of a field list.
 template <auto Entry>
 struct Field;
 template <class M, class T, T M::*Member>
@@ -57,14 +59,17 @@ struct Field<Bounded> {
   static constexpr std::string_view kName = member_name<Bounded.member>();
 };
 
+/// A struct with a list of fields.
 template <class T>
 concept Message = requires {
   T::kFields;
 };
+/// Whether T is a sequence of the IDL.
 template <class T>
 constexpr bool kIsSequence = false;
 template <class T>
 constexpr bool kIsSequence<std::vector<T>> = true;
+/// Whether T is a string of the IDL.
 template <class T>
 constexpr bool kIsText = std::is_same_v<T, std::string>;
 
@@ -74,13 +79,15 @@ constexpr bool all_fields(Visit visit) {
   return [&]<auto... Entries>(FieldList<Entries...>) { return (visit(Field<Entries>()) && ...); }
   (M::kFields);
 }
+/// Calls visit(Field<...>()) for each field of M, in order.
 template <Message M, class Visit>
 constexpr void for_each_field(Visit visit) {
   [&]<auto... Entries>(FieldList<Entries...>) { (visit(Field<Entries>()), ...); }
   (M::kFields);
 }
 
-/// Whether samples are kept apart by the first field.
+/// Whether the first field is the key of the topic: then each value of it is an instance of its
+/// own.
 template <Message M>
 constexpr bool keyed() {
   if constexpr (requires { M::kKeyed; }) {

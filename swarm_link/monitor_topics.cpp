@@ -5,7 +5,7 @@
 namespace swarm::link {
 namespace {
 
-/// What many robots say at control rate must all arrive.
+/// Replays publish the log records of all robots at control rate, and none may be dropped.
 constexpr int kDepth = 10'000;
 
 template <class M>
@@ -23,6 +23,7 @@ std::vector<MonitorTopic> monitor_topics() {
                                       topic("swarm/status", relayed_status_topic()),
                                       topic("swarm/event", relayed_event_topic())};
   for (const char* type : {"Header", "Step", "Belief", "LinkStats", "Note"}) {
+    // Topic names are the record types in snake case: LinkStats is blackbox/link_stats.
     std::string name = "blackbox/";
     for (const char* c = type; *c != 0; ++c) {
       if (*c >= 'A' && *c <= 'Z') {

@@ -11,19 +11,24 @@
 #include "swarm_link/topics.hpp"
 #include "swarmflow/core/result.hpp"
 
-/// The bus as the programs see it: writers and readers made by a participant. Three backs implement
-/// it, on bytes: fastdds/, cyclone/ and inproc/. No vendor type and no vendor exception crosses
-/// this line, and no vendor thread ever runs domain code: readers are polled.
+/// The bus as the programs use it: a participant makes writers and readers. Three backends
+/// implement it, on bytes: the adapters of Fast DDS and Cyclone DDS, and the in-process bus. No
+/// vendor type and no vendor exception passes this interface, and no vendor thread runs domain
+/// code: readers are polled.
 namespace swarm::link {
 
-/// A process's presence on the bus. Makes endpoints; outlives them all.
+/// One DDS participant of a process (or several combined). It makes endpoints and must outlive
+/// them. Not thread-safe.
 class Participant {
  public:
   virtual ~Participant() = default;
 
+  /// Endpoints on bytes. They fail, with the vendor's reason, when the topic exists with another
+  /// type or the vendor refuses.
   virtual Result<RawWriterPtr> make_writer(const RawTopic& topic) = 0;
   virtual Result<RawReaderPtr> make_reader(const RawTopic& topic) = 0;
 
+  /// Typed endpoints over the raw ones.
   template <Message M>
   Result<WriterPtr<M>> make_writer(const Topic<M>& topic) {
     auto raw = make_writer(raw_topic(topic));
@@ -38,12 +43,13 @@ class Participant {
   }
 
   /// Hands everything that waits in the sockets to the readers, in the caller's thread. Call it at
-  /// the start of a tick, before take(). Does nothing in backs that receive in threads of their
+  /// the start of a tick, before take(). It does nothing in backends with receive threads of their
   /// own.
   virtual void receive() = 0;
 
-  /// Fails, saying why and how to mend it, when this participant could not hear its peers: no
-  /// listening port, or receive buffers far below what was asked for. Call it once after making.
+  /// Fails, with the reason and a remedy, when this participant could not receive from its peers:
+  /// no listening port, or receive buffers far below the requested size. Call it once after
+  /// creation.
   virtual Result<void> self_check() const = 0;
 };
 

@@ -14,18 +14,19 @@
 #include "swarm_link/cdr/layout.hpp"
 #include "swarm_link/topics.hpp"
 
-/// What a back of the bus has to provide: samples as bytes, whatever their type. Those who look on
-/// use it as it is.
+/// The interface of a backend: samples as bytes of any type. Monitors use it directly.
 namespace swarm::link {
 
+/// Name, type and QoS of a topic, without the message type.
 struct RawTopic {
-  std::string name{};
-  std::string type{};  ///< "swarm::wire::FlowPlan"
-  Qos qos{};
-  bool keyed = false;                   ///< by its first member, an unsigned long
-  std::size_t usual_bytes = 1U << 16U;  ///< room to begin with; larger samples pass as well
+  std::string name{};                   ///< "swarm/plan"
+  std::string type{};                   ///< "swarm::wire::FlowPlan"
+  Qos qos{};                            ///< requested by readers, offered by writers
+  bool keyed = false;                   ///< the first member, an unsigned long, is the key
+  std::size_t usual_bytes = 1U << 16U;  ///< initial buffer size; larger samples pass as well
 };
 
+/// The raw topic of a message type.
 template <Message M>
 RawTopic raw_topic(const Topic<M>& topic) {
   return {.name = topic.name,
@@ -35,24 +36,24 @@ RawTopic raw_topic(const Topic<M>& topic) {
           .usual_bytes = cdr::kEncapsulationBytes + cdr::most_bytes<M>()};
 }
 
-/// A sample that was received; its bytes are valid during the call.
+/// A received sample; its bytes are valid during the call.
 struct RawSample {
   std::span<const std::byte> bytes{};  ///< CDR with its encapsulation
-  std::int64_t published_utc_ns = 0;   ///< by its writer's clock; 0 where a back has none
+  std::int64_t published_utc_ns = 0;   ///< by the writer's clock; 0 if the backend has none
 };
 
-/// The same, kept.
+/// A received sample that owns its bytes.
 struct RawMessage {
   std::vector<std::byte> bytes{};
   std::int64_t sent_utc_ns = 0;
 };
 
-/// Sends samples of one topic. Destroying it unregisters the writer. Not thread-safe; may block for
-/// microseconds (socket send), never for a peer.
+/// Sends samples of one topic. Its destruction unregisters the writer. Not thread-safe; write() may
+/// block for microseconds (socket send), never for a peer.
 class RawWriter {
  public:
   virtual ~RawWriter() = default;
-  /// False when the back refused the sample; never throws.
+  /// False when the backend refused the sample; never throws.
   virtual bool write(std::span<const std::byte> bytes) = 0;
   /// Readers this writer is matched with at the moment.
   virtual int matched() const = 0;
@@ -68,7 +69,7 @@ class RawReader {
   virtual std::size_t take(const Sink& sink) = 0;
   virtual int matched() const = 0;
 
-  /// Appends them.
+  /// The same, with copies appended to `out`.
   std::size_t take(std::vector<RawMessage>& out) {
     return take([&out](const RawSample& sample) {
       out.push_back({.bytes = {sample.bytes.begin(), sample.bytes.end()},

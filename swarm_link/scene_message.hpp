@@ -10,17 +10,19 @@
 #include "swarm_link/fields.hpp"
 #include "swarm_link/schema_version.hpp"
 
-/// What changed of the scene as it travels; see messages.hpp.
+/// The changes of the scene on the wire; see messages.hpp.
 namespace swarm::link {
 
+/// Bounds of the sequences of a scene, as in the IDL.
 inline constexpr std::size_t kMaxSceneObstacles = 256;
 inline constexpr std::size_t kMaxSceneRemoved = 256;
 inline constexpr std::size_t kMaxSceneVertices = 4096;
 inline constexpr std::size_t kMaxSceneGoals = 255;
 
-/// SceneObstacleMessage::owner_robot_id of what is no robot's body.
+/// SceneObstacleMessage::owner_robot_id of an obstacle that is not a robot's body.
 inline constexpr std::uint32_t kNoRobot = 0xFFFF'FFFF;
 
+/// A point of the world frame, ENU.
 struct PointMessage {
   double x_m = 0, y_m = 0;
   bool operator==(const PointMessage&) const = default;
@@ -30,13 +32,15 @@ struct PointMessage {
   static constexpr FieldList<&M::x_m, &M::y_m> kFields{};
 };
 
+/// An obstacle that was added or moved: a polygon of the next `vertices` of SceneMessage::vertices,
+/// or a circle. It moves at its velocity between two times and rests before and after.
 struct SceneObstacleMessage {
-  std::uint32_t obstacle_id = 0;
+  std::uint32_t obstacle_id = 0;  ///< ascending within a message
   std::uint32_t owner_robot_id = kNoRobot;
-  std::uint32_t vertices = 0;
-  PointMessage center{};
-  double radius_m = 0;
-  double velocity_x_mps = 0, velocity_y_mps = 0;
+  std::uint32_t vertices = 0;                     ///< 0: a circle
+  PointMessage center{};                          ///< of a circle
+  double radius_m = 0;                            ///< of a circle
+  double velocity_x_mps = 0, velocity_y_mps = 0;  ///< zero for a robot's body
   std::int64_t moving_from_utc_ns = 0, moving_until_utc_ns = 0;
   bool operator==(const SceneObstacleMessage&) const = default;
 
@@ -48,10 +52,11 @@ struct SceneObstacleMessage {
       kFields{};
 };
 
+/// One Gaussian of the goal mixture.
 struct GoalComponentMessage {
-  double mean_x_m = 0, mean_y_m = 0;
+  double mean_x_m = 0, mean_y_m = 0;  ///< world frame, ENU
   double covariance_xx_m2 = 0, covariance_xy_m2 = 0, covariance_yy_m2 = 0;
-  double weight = 0;
+  double weight = 0;  ///< share of the robots
   bool operator==(const GoalComponentMessage&) const = default;
 
   using M = GoalComponentMessage;
@@ -61,15 +66,17 @@ struct GoalComponentMessage {
       kFields{};
 };
 
+/// All changes since the mission file: a complete state, so one message is enough for a late
+/// reader.
 struct SceneMessage {
   std::uint16_t schema_version = kSchemaVersion;
-  std::uint64_t version = 0;
-  double risk_alpha = 0;
-  std::uint32_t next_id = 0;
-  std::vector<std::uint32_t> removed{};
-  std::vector<SceneObstacleMessage> obstacles{};
-  std::vector<PointMessage> vertices{};
-  std::vector<GoalComponentMessage> goal{};
+  std::uint64_t version = 0;                      ///< increases with every change
+  double risk_alpha = 0;                          ///< 0: as in the mission file
+  std::uint32_t next_id = 0;                      ///< id of the next obstacle to be added
+  std::vector<std::uint32_t> removed{};           ///< ids of the mission file's obstacles
+  std::vector<SceneObstacleMessage> obstacles{};  ///< added or moved, sorted by id
+  std::vector<PointMessage> vertices{};           ///< of all polygons, in their order
+  std::vector<GoalComponentMessage> goal{};       ///< empty: as in the mission file
   bool operator==(const SceneMessage&) const = default;
 
   using M = SceneMessage;

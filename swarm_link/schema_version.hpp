@@ -6,7 +6,7 @@
 
 namespace swarm::link {
 
-/// Of idl/swarm.idl; every message carries it first.
+/// Version of idl/swarm.idl, in every message that has a topic. A receiver refuses any other.
 inline constexpr std::uint16_t kSchemaVersion = 4;
 
 }  // namespace swarm::link

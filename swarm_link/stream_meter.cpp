@@ -6,6 +6,9 @@
 
 namespace swarm::link {
 
+// Bit k of `received` stands for the number highest − k. A new highest number shifts the window and
+// counts the skipped numbers as lost; a number that arrives late reduces that count by one.
+// Duplicates do not enter the latency.
 void StreamMeter::receive(const RobotStateMessage& state, UtcTime at) {
   if (state.robot_id >= streams_.size()) {
     ++counts_.strange;

@@ -6,6 +6,7 @@
 
 namespace swarm::link {
 
+// Copies nodes and legs one to one: indices of nodes keep their meaning.
 PlanMessage to_message(const FlowPlan& plan, PlannerEpoch epoch, PlanVersion version, UtcTime t0) {
   PlanMessage message{.version = version.value(),
                       .epoch = epoch.value(),
@@ -29,6 +30,7 @@ PlanMessage to_message(const FlowPlan& plan, PlannerEpoch epoch, PlanVersion ver
   return message;
 }
 
+// Polygons append their corners to the common list of vertices, in the order of the obstacles.
 SceneMessage to_message(const Scene& scene) {
   SceneMessage message{.version = scene.version,
                        .risk_alpha = scene.risk_alpha.value_or(0.0),

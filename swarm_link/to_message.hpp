@@ -8,7 +8,7 @@
 #include "swarmflow/core/flow_plan.hpp"
 #include "swarm_link/messages.hpp"
 
-/// Domain objects as the messages that publish them. The way back is the Gate's.
+/// Converts domain objects to the messages that publish them. The Gate does the opposite.
 namespace swarm::link {
 
 /// `t0` is when the plan is published. Entries, scene version and excess are left at their

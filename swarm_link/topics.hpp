@@ -9,21 +9,22 @@
 #include "swarm_link/channels/cell.hpp"
 #include "swarm_link/messages.hpp"
 
-/// Every topic of the system with its QoS. The vendors translate a Qos in one function each.
+/// Every topic of the system with its QoS. Each adapter translates a Qos in one function.
 namespace swarm::link {
 
+/// The QoS policies of DDS that we use.
 enum class Reliability { kBestEffort, kReliable };
 enum class Durability { kVolatile, kTransientLocal };
 enum class Ownership { kShared, kExclusive };
 
+/// QoS of a topic, the same for its writers and readers.
 struct Qos {
-  Reliability reliability = Reliability::kReliable;
-  Durability durability = Durability::kVolatile;
-  int depth = 1;  ///< keep-last, per instance
-  Ownership ownership = Ownership::kShared;
-  bool large =
-      false;  ///< samples may exceed one datagram (64 KiB): fragmented, sent asynchronously
-  bool many_readers = false;  ///< many readers of each sample: one datagram to all of them where possible
+  Reliability reliability = Reliability::kReliable;  ///< best effort: losses are not repaired
+  Durability durability = Durability::kVolatile;  ///< transient-local: late readers get the history
+  int depth = 1;                                  ///< keep-last history, per instance
+  Ownership ownership = Ownership::kShared;       ///< exclusive: strongest writer only
+  bool large = false;         ///< may exceed one datagram (64 KiB): fragmented, sent asynchronously
+  bool many_readers = false;  ///< sent by multicast where possible
   bool operator==(const Qos&) const = default;
 };
 
@@ -33,7 +34,7 @@ struct MessageList {};
 using AllMessages = MessageList<CommandMessage, PlanMessage, SceneMessage, HeartbeatMessage,
                                 CellStatesMessage, StatusMessage, EventMessage>;
 
-/// "swarm::wire::FlowPlan", by which the vendors know a message.
+/// The DDS type name, such as "swarm::wire::FlowPlan".
 template <Message M>
 std::string type_name() {
   return "swarm::wire::" + std::string(M::kIdlName);
@@ -42,10 +43,11 @@ std::string type_name() {
 /// A topic of message type M.
 template <class M>
 struct Topic {
-  std::string name;
+  std::string name;  ///< as DDS tools display it
   Qos qos;
 };
 
+/// Transient-local, so that a restarted process receives the commands that it missed.
 inline Topic<CommandMessage> command_topic() {
   return {"swarm/command",
           {.reliability = Reliability::kReliable,
@@ -53,6 +55,8 @@ inline Topic<CommandMessage> command_topic() {
            .depth = 32}};
 }
 
+/// Exclusive: of two planners only the one with the higher strength is received. Depth 1: only the
+/// newest plan counts.
 inline Topic<PlanMessage> plan_topic() {
   return {"swarm/plan",
           {.reliability = Reliability::kReliable,
@@ -62,6 +66,7 @@ inline Topic<PlanMessage> plan_topic() {
            .large = true}};
 }
 
+/// Depth 1: a scene contains all changes, so the newest is enough for a late reader.
 inline Topic<SceneMessage> scene_topic() {
   return {"swarm/scene",
           {.reliability = Reliability::kReliable,
@@ -70,11 +75,13 @@ inline Topic<SceneMessage> scene_topic() {
            .large = true}};
 }
 
+/// Best effort: a late heartbeat is useless, the next one follows soon.
 inline Topic<HeartbeatMessage> heartbeat_topic() {
   return {"swarm/heartbeat", {.reliability = Reliability::kBestEffort, .depth = 1}};
 }
 
-/// `swarm/cell/3_m2` is the cell (3, −2): not every vendor takes a minus in a name.
+/// `swarm/cell/3_m2` is the cell (3, −2): not every vendor accepts a minus sign in a name. Best
+/// effort: a state that has to be sent again would be outdated.
 inline Topic<CellStatesMessage> cell_topic(Cell cell) {
   const auto number = [](std::int32_t n) {
     return n < 0 ? "m" + std::to_string(-static_cast<std::int64_t>(n)) : std::to_string(n);
@@ -83,17 +90,20 @@ inline Topic<CellStatesMessage> cell_topic(Cell cell) {
           {.reliability = Reliability::kBestEffort, .depth = 64, .many_readers = true}};
 }
 
+/// Reliable with depth 1 per group of robots: the newest status must arrive, older ones need not.
 inline Topic<StatusMessage> status_topic() {
   return {"swarm/status", {.reliability = Reliability::kReliable, .depth = 1}};
 }
 
-/// For who wants to know where robots are without making them wait for an acknowledgement.
+/// Best-effort reader for monitors of positions: the agents' writers do not wait for its
+/// acknowledgements.
 inline Topic<StatusMessage> status_topic_unacknowledged() {
   Topic<StatusMessage> topic = status_topic();
   topic.qos.reliability = Reliability::kBestEffort;
   return topic;
 }
 
+/// Reliable and transient-local: events must arrive even at a reader that joins later.
 inline Topic<EventMessage> event_topic() {
   return {"swarm/event",
           {.reliability = Reliability::kReliable,

@@ -19,6 +19,7 @@ namespace swarm::link {
 namespace {
 
 constexpr std::size_t kDatagramBytes = 65'536;
+// Datagrams per system call; buffers of the largest datagram size.
 constexpr std::size_t kBatch = 32;
 
 bool set_membership(int fd, int option, const in_addr& group, const in_addr& interface) {
@@ -28,7 +29,7 @@ bool set_membership(int fd, int option, const in_addr& group, const in_addr& int
   return ::setsockopt(fd, IPPROTO_IP, option, &request, sizeof request) == 0;
 }
 
-/// When the kernel received a datagram, if it was asked to remember.
+/// Time at which the kernel received a datagram, if the socket has SO_TIMESTAMPNS set.
 UtcTime received_at(msghdr& message, UtcTime otherwise) {
   for (cmsghdr* part = CMSG_FIRSTHDR(&message); part != nullptr;
        part = CMSG_NXTHDR(&message, part)) {
@@ -50,6 +51,7 @@ in_addr to_in_addr(const std::string& address) {
 
 bool is_multicast(const in_addr& address) { return IN_MULTICAST(ntohl(address.s_addr)); }
 
+// 7401 + 250·domain is the port that DDSI-RTPS defines for user multicast.
 sockaddr_in multicast_group(std::uint32_t domain, std::uint32_t hash) {
   sockaddr_in address{};
   address.sin_family = AF_INET;
@@ -58,6 +60,7 @@ sockaddr_in multicast_group(std::uint32_t domain, std::uint32_t hash) {
   return address;
 }
 
+// Sets the options before bind(): the address can be shared only if all its sockets request it.
 int open_receive_socket(const sockaddr_in& address, int buffer_bytes, bool shared) {
   const int fd = ::socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
   if (fd < 0) return -1;
@@ -65,7 +68,7 @@ int open_receive_socket(const sockaddr_in& address, int buffer_bytes, bool share
   if (const int yes = 1; shared || is_multicast(address.sin_addr)) {
     ::setsockopt(fd, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
   }
-  if (const int no = 0; is_multicast(address.sin_addr)) {  // what others joined is theirs
+  if (const int no = 0; is_multicast(address.sin_addr)) {  // not what other sockets have joined
     ::setsockopt(fd, IPPROTO_IP, IP_MULTICAST_ALL, &no, sizeof no);
   }
   if (::bind(fd, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0) return fd;
@@ -91,8 +94,10 @@ int open_group_sender(const in_addr& interface) {
   return -1;
 }
 
+// Uses a real datagram, because interfaces may have the flag MULTICAST and yet drop such packets
+// (lo without a route, firewalls).
 bool carries_multicast(const std::string& interface) {
-  constexpr int kTimeout_ms = 200;  // the loopback delivers while it sends, others soon after
+  constexpr int kTimeout_ms = 200;  // loopback delivers within sendto(), others soon after
   const in_addr own = to_in_addr(interface);
   sockaddr_in address{};
   address.sin_family = AF_INET;
@@ -112,6 +117,7 @@ bool carries_multicast(const std::string& interface) {
   return received;
 }
 
+// The kernel silently limits a buffer to net.core.rmem_max; this asks it what it granted.
 int granted_receive_buffer_bytes(int asked_bytes) {
   const int fd = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
   if (fd < 0) return 0;
@@ -128,6 +134,8 @@ DatagramDrain::DatagramDrain(const ReceptionFaults& faults)
   if (faults.faults.any()) path_.emplace(faults);
 }
 
+// With simulated faults the kernel stamps the arrivals, so that a delay counts from the arrival and
+// not from this call. A batch that is not full means that the socket is empty.
 void DatagramDrain::drain(int fd, DatagramSink& sink) {
   if (path_) {
     const int yes = 1;
@@ -141,6 +149,7 @@ void DatagramDrain::drain(int fd, DatagramSink& sink) {
   if (path_) path_->hand_due(fd, utc_now(), sink);
 }
 
+// Receives up to kBatch datagrams with one system call. Returns their number.
 int DatagramDrain::drain_batch(int fd, DatagramSink& sink) {
   std::array<mmsghdr, kBatch> messages{};
   std::array<iovec, kBatch> vectors;

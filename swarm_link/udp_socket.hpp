@@ -12,13 +12,13 @@
 
 #include "swarm_link/channels/faulty_path.hpp"
 
-/// UDP on one interface: what the Fast DDS back and the groups share. No vendor's types. Interfaces
-/// are named by their IPv4 address.
+/// UDP on one interface, used by the Fast DDS adapter and the groups; no vendor types. Interfaces
+/// are identified by their IPv4 address.
 namespace swarm::link {
 
 inline constexpr const char* kLoopback = "127.0.0.1";
 
-/// 127.0.0.1 if the text is no IPv4 address.
+/// Parses an IPv4 address; 127.0.0.1 if the text is none.
 in_addr to_in_addr(const std::string& address);
 
 bool is_multicast(const in_addr& address);
@@ -26,36 +26,39 @@ bool is_multicast(const in_addr& address);
 /// Group 239.255.h.h of a DDS domain, at the standard's port for its user multicast.
 sockaddr_in multicast_group(std::uint32_t domain, std::uint32_t hash);
 
-/// A non-blocking socket bound to an address; −1 if the kernel refuses. A multicast group's socket
-/// is bound to the group, so it receives nothing else, and shares its port with other processes; it
-/// receives nothing at all until join_group(). Others share theirs if `shared`.
+/// A non-blocking socket bound to an address; −1 if the kernel refuses. The socket of a multicast
+/// group is bound to the group, so it receives nothing else, and shares its port with other
+/// processes; it receives nothing until join_group(). Other sockets share their port if `shared`.
 int open_receive_socket(const sockaddr_in& address, int buffer_bytes, bool shared = false);
 
+/// Membership of a socket in a group on an interface. False if the kernel refuses.
 bool join_group(int fd, const in_addr& group, const in_addr& interface);
 bool leave_group(int fd, const in_addr& group, const in_addr& interface);
 
 /// A non-blocking socket that sends to multicast groups on an interface; −1 if refused.
 int open_group_sender(const in_addr& interface);
 
-/// Sends a datagram to a multicast group and looks whether it comes back.
+/// Whether an interface carries multicast: sends a datagram to a group and waits until it arrives,
+/// at most 200 ms.
 bool carries_multicast(const std::string& interface = kLoopback);
 
-/// Receive buffer the kernel really grants when `asked_bytes` are asked for.
+/// Receive buffer that the kernel really grants when `asked_bytes` are requested.
 int granted_receive_buffer_bytes(int asked_bytes);
 
-/// Empties sockets without waiting.
+/// Reads sockets until they are empty, without waiting. Reuses its buffers; not thread-safe.
 class DatagramDrain {
  public:
   explicit DatagramDrain(const ReceptionFaults& faults = {});
 
-  /// At most kMaxDatagrams, so that a flood cannot hold the tick.
+  /// Most datagrams of one call, so that a flood cannot delay the tick.
   static constexpr int kMaxDatagrams = 8192;
+  /// Passes waiting datagrams to the sink, or through the simulated faults if there are any.
   void drain(int fd, DatagramSink& sink);
 
  private:
   int drain_batch(int fd, DatagramSink& sink);
-  std::optional<FaultyPath> path_;
-  std::unique_ptr<std::byte[]> buffers_;  // untouched pages cost nothing
+  std::optional<FaultyPath> path_;        ///< set if faults are simulated
+  std::unique_ptr<std::byte[]> buffers_;  // pages that are never written take no memory
 };
 
 }  // namespace swarm::link

@@ -6,11 +6,11 @@
 
 namespace swarm::link {
 
-/// Whose DDS a process speaks; they understand each other.
+/// DDS implementation of a process; the two interoperate.
 enum class Vendor : std::uint8_t { kFastDds, kCycloneDds };
 
-/// Either may be left out of a build (SWARM_WITH_FASTDDS, SWARM_WITH_CYCLONEDDS); what would make
-/// its participants then fails.
+/// Whether an implementation is part of this build (SWARM_WITH_FASTDDS, SWARM_WITH_CYCLONEDDS).
+/// Without it, creating its participants fails.
 bool built_with(Vendor vendor);
 
 }  // namespace swarm::link

@@ -6,11 +6,12 @@
 
 #include "swarm_link/messages.hpp"
 
-/// The bounds of a message's own sequences and texts, from the list of its fields.
+/// Checks the bounds of a message's own sequences, from the list of its fields.
 namespace swarm::link {
 
-/// Whether every sequence respects its bound. A writer refuses the message otherwise; texts it cuts
-/// instead: half a sentence is better than no event.
+/// Whether every sequence of the message respects its bound; a writer refuses the message
+/// otherwise. Texts are truncated instead: a shortened event is better than none. Elements of
+/// sequences contain no sequences, so they need no check.
 template <Message M>
 bool fits_wire(const M& message) {
   return all_fields<M>([&](auto field) {

@@ -13,6 +13,7 @@
 
 namespace swarm::launcher::cli {
 
+// The command and its keys are joined by blanks and sent to the launcher of the run as one line.
 Command add_command(CLI::App& program) {
   struct Options {
     std::filesystem::path run_dir;
@@ -30,9 +31,9 @@ Command add_command(CLI::App& program) {
       "  risk 'alpha: 0.15'\n"
       "  clear 7    (the body of robot 7, which is not received any more, was carried away)");
   command->add_option("run_dir", o->run_dir, "Its run directory")->required()->type_name("RUN_DIR");
-  command->add_option("words", o->words, "The command and its keys, as in a script")
+  command->add_option("words", o->words, "The command and its keys, as in a mission script")
       ->required()
-      ->type_name("WORD [KEYS]");
+      ->type_name("COMMAND [KEYS]");
   return {command,
           [o] { return command_mission(o->run_dir, fmt::format("{}", fmt::join(o->words, " "))); }};
 }

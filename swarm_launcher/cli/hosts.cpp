@@ -9,23 +9,25 @@
 
 namespace swarm::launcher::cli {
 
+// The launcher of the run prints the address to pass here.
 Command add_join(CLI::App& program) {
   const auto o = std::make_shared<JoinOptions>();
   CLI::App* const join =
       program.add_subcommand("join", "Fly robots of a run that another host's launcher leads");
-  join->add_option("launcher", o->launcher, "As that launcher says it")
+  join->add_option("launcher", o->launcher, "Address of that launcher, which it prints")
       ->required()
       ->type_name("HOST:PORT");
-  join->add_option("--robots", o->robots, "So many, if there are as many left")
+  join->add_option("--robots", o->robots, "Number of robots wanted; fewer if fewer are left")
       ->check(CLI::Range(1, kMostRobots));
   join->add_option("--interface", o->interface,
-                   "IPv4 address to meet them on (default: of the way to the launcher)")
+                   "IPv4 address of our interface (default: the one on the route to the launcher)")
       ->check(CLI::ValidIPV4);
-  join->add_flag("--cyclonedds", o->cyclone, "The agents speak Cyclone DDS");
+  join->add_flag("--cyclonedds", o->cyclone, "The agents use Cyclone DDS");
   join->add_option("--out", o->out, "Run directory (default: runs/joined-<time>)");
   return {join, [o] { return join_host(*o); }};
 }
 
+// Started by the launcher for --by-gateway, or by hand for a run that is flying already.
 Command add_gateway(CLI::App& program) {
   const auto o = std::make_shared<GatewayCommandOptions>();
   CLI::App* const gateway = program.add_subcommand(

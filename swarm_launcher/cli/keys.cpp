@@ -10,6 +10,7 @@
 
 namespace swarm::launcher::cli {
 
+// The components of other programs have keys of their own, which --describe reports.
 Command add_keys(CLI::App& program) {
   const auto agent_program = std::make_shared<std::filesystem::path>();
   CLI::App* const keys = program.add_subcommand(

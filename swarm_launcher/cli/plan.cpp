@@ -8,6 +8,7 @@
 
 namespace swarm::launcher::cli {
 
+// The table of --times is part of the text: --json omits it.
 Command add_plan(CLI::App& program) {
   const auto o = std::make_shared<PlanCommandOptions>();
   CLI::App* const plan = program.add_subcommand("plan", "Plan a mission without flying it");

@@ -11,6 +11,7 @@
 
 namespace swarm::launcher::cli {
 
+// The options are shared with the callback, which runs after parsing.
 Command add_run(CLI::App& program) {
   const auto o = std::make_shared<RunOptions>();
   CLI::App* const run = program.add_subcommand("run", "Fly a mission with one process per robot");
@@ -27,7 +28,7 @@ Command add_run(CLI::App& program) {
          [o](const std::string& n) {
            o->processes = n == "auto" ? 0U : static_cast<std::uint32_t>(std::stoul(n));
          },
-         "Agent processes, or auto: one a robot while the machine carries that, else few")
+         "Agent processes, or auto: one per robot if the machine can run them, else few")
       ->check(CLI::IsMember({"auto"}) | CLI::Range(1, kMostRobots))
       ->type_name("N|auto")
       ->excludes(per_process);
@@ -41,39 +42,40 @@ Command add_run(CLI::App& program) {
       ->check(CLI::ExistingFile);
   add_domain(*run, o->how.domain);
   add_channel(*run, o->how.channel);
+  // The transformer maps the names to the enumeration while parsing.
   const std::map<std::string, AgentDds> agent_dds = {{"fastdds", AgentDds::kFastDds},
                                                      {"cyclonedds", AgentDds::kCycloneDds},
                                                      {"half", AgentDds::kHalf}};
-  run->add_option("--agent-dds", o->how.agent_dds, "Whose DDS the agents speak (groups channel)")
+  run->add_option("--agent-dds", o->how.agent_dds, "DDS of the agents (groups channel)")
       ->transform(CLI::CheckedTransformer(agent_dds));
   run->add_option("--by-gateway", o->how.by_gateway,
-                  "The first N agent processes speak Cyclone DDS and say their states by\n"
-                  "topics, through a gateway to the others' groups");
+                  "The first N agent processes use Cyclone DDS and publish their states on\n"
+                  "topics; a gateway connects them with the groups of the others");
   run->add_option_function<std::string>(
          "--launcher-dds",
          [o](const std::string& name) { o->how.cyclone_launcher = name == "cyclonedds"; },
-         "Whose DDS the launcher speaks (groups channel)")
+         "DDS of the launcher (groups channel)")
       ->check(CLI::IsMember({"fastdds", "cyclonedds"}));
   run->add_option_function<std::string>(
          "--planner-dds",
          [o](const std::string& name) { o->how.cyclone_planner = name == "cyclonedds"; },
-         "Whose DDS the planner speaks (groups channel)")
+         "DDS of the planner (groups channel)")
       ->check(CLI::IsMember({"fastdds", "cyclonedds"}));
   run->add_option("--fault", o->how.fault,
-                  "A bad network for what planner and robots receive, like\n"
+                  "Simulate a degraded network for what planner and robots receive, such as\n"
                   "loss=0.2,delay-ms=150,jitter-ms=50,from=10,to=60")
       ->type_name("FAULT");
-  run->add_option("--interface", o->how.interface, "IPv4 address to meet other hosts on")
+  run->add_option("--interface", o->how.interface, "IPv4 address of the interface to other hosts")
       ->check(CLI::ValidIPV4);
   run->add_option("--remote", o->how.remote,
-                  "Robots, the last ones, that other hosts start: see join");
+                  "Number of robots that other hosts start (the last ones): see join");
   run->add_option("--join-port", o->how.join_port,
-                  "TCP port where those come to (default: a free one)");
+                  "TCP port at which those hosts connect (default: a free one)");
   run->add_flag("--record", o->how.monitors.record,
                 "Record the bus: bus.mcap in the run directory");
-  auto* const view = run->add_flag("--view", o->how.monitors.view, "Show it in the browser");
+  auto* const view = run->add_flag("--view", o->how.monitors.view, "Show the run in the browser");
   run->add_flag("--allow-control", o->how.monitors.allow_control,
-                "Let who has the view's address pause, stop and change the mission")
+                "Let anyone with the view's address pause, stop and change the mission")
       ->needs(view);
   run->add_flag("--json", o->json, "Print the summary as JSON");
   return {run, [o] { return run_mission(*o); }};

@@ -7,6 +7,7 @@
 
 namespace swarm::launcher::cli {
 
+// "auto" leaves the choice empty: choose_channel() then decides by the number of processes.
 void add_channel(CLI::App& command, std::optional<Channel>& channel) {
   static const std::map<std::string, std::optional<Channel>> kChannels = {
       {"auto", std::nullopt}, {"topics", Channel::kTopics}, {"groups", Channel::kGroups}};
@@ -17,6 +18,7 @@ void add_channel(CLI::App& command, std::optional<Channel>& channel) {
       ->check(CLI::IsMember(kChannels));
 }
 
+// The highest domains have no room for the ports of many participants: see DomainLock.
 void add_domain(CLI::App& command, int& domain) {
   command.add_option("--domain", domain, "DDS domain (default: a free one)")
       ->check(CLI::Range(0, 229));

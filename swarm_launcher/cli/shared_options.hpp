@@ -8,7 +8,7 @@
 
 #include "swarm_core/mission/channel.hpp"
 
-/// Command line options of every program that flies a swarm: run and soak.
+/// Command line options common to the programs that fly a swarm: run and soak.
 namespace swarm::launcher::cli {
 
 /// Adds `--channel`. \pre `channel` outlives the program's options
@@ -16,7 +16,7 @@ void add_channel(CLI::App& command, std::optional<Channel>& channel);
 /// Adds `--domain`. \pre `domain` outlives the program's options
 void add_domain(CLI::App& command, int& domain);
 
-/// Most robots of a run.
+/// Largest number of robots of a run; plans have no room for more.
 inline constexpr int kMostRobots = 20'000;
 
 }  // namespace swarm::launcher::cli

@@ -8,6 +8,7 @@
 
 namespace swarm::launcher {
 
+// The launcher answers in lines; each is printed as it arrives.
 Result<ExitCode> command_mission(const std::filesystem::path& run_dir, const std::string& line) {
   const auto done = shell::send_command(
       run_dir, line, [](const std::string& answer) { std::printf("%s\n", answer.c_str()); });

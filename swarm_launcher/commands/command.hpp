@@ -9,10 +9,10 @@
 
 namespace swarm::launcher {
 
-/// `swarm_launcher command RUN_DIR WORD [KEYS]`: tells a running mission, prints its answer. WORD
-/// is start, pause, resume or stop, or a change of the scene with its keys as in a script, such as
-/// `add_obstacle circle_m: {center: [60, 40], radius: 3}`, or `clear 7`. Exit 1 when it was
-/// refused, or when a stop was not confirmed by every robot.
+/// `swarm_launcher command RUN_DIR COMMAND [KEYS]`: sends a command to a running mission and prints
+/// the answer. COMMAND is start, pause, resume or stop, or a change of the scene with its keys as
+/// in a script, such as `add_obstacle circle_m: {center: [60, 40], radius: 3}`, or `clear 7`. Exit
+/// code 1 when it was refused, or when a stop was not confirmed by every robot.
 Result<ExitCode> command_mission(const std::filesystem::path& run_dir, const std::string& line);
 
 }  // namespace swarm::launcher

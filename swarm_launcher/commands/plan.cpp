@@ -28,7 +28,10 @@
 namespace swarm::launcher {
 namespace {
 
+// Points drawn to estimate the share of the mixture inside obstacles: a standard error of 0.05 % at
+// most.
 constexpr std::size_t kShareSamples = 1'000'000;
+// Plan time between the instants at which the density is evaluated.
 constexpr double kDensityStep_s = 0.5;
 
 double median(std::vector<double> values) {
@@ -38,14 +41,16 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
+// 0 for no values, like median().
 double mean(const std::vector<double>& values) {
   double sum = 0.0;
   for (const double v : values) sum += v;
   return values.empty() ? 0.0 : sum / static_cast<double>(values.size());
 }
 
-/// Mean path of the cheapest transport between the means of start and goal with shortest
-/// obstacle-avoiding paths as cost: no plan on this map can be shorter [m].
+/// Mean path length [m] of the cheapest transport between the means of start and goal, with the
+/// shortest obstacle-avoiding paths as costs. It serves as the reference length of the plans. NaN
+/// if the transport problem has no solution.
 double mean_bound_m(const Mission& mission) {
   std::vector<Vec2> from;
   std::vector<Vec2> to;
@@ -61,11 +66,11 @@ double mean_bound_m(const Mission& mission) {
   return total;
 }
 
-/// What a number of plans have in common.
+/// Statistics over the plans of all seeds.
 struct Sample {
   std::vector<double> nodes, edges, roadmap_ms, search_ms, transport_ms, smoothing_ms, total_ms,
       raw_ratio, ratio, cost_m, duration_s;
-  std::vector<planner::PlanWarning> warnings;  // of the first plan that has some
+  std::vector<planner::PlanWarning> warnings;  // of the first plan with warnings
   double cap_per_m2 = 0.0;
   std::uint32_t capped = 0;
   double obstacle_share = 0.0;  // of the first plan
@@ -73,6 +78,7 @@ struct Sample {
   double max_cvar_m = -std::numeric_limits<double>::infinity();
   std::uint32_t tried = 0;
 
+  // Adds a plan. The costly evaluations are made for the first plan only.
   void add(const planner::PlanResult& result, planner::RiskPromise promise, const Mission& mission,
            double bound_m) {
     const planner::PlanStats& s = result.stats;
@@ -95,13 +101,14 @@ struct Sample {
     cap_per_m2 = std::max(cap_per_m2, s.cap_per_m2);
     capped += s.cap_per_m2 > 0.0 ? 1U : 0U;
     if (warnings.empty()) warnings = result.warnings;
-    // Looking for the highest density takes longer than planning: of every plan only if it is
-    // capped.
+    // Finding the highest density takes longer than planning, so it is done for the first plan and
+    // for plans with a density cap.
     if (total_ms.size() == 1 || s.cap_per_m2 > 0.0) {
       max_density_per_m2 =
           std::max(max_density_per_m2,
                    planner::max_density(result.plan, mission.robots.count, kDensityStep_s).per_m2);
     }
+    // The method decides which risk it bounds: of the whole mixture, or of each Gaussian.
     const auto largest_cvar_m = promise == planner::RiskPromise::kMixture
                                     ? planner::planned_max_mixture_cvar_m
                                     : planner::planned_max_cvar_m;
@@ -109,6 +116,7 @@ struct Sample {
                           largest_cvar_m(result.plan, mission.world, mission.planner.risk_alpha));
   }
 
+  // Keys of --json; scripts rely on their names and order.
   std::string to_json(double bound_m) const {
     const nlohmann::ordered_json json = {{"nodes", median(nodes)},
                                          {"edges", median(edges)},
@@ -153,6 +161,7 @@ struct Sample {
   double success() const { return static_cast<double>(total_ms.size()) / tried; }
 };
 
+// Writes plan.json and plan.svg, with the roadmap under the plan. Every edge is drawn once.
 Result<void> write_plan(const std::filesystem::path& out, const Mission& mission,
                         const planner::PlanResult& result) {
   std::error_code error;
@@ -179,6 +188,8 @@ Result<void> write_plan(const std::filesystem::path& out, const Mission& mission
 
 }  // namespace
 
+// Plans once per seed. A failed seed is counted and the others are still planned; without any plan
+// the first error is returned.
 Result<ExitCode> plan_mission(const PlanCommandOptions& options) {
   const auto mission = load_mission(options.mission_file, builtin_catalogue());
   if (!mission) return tl::unexpected(mission.error());

@@ -18,6 +18,7 @@
 namespace swarm::launcher {
 namespace {
 
+// sysconf() returns -1 for unknown values, which then count as no memory.
 Machine this_machine() {
   const auto pages = static_cast<std::uint64_t>(std::max(0L, ::sysconf(_SC_PHYS_PAGES)));
   const auto page_bytes = static_cast<std::uint64_t>(std::max(0L, ::sysconf(_SC_PAGESIZE)));
@@ -26,6 +27,7 @@ Machine this_machine() {
 
 }  // namespace
 
+// The priority is raised first, since threads started later inherit it.
 Result<ExitCode> run_mission(const RunOptions& options) {
   become_urgent();
   const auto catalogue = catalogue_of(options.how.agent_program, options.how.planner_program);

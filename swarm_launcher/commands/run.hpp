@@ -11,17 +11,18 @@
 
 namespace swarm::launcher {
 
+/// Options of `swarm_launcher run`.
 struct RunOptions {
   std::filesystem::path mission_file;
   std::optional<std::uint32_t> robots;       ///< instead of the mission's
-  std::uint32_t per_process = 1;             ///< robots, unless …
-  std::optional<std::uint32_t> processes{};  ///< of agents; 0: as the machine can take
-  bool json = false;
-  FlightChoices how{};
+  std::uint32_t per_process = 1;             ///< robots, unless `processes` is set
+  std::optional<std::uint32_t> processes{};  ///< of agents; 0: chosen for this machine
+  bool json = false;                         ///< print the summary as JSON
+  FlightChoices how{};                       ///< everything else the user chooses
 };
 
-/// `swarm_launcher run`: the whole mission with real processes, from planning to the audited
-/// report. Result on stdout, progress on stderr.
+/// `swarm_launcher run`: flies a mission with real processes, from planning to the audited report.
+/// Result on stdout, progress on stderr.
 Result<ExitCode> run_mission(const RunOptions& options);
 
 }  // namespace swarm::launcher

@@ -28,9 +28,13 @@
 namespace swarm::launcher {
 namespace {
 
+// Period of the loop, and so the largest delay of a command by the launcher.
 constexpr Duration kFlightStep = std::chrono::milliseconds(20);
+// Ownership strength of the first planner; lower values are left to planners on stand-by.
 constexpr std::uint32_t kPlannerStrength = 100;
 
+// Refuses DDS implementations that the channel or this build does not support, before any process
+// is started.
 Result<void> vendors_fit(const FlightOptions& options, Channel channel) {
   const bool cyclone = options.how.agent_dds != AgentDds::kFastDds ||
                        options.how.cyclone_launcher || options.how.cyclone_planner ||
@@ -61,10 +65,13 @@ Flight::Flight(FlightOptions options, FlightObserver* observer, std::filesystem:
       lock_(std::move(lock)),
       events_(dir_ / shell::kEventsFile) {}
 
+// First everything that may be refused without side effects: faults, placement, options, channel.
+// Then the domain, the run directory and the bus.
 Result<std::unique_ptr<Flight>> Flight::make(FlightOptions options, FlightObserver* observer) {
   if (const auto faults = parse_link_faults(options.how.fault); !faults) {
     return tl::unexpected(faults.error());
   }
+  // The agents place their robots themselves; this only finds out early whether that works.
   if (const auto places = place_robots(options.mission, options.how.seed); !places) {
     return tl::unexpected(places.error());
   }
@@ -74,6 +81,8 @@ Result<std::unique_ptr<Flight>> Flight::make(FlightOptions options, FlightObserv
       options.how.channel.value_or(Channel::kGroups) != Channel::kGroups) {
     return fail(ErrorCode::kBadInput, "--remote: robots of several hosts meet by --channel groups");
   }
+  // Several hosts need static peers, which the groups channel uses: the discovery server is bound
+  // to loopback.
   if (options.how.remote > 0) options.how.channel = Channel::kGroups;
   if (options.how.remote > options.mission.robots.count ||
       (options.how.remote > 0 &&
@@ -83,6 +92,7 @@ Result<std::unique_ptr<Flight>> Flight::make(FlightOptions options, FlightObserv
                             "must be whole processes of {}",
                             options.how.remote, options.mission.robots.count, options.per_process));
   }
+  // A build with Cyclone DDS only uses it for all processes.
   if (!link::built_with(link::Vendor::kFastDds)) {
     options.how.agent_dds = AgentDds::kCycloneDds;
     options.how.cyclone_launcher = options.how.cyclone_planner = true;
@@ -112,10 +122,13 @@ Result<std::unique_ptr<Flight>> Flight::make(FlightOptions options, FlightObserv
   return flight;
 }
 
+// Only after an error are there children left: they must not outlive the launcher.
 Flight::~Flight() {
   for (const auto& [pid, process] : children_) ::kill(pid, SIGKILL);
 }
 
+// The run information is written before any process starts, because processes read from it how to
+// join. The order of the rest: endpoints, control socket, supervisor, monitors, gateway.
 Result<void> Flight::join() {
   link::DiscoveryAddress discovery_address;
   if (relays_ == 0) {
@@ -192,14 +205,16 @@ Result<void> Flight::join() {
   return options_.how.remote > 0 ? open_to_hosts(run) : Result<void>{};
 }
 
+// Starts the planner or an agent process and remembers its pid. Which robots an agent process hosts
+// follows from its index.
 Result<void> Flight::start(ProcessIndex process) {
   std::vector<std::string> command_line;
   std::string log;
   if (process == kPlanner) {
     command_line = {program_or(options_.how.planner_program, "planner_service"), "--run",
                     dir_.string(),
-                    // A killed planner keeps the plan topic until its lease ends, unless its
-                    // successor is stronger.
+                    // The topic of the plan belongs to a killed planner until its lease ends,
+                    // unless its successor has a higher ownership strength.
                     "--strength", fmt::format("{}", kPlannerStrength + planner_starts_++)};
     log = "planner.log";
   } else {
@@ -230,6 +245,8 @@ Result<void> Flight::start(ProcessIndex process) {
   return {};
 }
 
+// Changes the scene and logs it. The supervisor must know of a new goal, so that robots at the old
+// one do not count as arrived.
 Result<std::string> Flight::change(const SceneChange& change) {
   const UtcTime now = utc_now();
   const std::string what = fmt::format("{} {}", name_of(change), keys_of(change));
@@ -244,6 +261,8 @@ Result<std::string> Flight::change(const SceneChange& change) {
   return changed;
 }
 
+// Only starting a process may fail the flight: without its processes it is of no use. Everything
+// else is logged.
 Result<void> Flight::act(const Action& action) {
   if (const auto* to_start = std::get_if<StartProcess>(&action)) return start(to_start->process);
   if (const auto* command = std::get_if<SendCommand>(&action)) {
@@ -267,6 +286,7 @@ Result<void> Flight::act(const Action& action) {
   return {};
 }
 
+// Children that are neither planner nor agent are monitors or the gateway.
 void Flight::reap(SteadyTime now) {
   while (const auto child = reap_child()) {
     const auto known = children_.find(child->pid);
@@ -284,6 +304,8 @@ void Flight::reap(SteadyTime now) {
   }
 }
 
+// The first token is a mission command or a kind of scene change. A stop is answered only when all
+// robots have confirmed it, see serve_control().
 void Flight::serve(const shell::ControlServer::Request& request, SteadyTime now) {
   const std::size_t space = std::min(request.line.find(' '), request.line.size());
   const std::string word = request.line.substr(0, space);
@@ -309,6 +331,8 @@ void Flight::serve(const shell::ControlServer::Request& request, SteadyTime now)
                                            : changed.error().message + "\nfailed: nothing changed");
 }
 
+// Answers waiting stop requests: when no robot is left that has not confirmed, or when the
+// supervisor gives up and ends the run.
 void Flight::serve_control(SteadyTime now) {
   for (const shell::ControlServer::Request& request : control_->poll()) serve(request, now);
   if (stopping_.empty() || supervisor_->phase() != MissionPhase::kStopped) return;
@@ -322,6 +346,7 @@ void Flight::serve_control(SteadyTime now) {
   stopping_.clear();
 }
 
+// Four times a second: more often is hard to read, and describe() sums over all robots.
 void Flight::show(SteadyTime now) {
   if (now - shown_at_ < std::chrono::milliseconds(250)) return;
   shown_at_ = now;
@@ -334,6 +359,8 @@ void Flight::show(SteadyTime now) {
                      (observer_ != nullptr ? "  " + observer_->describe() : ""));
 }
 
+// One step: signals, ended children, bus, other hosts, control requests; then the supervisor
+// decides on what they reported, and its actions are executed.
 Result<Measurements> Flight::fly() {
   while (supervisor_->stage() != Supervisor::Stage::kDone) {
     const SteadyTime now = std::chrono::steady_clock::now();
@@ -353,8 +380,10 @@ Result<Measurements> Flight::fly() {
     show(now);
     std::this_thread::sleep_for(kFlightStep);
   }
+  // After the last process: the recorder gets every message, and remote logs precede the audit.
   monitors_->finish();
   collect_robot_logs();
+  // CPU time of the launcher itself, including the discovery server.
   rusage own = {};
   ::getrusage(RUSAGE_SELF, &own);
   measurements_.cpu_s += static_cast<double>(own.ru_utime.tv_sec + own.ru_stime.tv_sec) +

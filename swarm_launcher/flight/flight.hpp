@@ -37,62 +37,75 @@
 
 namespace swarm::launcher {
 
+/// What to fly and how.
 struct FlightOptions {
   Mission mission;
-  std::uint32_t per_process = 1;
+  std::uint32_t per_process = 1;  ///< robots of an agent process
   FlightChoices how{};
 };
 
 class Flight;
 
-/// Whoever wants to look on.
+/// Receives what happens in a flight, in the thread that calls fly().
 class FlightObserver {
  public:
   virtual ~FlightObserver() = default;
+  /// A status that passed the Gate.
   virtual void on_status(const link::StatusMessage& status) = 0;
-  /// Every few milliseconds, in the thread that flies.
+  /// Called in every step of the flight, every 20 ms or so. It must not block.
   virtual void on_step(const Flight& flight, SteadyTime now) = 0;
-  /// For the live line.
+  /// Text appended to the live line of the terminal.
   virtual std::string describe() = 0;
 };
 
-/// The imperative shell around the Supervisor: processes, bus, files, terminal.
+/// Executes the decisions of the Supervisor: it owns processes, bus, files and terminal. Single
+/// thread; the Supervisor decides, the flight acts and reports back.
 class Flight {
  public:
-  /// Joins the bus and makes the run directory. \pre the observer, if any, outlives the flight
+  /// Checks the options, reserves a DDS domain, creates the run directory and joins the bus. \pre
+  /// the observer, if any, outlives the flight
   static Result<std::unique_ptr<Flight>> make(FlightOptions options,
                                               FlightObserver* observer = nullptr);
   ~Flight();
   Flight(const Flight&) = delete;
   Flight& operator=(const Flight&) = delete;
 
-  /// The whole mission. Once.
+  /// Flies the whole mission, from the first process to the last. Call it once.
   Result<Measurements> fly();
 
   const std::filesystem::path& dir() const { return dir_; }
   Channel channel() const { return channel_.channel; }
   std::uint32_t domain() const { return lock_.domain(); }
   const Supervisor& supervisor() const { return *supervisor_; }
+  /// Running planner and agent processes of this host.
   const std::map<pid_t, ProcessIndex>& children() const { return children_; }
+  /// The planner's log, for the user when planning failed.
   std::string planner_complaint() const;
 
  private:
   Flight(FlightOptions options, FlightObserver* observer, std::filesystem::path dir,
          link::DomainLock lock, ChannelChoice channel, std::uint32_t relays);
 
+  /// Joins the bus and creates everything that needs the bus or the run directory.
   Result<void> join();
+  /// Executes one decision of the Supervisor.
   Result<void> act(const Action& action);
   Result<void> start(ProcessIndex process);
   Result<void> open_to_hosts(const shell::RunInfo& run);
+  /// Writes an event to the event log and publishes it; warnings are also printed.
   void log(const LogEvent& event);
   void note(link::Severity severity, const std::string& code, const std::string& text);
+  /// Waits for the robot logs of other hosts, a few minutes at most.
   void collect_robot_logs();
   void send(CommandKind kind);
   Result<std::string> change(const SceneChange& change);
+  /// Fallen robots: their bodies become obstacles, or cease to be.
   void add_bodies(std::span<const RobotId> robots);
   void clear_bodies(std::span<const RobotId> robots);
   std::optional<LastKnown> last_known_of(RobotId robot) const;
+  /// Executes one request of the control socket and answers it.
   void serve(const shell::ControlServer::Request& request, SteadyTime now);
+  /// Collects children that have ended.
   void reap(SteadyTime now);
   void read_bus(SteadyTime now);
   void serve_control(SteadyTime now);
@@ -106,7 +119,7 @@ class Flight {
   link::DomainLock lock_;
   EventLog events_;
   Progress progress_;
-  std::unique_ptr<link::DiscoveryServer> server_;  // none where hubs are the meeting place
+  std::unique_ptr<link::DiscoveryServer> server_;  // none with static peers
   std::unique_ptr<link::Participant> participant_;
   std::optional<HealthInbox> inbox_;
   link::WriterPtr<link::CommandMessage> command_writer_;
@@ -117,16 +130,16 @@ class Flight {
   std::optional<GatewayKeeper> gateway_;
   std::optional<Monitors> monitors_;
   std::vector<shell::ControlServer::ClientId>
-      stopping_;  // clients who wait for a stop to be confirmed
+      stopping_;  // clients that wait for the confirmation of a stop
   std::optional<SceneKeeper> scene_;
   std::optional<Supervisor> supervisor_;
   SwarmView view_;
   std::vector<std::optional<LastKnown>> reported_;  // by the newest status of each robot
   std::map<pid_t, ProcessIndex> children_;
   Measurements measurements_;
-  SteadyTime shown_at_;
+  SteadyTime shown_at_;  ///< last update of the live line
   int interrupts_seen_ = 0;
-  std::uint32_t planner_starts_ = 0;
+  std::uint32_t planner_starts_ = 0;  ///< for the ownership strength of the next one
 };
 
 }  // namespace swarm::launcher

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-// What a flight does about robots that are not received any more.
+// Robots that are not received any more: their bodies become obstacles for the others.
 #include <fmt/format.h>
 
 #include "swarm_core/base/clock.hpp"
@@ -10,7 +10,8 @@
 
 namespace swarm::launcher {
 
-/// The robot log has the last tick of a robot of this host; the last status is up to a second old.
+/// The newest known position of a robot. Its log, on this host only, has its last control period;
+/// its last status is up to a second old.
 std::optional<LastKnown> Flight::last_known_of(RobotId robot) const {
   const std::optional<LastKnown>& reported = reported_.at(robot.value());
   const auto steps = robot_log::last_steps(robot_log::file_of(dir_, robot));
@@ -19,6 +20,7 @@ std::optional<LastKnown> Flight::last_known_of(RobotId robot) const {
   return !logged || (reported && reported->at > logged->at) ? reported : logged;
 }
 
+// All bodies in one change of the scene, since each change causes a new plan.
 void Flight::add_bodies(std::span<const RobotId> robots) {
   const UtcTime now = utc_now();
   std::vector<SceneChange> changes;
@@ -39,7 +41,7 @@ void Flight::add_bodies(std::span<const RobotId> robots) {
   if (!unknown.empty()) {
     log({.warning = true,
          .code = "body-unknown",
-         .text = fmt::format("nobody knows where these robots are, others may touch them: {}",
+         .text = fmt::format("robots at unknown positions, others may touch them: {}",
                              describe(unknown))});
   }
   if (!refused.empty()) {
@@ -50,7 +52,7 @@ void Flight::add_bodies(std::span<const RobotId> robots) {
   }
 }
 
-/// Who was cleared by the operator is no obstacle any more.
+/// Robots that report again. The operator may have cleared the body of some already.
 void Flight::clear_bodies(std::span<const RobotId> robots) {
   std::vector<SceneChange> changes;
   std::vector<RobotId> cleared;

@@ -1,11 +1,12 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-// What a flight says and hears.
+// What a flight publishes and receives on the bus.
 #include "swarm_core/base/clock.hpp"
 #include "swarm_launcher/flight/flight.hpp"
 
 namespace swarm::launcher {
 
+// The UTC stamp serves as the command's id, so ids increase also after a restart of the launcher.
 void Flight::send(CommandKind kind) {
   const std::int64_t stamp = utc_now().time_since_epoch().count();
   command_writer_->write(
@@ -27,6 +28,8 @@ void Flight::log(const LogEvent& event) {
   if (event.warning) progress_.print(event.text);
 }
 
+// Republishes statuses and events for monitors, which do not discover the agents. Positions are
+// kept for robots that fall, and each robot's report goes to the supervisor.
 void Flight::read_bus(SteadyTime now) {
   participant_->receive();
   inbox_->receive(utc_now());
@@ -34,6 +37,7 @@ void Flight::read_bus(SteadyTime now) {
     if (observer_ != nullptr) observer_->on_status(status);
     status_relay_->write(status);
     const UtcTime stamp(Duration(status.stamp_utc_ns));
+    // The sender's stamp on the launcher's steady clock, which the supervisor uses.
     const SteadyTime sent_at = now - (utc_now() - stamp);
     for (const link::RobotStatusMessage& robot : status.robots) {
       view_.take(robot);

@@ -13,23 +13,23 @@
 
 namespace swarm::launcher {
 
-/// How a mission is flown, as its user chooses.
+/// How the user wants a mission to be flown.
 struct FlightChoices {
   std::uint64_t seed = 1;
-  std::string fault{};               ///< as parse_link_faults() reads it
-  std::filesystem::path out{};       ///< run directory; empty: runs/<mission>-<time>
-  std::filesystem::path agent_program{};    ///< empty: our robot_agent
-  std::filesystem::path planner_program{};  ///< empty: our planner_service
-  int domain = -1;                   ///< DDS domain; negative: a free one
-  std::optional<Channel> channel{};  ///< empty: choose_channel() decides
-  AgentDds agent_dds = AgentDds::kFastDds;
-  bool cyclone_launcher = false;
-  bool cyclone_planner = false;
-  std::uint32_t by_gateway = 0;  ///< agent processes, the first ones, whose states go by topics
-  std::string interface = "127.0.0.1";  ///< address of the network's interface
-  std::uint32_t remote = 0;             ///< robots that other hosts start: the last ones
-  std::uint16_t join_port = 0;          ///< where those hosts come to; 0: a free one
-  MonitorOptions monitors{};            ///< what looks on
+  std::string fault{};                      ///< as parse_link_faults() reads it
+  std::filesystem::path out{};              ///< run directory; empty: runs/<mission>-<time>
+  std::filesystem::path agent_program{};    ///< empty: robot_agent of this build
+  std::filesystem::path planner_program{};  ///< empty: planner_service of this build
+  int domain = -1;                          ///< DDS domain; negative: a free one
+  std::optional<Channel> channel{};         ///< empty: choose_channel() decides
+  AgentDds agent_dds = AgentDds::kFastDds;  ///< DDS implementation of the agents
+  bool cyclone_launcher = false;            ///< the launcher uses Cyclone DDS
+  bool cyclone_planner = false;             ///< the planner uses Cyclone DDS
+  std::uint32_t by_gateway = 0;             ///< the first agent processes, which use topics
+  std::string interface = "127.0.0.1";      ///< address of the interface to the network
+  std::uint32_t remote = 0;                 ///< the last robots, which other hosts start
+  std::uint16_t join_port = 0;              ///< TCP port for those hosts; 0: a free one
+  MonitorOptions monitors{};                ///< recording and view
 };
 
 }  // namespace swarm::launcher

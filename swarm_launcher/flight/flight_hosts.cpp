@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-// What a flight does for robots that other hosts start.
+// Robots of a flight that other hosts start.
 #include <cstdio>
 #include <thread>
 
@@ -13,10 +13,13 @@ namespace swarm::launcher {
 namespace {
 
 constexpr Duration kHostsStep = std::chrono::milliseconds(20);
+// Logs of hundreds of robots may have gigabytes.
 constexpr Duration kLogsTimeout = std::chrono::minutes(3);
 
 }  // namespace
 
+// Listens for other hosts. The last robots are theirs, so that the local processes have the first
+// indices.
 Result<void> Flight::open_to_hosts(const shell::RunInfo& run) {
   auto server = LineServer::listen({options_.how.interface, options_.how.join_port});
   if (!server) return tl::unexpected(server.error());
@@ -35,7 +38,7 @@ Result<void> Flight::open_to_hosts(const shell::RunInfo& run) {
   return {};
 }
 
-/// The audit needs what happened to the robots of other hosts.
+/// Waits for the robot logs of other hosts, because the audit covers their robots, too.
 void Flight::collect_robot_logs() {
   const auto until = std::chrono::steady_clock::now() + kLogsTimeout;
   while (hosts_ && !hosts_->collect() && std::chrono::steady_clock::now() < until) {

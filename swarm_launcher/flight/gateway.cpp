@@ -19,11 +19,15 @@
 namespace swarm::launcher {
 namespace {
 
+// Longest wait for states, and so the delay of a stop request.
 constexpr Duration kTimeout = std::chrono::milliseconds(5);
+// A gateway that ends this often has a permanent cause.
 constexpr int kMostRestarts = 10;
 
 }  // namespace
 
+// Reads mission and run information from the run directory, then forwards states until a stop
+// signal arrives or the launcher, its parent, has ended.
 Result<ExitCode> run_gateway(const GatewayCommandOptions& options) {
   const auto mission = load_mission(options.run_dir / shell::kMissionFile, open_catalogue());
   if (!mission) return tl::unexpected(mission.error());
@@ -54,6 +58,7 @@ Result<ExitCode> run_gateway(const GatewayCommandOptions& options) {
   return ExitCode::kOk;
 }
 
+// The child is reaped by the launcher's loop, or by init after it.
 GatewayKeeper::~GatewayKeeper() {
   if (pid_ > 0) ::kill(pid_, SIGTERM);
 }

@@ -13,16 +13,18 @@
 
 namespace swarm::launcher {
 
+/// Options of `swarm_launcher gateway`.
 struct GatewayCommandOptions {
   std::filesystem::path run_dir;
-  std::uint32_t parent_pid = 0;  ///< end when this process is no longer our parent
+  std::uint32_t parent_pid = 0;  ///< exit when this process is no longer the parent; 0: never
 };
 
-/// `swarm_launcher gateway`: carries the robot states of a run between groups and topics until it
-/// is given to stop.
+/// `swarm_launcher gateway`: forwards the robot states of a run between groups and topics until it
+/// receives a stop signal.
 Result<ExitCode> run_gateway(const GatewayCommandOptions& options);
 
-/// The gateway process of a flight, started again whenever it ends.
+/// Runs the gateway process of a flight and restarts it when it ends, a limited number of times.
+/// Destruction ends the process.
 class GatewayKeeper {
  public:
   explicit GatewayKeeper(std::filesystem::path run_dir) : run_dir_(std::move(run_dir)) {}
@@ -31,7 +33,8 @@ class GatewayKeeper {
   GatewayKeeper& operator=(const GatewayKeeper&) = delete;
 
   Result<void> start();
-  /// If the child that has ended was it: starts it again, and says so.
+  /// Restarts the gateway if the child that ended was the gateway, and returns a message for the
+  /// log.
   std::optional<std::string> on_exit(pid_t pid);
 
  private:

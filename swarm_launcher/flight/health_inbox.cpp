@@ -12,6 +12,7 @@ HealthInbox::HealthInbox(link::ReaderPtr<link::StatusMessage> statuses,
       event_reader_(std::move(events)),
       gate_({.limits = limits, .own_source = link::kLauncherSource}) {}
 
+// Events under the launcher's own source are refused as forged; see GateOptions::own_source.
 void HealthInbox::receive(UtcTime now) {
   statuses_.clear();
   status_reader_->take(statuses_);

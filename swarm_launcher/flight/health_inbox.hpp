@@ -11,13 +11,14 @@
 
 namespace swarm::launcher {
 
-/// What the launcher receives: statuses and events of robots and planner. Takes everything that
-/// arrived, has the gate check it, and hands on what passed. Not thread-safe.
+/// Statuses and events of robots and planner as the launcher receives them: takes everything that
+/// arrived, lets the Gate check it, and offers what passed. Not thread-safe.
 class HealthInbox {
  public:
   HealthInbox(link::ReaderPtr<link::StatusMessage> statuses,
               link::ReaderPtr<link::EventMessage> events, const link::WireLimits& limits);
 
+  /// Replaces what the previous call received.
   void receive(UtcTime now);
 
   /// Of the last receive(); robot ids are those of the mission.

@@ -16,6 +16,7 @@ namespace swarm::launcher {
 namespace {
 
 constexpr Duration kMonitorStep = std::chrono::milliseconds(20);
+// The recorder needs this long at most to write what it has buffered.
 constexpr Duration kMonitorTimeout = std::chrono::seconds(5);
 constexpr std::size_t kMaxLogBytes = 1U << 20U;
 
@@ -25,6 +26,7 @@ Monitors::~Monitors() {
   for (const auto& [pid, what] : running_) ::kill(pid, SIGTERM);
 }
 
+// Control through the view is off unless the user allowed it.
 Result<void> Monitors::start() {
   const auto start_one = [this](const std::string& what, bool control) -> Result<void> {
     std::vector<std::string> line{sibling_program("swarm_monitor"), what, run_dir_.string()};
@@ -41,6 +43,7 @@ Result<void> Monitors::start() {
   return {};
 }
 
+// The view prints its address as the first line of its log.
 std::optional<std::string> Monitors::view_address() {
   if (!options_.view || reported_) return std::nullopt;
   const auto log = shell::read_file(run_dir_ / shell::kLogsFolder / "view.log", kMaxLogBytes);
@@ -59,6 +62,8 @@ std::optional<std::string> Monitors::on_exit(pid_t pid) {
   return fmt::format("swarm_monitor {0} ended: see logs/{0}.log", what);
 }
 
+// SIGINT makes the recorder finish its file. Waits for these children only; the launcher's loop has
+// ended.
 void Monitors::finish() {
   for (const auto& [pid, what] : running_) ::kill(pid, SIGINT);
   const auto until = std::chrono::steady_clock::now() + kMonitorTimeout;

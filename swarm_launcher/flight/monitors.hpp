@@ -13,14 +13,15 @@
 
 namespace swarm::launcher {
 
+/// Which monitors a run starts.
 struct MonitorOptions {
-  bool record = false;
-  bool view = false;
+  bool record = false;         ///< record the bus
+  bool view = false;           ///< serve the view
   bool allow_control = false;  ///< by the view
 };
 
-/// The swarm_monitor processes that look on at a run for its launcher. Nothing of the flight
-/// depends on them: one that dies is given of and not started again.
+/// The swarm_monitor processes that a launcher starts for its run. The flight does not depend on
+/// them: one that ends is reported and not restarted.
 class Monitors {
  public:
   Monitors(MonitorOptions options, std::filesystem::path run_dir)
@@ -31,19 +32,19 @@ class Monitors {
 
   Result<void> start();
 
-  /// Where the view can be opened, once, as soon as it is known.
+  /// Address of the view, once, as soon as it is known.
   std::optional<std::string> view_address();
 
-  /// If the child that has ended was one of them: what to tell.
+  /// A message for the log if the child that ended was a monitor.
   std::optional<std::string> on_exit(pid_t pid);
 
-  /// Asks them to end and waits until the recording is whole, a few seconds at most.
+  /// Requests their end and waits until the recording is complete, a few seconds at most.
   void finish();
 
  private:
   MonitorOptions options_;
   std::filesystem::path run_dir_;
-  std::map<pid_t, std::string> running_;  // by what they do
+  std::map<pid_t, std::string> running_;  // subcommand by process
   bool reported_ = false;
 };
 

@@ -12,6 +12,7 @@
 
 namespace swarm::launcher {
 
+// The first scene is published, too, so that every reader knows the current version.
 SceneKeeper::SceneKeeper(const World& mission_world, const std::filesystem::path& run_dir,
                          link::WriterPtr<link::SceneMessage> writer)
     : mission_world_(mission_world),
@@ -21,6 +22,7 @@ SceneKeeper::SceneKeeper(const World& mission_world, const std::filesystem::path
   writer_->write(link::to_message(scene_));
 }
 
+// The log is flushed at once, so that a monitor or an audit sees every published version.
 Result<void> SceneKeeper::make(const SceneChange& change, UtcTime now) {
   auto next = after(scene_, change, mission_world_, now);
   if (!next) return tl::unexpected(next.error());
@@ -37,6 +39,7 @@ Result<std::string> SceneKeeper::change(const SceneChange& change, UtcTime now) 
                                   : std::string(name_of(change));
 }
 
+// One message for all changes: every published scene causes a new plan.
 std::vector<Error> SceneKeeper::change_all(std::span<const SceneChange> changes, UtcTime now) {
   std::vector<Error> refused;
   for (const SceneChange& change : changes) {

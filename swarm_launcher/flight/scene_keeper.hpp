@@ -13,27 +13,29 @@
 
 namespace swarm::launcher {
 
-/// The scene of a run: whoever is asked to change it asks here. Publishes it and keeps its history.
+/// The scene of a run. All changes, of the user, the script or the supervisor, go through it: it
+/// checks them, publishes the scene and logs its history.
 class SceneKeeper {
  public:
   /// Publishes the scene of the mission file. \pre the world outlives the keeper
   SceneKeeper(const World& mission_world, const std::filesystem::path& run_dir,
               link::WriterPtr<link::SceneMessage> writer);
 
-  /// Makes a change known to all; says what it was: "obstacle 6 added".
+  /// Publishes a change and returns a description such as "obstacle 6 added".
   Result<std::string> change(const SceneChange& change, UtcTime now);
 
-  /// Makes several changes known at once. Returns why some of them were refused.
+  /// Publishes several changes as one. Returns why some of them were refused.
   std::vector<Error> change_all(std::span<const SceneChange> changes, UtcTime now);
 
   const Scene& scene() const { return scene_; }
 
  private:
+  /// Applies a change to the scene and logs it, without publishing.
   Result<void> make(const SceneChange& change, UtcTime now);
 
-  const World& mission_world_;
+  const World& mission_world_;  ///< of the mission file
   Scene scene_;
-  std::ofstream log_;
+  std::ofstream log_;  ///< one line per change
   link::WriterPtr<link::SceneMessage> writer_;
 };
 

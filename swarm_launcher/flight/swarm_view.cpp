@@ -10,6 +10,7 @@
 
 namespace swarm::launcher {
 
+// Moves the robot to its new cell. A robot without ticks has no position yet.
 void SwarmView::take(const link::RobotStatusMessage& status) {
   link::RobotStatusMessage& known = robots_.at(status.robot_id);
   if (known.ticks > 0) std::erase(cell_at(known.x_m, known.y_m), status.robot_id);
@@ -17,6 +18,7 @@ void SwarmView::take(const link::RobotStatusMessage& status) {
   known = status;
 }
 
+// Cells are as wide as the radius, so the disc touches nine at most.
 bool SwarmView::receives_neighbours(std::uint32_t robot) const {
   const link::RobotStatusMessage& self = robots_.at(robot);
   std::uint32_t near = 0;
@@ -33,6 +35,8 @@ bool SwarmView::receives_neighbours(std::uint32_t robot) const {
   return self.neighbours_heard >= near;
 }
 
+// Rates are differences of the robots' counters. A restarted robot counts from zero again: then the
+// sum may shrink, and the rate is shown as zero.
 std::string SwarmView::describe(SteadyTime now) {
   Totals totals;
   double gap = std::numeric_limits<double>::infinity();
@@ -52,7 +56,7 @@ std::string SwarmView::describe(SteadyTime now) {
                                         : 100.0 * static_cast<double>(totals.late) /
                                               static_cast<double>(totals.ticks);
   std::string text =
-      fmt::format("{}states {:.0f}/s said, {:.0f}/s heard  late {:.2f} %",
+      fmt::format("{}states {:.0f}/s sent, {:.0f}/s received  late {:.2f} %",
                   gap < 1e3 ? fmt::format("nearest gap {:.2f} m  ", gap) : "",
                   rate(totals.sent, before_.sent), rate(totals.received, before_.received), late);
   before_ = totals;

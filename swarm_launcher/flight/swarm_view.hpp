@@ -12,23 +12,27 @@
 
 namespace swarm::launcher {
 
-/// What the robots' statuses say together, for the live line and the start. Never part of an audit.
+/// Summary of the robots' statuses, for the live line and the start of the mission. Not part of an
+/// audit.
 class SwarmView {
  public:
   SwarmView() = default;
   SwarmView(std::uint32_t robots, double communication_radius_m)
       : robots_(robots), communication_radius_m_(communication_radius_m) {}
 
+  /// Replaces the status of a robot.
   void take(const link::RobotStatusMessage& status);
 
-  /// Whether a robot hears at least as many others as stand within the communication radius, by all their
-  /// statuses. O(robots in nine cells).
+  /// Whether a robot receives at least as many neighbours as are within its communication radius by
+  /// all statuses. O(robots in nine cells).
   bool receives_neighbours(std::uint32_t robot) const;
 
-  /// "gap 0.31 m  states 320/s sent 2210/s heard  late 0.0 %"; rates since the previous call.
+  /// "nearest gap 0.31 m  states 320/s sent, 2210/s received  late 0.00 %"; rates since the
+  /// previous call.
   std::string describe(SteadyTime now);
 
  private:
+  /// Sums over all robots since their start.
   struct Totals {
     std::uint64_t sent = 0, received = 0, ticks = 0, late = 0;
   };

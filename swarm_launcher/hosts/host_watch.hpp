@@ -10,15 +10,17 @@
 
 namespace swarm::launcher {
 
-/// Whether another host can be received, by the statuses of its robots.
+/// Whether another host is reachable, by the statuses of its robots. Pure.
 class HostWatch {
  public:
-  /// So many messages come in every period of so many hertz; one in two may be late by a period.
+  /// `messages`: statuses of the host per period of 1/`status_hz`. The timeout tolerates that one
+  /// of two messages is late by a period.
   HostWatch(std::uint32_t messages, double status_hz)
       : timeout_(from_seconds((1.0 + 1.5 / std::max(1U, messages)) / status_hz)) {}
 
   void on_status(SteadyTime now) { received_at_ = now; }
 
+  /// The host became unreachable or reachable.
   enum class Change { kCut, kBack };
   /// What has changed since the last call.
   std::optional<Change> step(SteadyTime now) {
@@ -28,7 +30,7 @@ class HostWatch {
   }
 
   bool cut() const { return cut_; }
-  /// It has been silent for so long that it will not be back.
+  /// No status for ten timeouts, and at least 30 s: the host is treated as gone for good.
   bool lost(SteadyTime now) const {
     constexpr Duration kLeast = std::chrono::seconds(30);
     return received_at_ && now - *received_at_ > std::max(kLeast, 10 * timeout_);
@@ -36,7 +38,7 @@ class HostWatch {
 
  private:
   Duration timeout_;
-  std::optional<SteadyTime> received_at_;
+  std::optional<SteadyTime> received_at_;  ///< empty: no status yet
   bool cut_ = false;
 };
 

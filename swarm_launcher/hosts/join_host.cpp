@@ -26,12 +26,14 @@ namespace {
 
 constexpr int kStep_ms = 20;
 constexpr Duration kAnswerTimeout = std::chrono::seconds(10);
-constexpr Duration kStartEvery = std::chrono::milliseconds(50);  // dozens at once slow each other
+constexpr Duration kStartEvery = std::chrono::milliseconds(50);  // starting processes compete
+// Time between the signals of the ladder, as in the supervisor.
 constexpr Duration kGrace = std::chrono::seconds(5);             // of each signal
 constexpr std::size_t kMaxLogBytes = 1U << 30U;
 
 SteadyTime now() { return std::chrono::steady_clock::now(); }
 
+// Requests robots and waits for the offer.
 Result<HostOffer> ask(LineSocket& socket, std::uint32_t robots) {
   socket.send(nlohmann::json{{"join", robots}}.dump());
   for (const SteadyTime until = now() + kAnswerTimeout; now() < until && !socket.gone();) {
@@ -43,7 +45,8 @@ Result<HostOffer> ask(LineSocket& socket, std::uint32_t robots) {
   return fail(ErrorCode::kEnvironment, "no launcher answers there");
 }
 
-/// The processes of this host.
+/// The agent processes of this host: started one after the other, restarted a limited number of
+/// times, and killed when the object is destroyed.
 class HostProcesses {
  public:
   HostProcesses(const HostOffer& offer, std::filesystem::path dir, bool cyclone, std::uint32_t respawns)
@@ -56,6 +59,7 @@ class HostProcesses {
   HostProcesses(const HostProcesses&) = delete;
   HostProcesses& operator=(const HostProcesses&) = delete;
 
+  // Reaps processes that ended, queues the restarts, and starts the next process that is due.
   Result<void> step() {
     while (const auto child = reap_child()) {
       const auto known = children_.find(child->pid);
@@ -70,11 +74,13 @@ class HostProcesses {
     return start(robot);
   }
 
+  // From the first signal on no process is started or restarted.
   void signal(int number) {
     ending_ = true;
     for (const auto& [pid, robot] : children_) ::kill(pid, number);
   }
 
+  // All processes have ended and none is to be started.
   bool over() const { return children_.empty() && (ending_ || waiting_.empty()); }
   std::size_t living() const { return children_.size(); }
 
@@ -106,14 +112,16 @@ class HostProcesses {
   std::filesystem::path dir_;
   bool cyclone_;
   std::uint32_t respawns_;
-  std::vector<std::uint32_t> waiting_;  // first robots of processes, counted from ours
+  std::vector<std::uint32_t> waiting_;  // first robot of each process, counted from our first
   std::map<pid_t, std::uint32_t> children_;
   std::map<std::uint32_t, std::uint32_t> deaths_;
   SteadyTime next_start_;
   bool ending_ = false;
 };
 
-/// Until all processes have ended: because the launcher says so, is gone, or we are to stop.
+/// Runs the processes until all have ended. They are ended when the launcher requests it, when the
+/// connection is lost, or on a stop signal; a process that does not end gets the next stronger
+/// signal.
 Result<void> fly(HostProcesses& processes, LineSocket& socket, Progress& progress) {
   int signalled = -1;
   SteadyTime signalled_at;
@@ -141,14 +149,16 @@ Result<void> fly(HostProcesses& processes, LineSocket& socket, Progress& progres
   return {};
 }
 
-/// What is still said to us no longer matters; but unread it would cut off what we say.
+/// Discards what the launcher still sends. Unread input would make the kernel reset the connection
+/// at its end and discard our last bytes.
 void drain(LineSocket& socket) {
   socket.receive();
   while (!socket.bytes(1U << 16U).empty()) {
   }
 }
 
-/// Robot logs go home one after the other.
+/// Sends the robot logs one after the other, each as a line with its size and the bytes. Only one
+/// log is in memory at a time.
 void send_logs(const HostOffer& offer, const std::filesystem::path& dir, LineSocket& socket,
                 Progress& progress) {
   socket.send(R"({"over": true})");
@@ -171,7 +181,7 @@ void send_logs(const HostOffer& offer, const std::filesystem::path& dir, LineSoc
   }
 }
 
-/// Until the launcher has read everything.
+/// Ends the connection after the launcher has read everything. False if it was lost before.
 bool part(LineSocket& socket) {
   if (socket.gone()) return false;
   socket.finish();
@@ -184,6 +194,8 @@ bool part(LineSocket& socket) {
 
 }  // namespace
 
+// The run directory is created before the request, so that robots are not reserved in vain. The
+// offer is checked against the mission that it contains.
 Result<ExitCode> join_host(const JoinOptions& options) {
   const auto to = parse_host_port(options.launcher);
   if (!to) return tl::unexpected(to.error());

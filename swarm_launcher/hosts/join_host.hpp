@@ -10,16 +10,17 @@
 
 namespace swarm::launcher {
 
+/// Options of `swarm_launcher join`.
 struct JoinOptions {
   std::string launcher;       ///< HOST:PORT
-  std::uint32_t robots = 1;   ///< wanted; there may be fewer left
-  std::string interface;      ///< address of ours; empty: the one the launcher is reached by
-  bool cyclone = false;       ///< the agents' DDS
+  std::uint32_t robots = 1;   ///< wanted; the launcher may have fewer left
+  std::string interface;      ///< our address; empty: the one on the route to the launcher
+  bool cyclone = false;       ///< the agents use Cyclone DDS
   std::filesystem::path out;  ///< run directory; empty: runs/<mission>-<time>
 };
 
-/// `swarm_launcher join`: flies some robots of a run that another host's launcher leads, until that
-/// one ends them or goes away, and sends their robot logs home.
+/// `swarm_launcher join`: flies some robots of a run that the launcher of another host leads, until
+/// that launcher ends them or disappears; then sends their robot logs to it.
 Result<ExitCode> join_host(const JoinOptions& options);
 
 }  // namespace swarm::launcher

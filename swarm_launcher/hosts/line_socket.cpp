@@ -25,10 +25,11 @@ namespace {
 
 constexpr int kConnect_ms = 10'000;
 constexpr int kUnreachable_ms = 60'000;
-constexpr int kAlive_s = 10;  // one that is silent for longer is asked whether it is there
+constexpr int kAlive_s = 10;  // silence after which the kernel probes the peer
 
 using Addresses = std::unique_ptr<addrinfo, decltype(&::freeaddrinfo)>;
 
+// Resolves a name to IPv4 addresses; DDS uses IPv4 as well.
 Result<Addresses> resolve(const HostPort& at) {
   addrinfo hints{};
   hints.ai_family = AF_INET;
@@ -49,6 +50,7 @@ tl::unexpected<Error> failed(const char* what, const HostPort& at, int code) {
 
 }  // namespace
 
+// The last colon separates the port, which must be a decimal number to the end of the text.
 Result<HostPort> parse_host_port(const std::string& text) {
   const std::size_t colon = text.rfind(':');
   HostPort out{.host = text.substr(0, colon)};
@@ -63,6 +65,8 @@ Result<HostPort> parse_host_port(const std::string& text) {
   return out;
 }
 
+// Non-blocking and without delay for small lines. Keep-alive detects a peer that vanished while
+// nothing is sent, the user timeout one that does not acknowledge.
 LineSocket::LineSocket(int fd) : fd_(fd) {
   const int yes = 1;
   const auto unreachable = static_cast<unsigned>(kUnreachable_ms);
@@ -96,6 +100,8 @@ LineSocket::~LineSocket() {
   if (fd_ >= 0) ::close(fd_);
 }
 
+// A non-blocking connect: the socket becomes writable when the connection is made or has failed,
+// and SO_ERROR then contains the result.
 Result<LineSocket> LineSocket::connect(const HostPort& to) {
   const auto addresses = resolve(to);
   if (!addresses) return tl::unexpected(addresses.error());
@@ -119,6 +125,7 @@ void LineSocket::send(std::string_view line) {
   flush();
 }
 
+// Sends until the kernel's buffer is full. The queue is only compacted when it is empty.
 void LineSocket::flush() {
   while (!gone_ && sent_ < out_.size()) {
     const ssize_t n = ::send(fd_, out_.data() + sent_, out_.size() - sent_, MSG_NOSIGNAL);
@@ -134,6 +141,7 @@ void LineSocket::flush() {
   }
 }
 
+// Drops what was read before, then reads until nothing is left or the limit is reached.
 void LineSocket::receive(std::size_t held) {
   in_.erase(0, read_);
   read_ = 0;
@@ -149,6 +157,7 @@ void LineSocket::receive(std::size_t held) {
   }
 }
 
+// A too long line is recognised before its end arrives, so buffers stay bounded.
 std::optional<std::string> LineSocket::line(std::size_t most) {
   const std::size_t end = in_.find('\n', read_);
   if (end == std::string::npos) {
@@ -181,8 +190,9 @@ void LineSocket::close() {
   gone_ = true;
 }
 
+// Also wakes up when queued bytes can be sent.
 void LineSocket::wait(int at_most_ms) const {
-  if (gone_) {  // or it would return at once
+  if (gone_) {  // poll() would return at once
     ::poll(nullptr, 0, at_most_ms);
     return;
   }
@@ -191,6 +201,7 @@ void LineSocket::wait(int at_most_ms) const {
   ::poll(&waiting, 1, at_most_ms);
 }
 
+// SO_REUSEADDR: connections of an earlier run in TIME_WAIT must not block the port.
 Result<LineServer> LineServer::listen(const HostPort& at) {
   const auto addresses = resolve(at);
   if (!addresses) return tl::unexpected(addresses.error());

@@ -18,11 +18,12 @@ struct HostPort {
   std::string host;
   std::uint16_t port = 0;
 };
+/// Fails unless the text is HOST:PORT.
 Result<HostPort> parse_host_port(const std::string& text);
 
-/// One end of a TCP connection that speaks in lines, with blocks of raw bytes between them. Never
-/// waits: what does not go out now goes out at a later flush(). A peer that is unreachable for a
-/// minute is gone.
+/// One end of a TCP connection that carries lines of text, with blocks of raw bytes between them.
+/// Its functions do not block, except connect() and wait(): what cannot be sent now is sent by a
+/// later flush(). A peer that is unreachable for a minute counts as gone. Not thread-safe.
 class LineSocket {
  public:
   explicit LineSocket(int fd);
@@ -33,27 +34,30 @@ class LineSocket {
   /// Connects, waiting for at most ten seconds.
   static Result<LineSocket> connect(const HostPort& to);
 
+  /// Queues a line, or bytes as they are, and sends what the kernel accepts.
   void send(std::string_view line);
   void send_bytes(std::string_view bytes) { out_ += bytes; }
-  /// Bytes that have not gone out yet.
+  /// Bytes queued and not yet accepted by the kernel.
   std::size_t unsent() const { return out_.size() - sent_; }
   void flush();
 
-  static constexpr std::size_t kMaxLine = 16U << 20U;  // a mission with its drawing
+  static constexpr std::size_t kMaxLine = 16U << 20U;  // room for a mission file in an offer
 
-  /// Takes what has arrived, as long as less than `held` waits to be read.
+  /// Reads what has arrived while fewer than `held` bytes are buffered, so that a peer cannot fill
+  /// our memory.
   void receive(std::size_t held = 2 * kMaxLine);
-  /// The next line without its end, if one is there. A longer one than `most` is not for us.
+  /// The next complete line, without its end. A peer whose line exceeds `most` bytes counts as
+  /// gone.
   std::optional<std::string> line(std::size_t most = kMaxLine);
   /// Up to `most` of the bytes that have arrived.
   std::string bytes(std::size_t most);
 
-  /// Nothing more will be said; the other end reads what was.
+  /// Closes our direction only; the peer still receives what was sent.
   void finish();
   void close();
-  /// The other end closed, broke off, or sent a line that is too long.
+  /// The peer closed the connection, or it failed, or the peer sent a line that is too long.
   bool gone() const { return gone_; }
-  /// Our address on the way to the other end.
+  /// Our own address on the route to the peer.
   std::string own_address() const;
   /// Sleeps until something arrives or the time is over.
   void wait(int at_most_ms) const;
@@ -75,6 +79,7 @@ class LineServer {
   LineServer& operator=(LineServer&&) = delete;
   ~LineServer();
 
+  /// The next connection, if one waits.
   std::optional<LineSocket> accept();
   std::uint16_t port() const { return port_; }
 

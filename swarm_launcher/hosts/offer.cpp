@@ -8,11 +8,13 @@
 namespace swarm::launcher {
 namespace {
 
+// Raise it with every change of the offer or of the lines between the hosts.
 constexpr int kVersion = 2;
 constexpr std::uint32_t kMaxRobots = 20'000;
 
 }  // namespace
 
+// The keys are the protocol between hosts; "hubs" is the number of relay participants.
 std::string to_line(const HostOffer& offer) {
   return nlohmann::json{{"version", kVersion},
                         {"domain", offer.run.domain},
@@ -31,6 +33,8 @@ std::string to_line(const HostOffer& offer) {
       .dump();
 }
 
+// Any missing field or wrong type throws in the JSON library and becomes an error here. Ranges are
+// checked last: the values become ports, sizes and loop bounds.
 Result<HostOffer> parse_offer(const std::string& line) {
   try {
     const auto json = nlohmann::json::parse(line);

@@ -10,19 +10,19 @@
 
 namespace swarm::launcher {
 
-/// What a launcher tells another host that joins: how to meet, which robots are its, and the
-/// mission. `run.interface` is for the other host to fill in.
+/// A launcher's offer to another host that joins: how to meet, which robots the host flies, and the
+/// mission. The other host fills in `run.interface` itself.
 struct HostOffer {
   shell::RunInfo run;
   std::uint32_t first_robot = 0;
   std::uint32_t robots = 0;
   std::uint32_t per_process = 1;
   std::uint32_t first_process = 0;  ///< number of its first agent process in the run, from 0
-  std::string fault{};       ///< a bad network for its robots, as parse_link_faults() reads it
-  std::string mission_yaml;  ///< resolved
+  std::string fault{};              ///< simulated network faults, see parse_link_faults()
+  std::string mission_yaml;         ///< the resolved mission
 };
 
-/// One line of JSON. Another host's is checked as hostile.
+/// One line of JSON. A received one is not trusted: every field is checked.
 std::string to_line(const HostOffer& offer);
 Result<HostOffer> parse_offer(const std::string& line);
 

@@ -15,10 +15,13 @@ namespace swarm::launcher {
 namespace {
 
 constexpr std::size_t kMaxHosts = 256;
-constexpr std::size_t kMaxLine = 4096;  // of what hosts say
+constexpr std::size_t kMaxLine = 4096;  // of a host
+// Bytes buffered per host while it sends its logs.
 constexpr std::size_t kMaxHeld = 4U << 20U;
+// Lines per step and host, so that one host cannot delay the launcher's loop.
 constexpr int kLinesAtOnce = 64;
 constexpr std::uint64_t kMaxLogBytes = 1ULL << 30U;
+// As kMaxStatusRobots: a process with more robots sends several statuses per period.
 constexpr std::uint32_t kRobotsPerStatus = 100;
 constexpr Duration kRequestTimeout = std::chrono::seconds(10);
 
@@ -37,6 +40,7 @@ std::optional<std::uint64_t> number(const nlohmann::json& json, const char* key,
 
 }  // namespace
 
+// The unsigned difference is out of range for robots below the first one as well.
 void RemoteHosts::on_status(RobotId robot, SteadyTime now) {
   for (Host& host : hosts_) {
     if (robot.value() - host.first_robot < host.robots) host.watch.on_status(now);
@@ -47,7 +51,8 @@ void RemoteHosts::on_user_command(CommandKind kind) {
   if (kind == CommandKind::kPause) paused_ = false;
 }
 
-/// The next robots that are nobody's yet, at most as many as it wants. False if there are none.
+/// Assigns the next free robots, in whole processes and at most as many as requested, and sends the
+/// offer. False if there are none.
 bool RemoteHosts::answer(Host& host, std::uint32_t robots) {
   if (begun_ || free_.empty()) {
     const char* const why = begun_ ? "the mission has begun" : "it has all the robots it needs";
@@ -74,7 +79,9 @@ bool RemoteHosts::answer(Host& host, std::uint32_t robots) {
   return true;
 }
 
-/// False if it is no line of a host that joins, or one that may not.
+/// The first line must be a request; then "over" (the processes have ended), "box" (a robot log
+/// follows) and "bye". The peer is not trusted: a log is accepted for its own robots only and up to
+/// a size limit.
 bool RemoteHosts::take_line(Host& host, const std::string& line) {
   const auto json = nlohmann::json::parse(line, nullptr, false);
   if (!json.is_object()) return false;
@@ -103,6 +110,7 @@ bool RemoteHosts::take_line(Host& host, const std::string& line) {
   return host.log_file.good();
 }
 
+// Writes bytes to the file as they arrive. A log counts as collected only when it is complete.
 void RemoteHosts::take_log(Host& host) {
   const std::string bytes = host.socket.bytes(host.log_bytes);
   host.log_file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
@@ -112,6 +120,8 @@ void RemoteHosts::take_log(Host& host) {
   if (host.log_file.good()) collected_[host.log_robot - offer_.first_robot] = true;
 }
 
+// Lines and the bytes of a log alternate on the connection; what follows depends on log_bytes. A
+// connection without a request may buffer little.
 void RemoteHosts::take(Host& host) {
   host.socket.flush();
   host.socket.receive(host.robots > 0 ? kMaxHeld : kMaxLine);
@@ -128,7 +138,7 @@ void RemoteHosts::take(Host& host) {
   if (host.socket.gone()) drop(host);
 }
 
-/// It hears that as the end, and ends its robots.
+/// Closes the connection. The host treats this as a request to end and ends its robots.
 void RemoteHosts::drop(Host& host) {
   host.left = host.over = true;
   host.socket.close();
@@ -136,7 +146,7 @@ void RemoteHosts::drop(Host& host) {
 
 std::vector<LogEvent> RemoteHosts::step(Supervisor& supervisor, SteadyTime now) {
   begun_ = supervisor.stage() > Supervisor::Stage::kGathering;
-  // Who came and did not become a host leaves no trace.
+  // Connections that never requested robots are forgotten.
   std::erase_if(hosts_, [](const Host& host) { return host.robots == 0 && host.left; });
   while (hosts_.size() < kMaxHosts) {
     auto socket = server_.accept();
@@ -148,11 +158,14 @@ std::vector<LogEvent> RemoteHosts::step(Supervisor& supervisor, SteadyTime now) 
     if (!host.left) take(host);
     if (host.robots == 0 && now - host.came > kRequestTimeout) drop(host);
   }
+  // Reported after all connections were read, because take() runs without the supervisor.
   for (const std::size_t i : std::exchange(joined_, {})) {
     const Host& host = hosts_[i];
     supervisor.on_joined(host.first_process, host.processes, now);
     log.push_back({.code = "host-joined", .text = describe(host.first_robot, host.robots)});
   }
+  // Reachability of each host. A host that is over counts as ended processes; before the start its
+  // robots become free for another host.
   bool cut = false;
   for (Host& host : hosts_) {
     if (host.robots == 0 || host.counted) continue;
@@ -181,7 +194,8 @@ std::vector<LogEvent> RemoteHosts::step(Supervisor& supervisor, SteadyTime now) 
   return log;
 }
 
-/// Whoever resumes all the same is obeyed until the next time.
+/// Pauses once per cut. If the user resumes during a cut, the mission is not paused again until the
+/// host was back and is cut off again.
 void RemoteHosts::pause_or_resume(bool cut, Supervisor& supervisor, SteadyTime now) {
   if (paused_ && supervisor.phase() == MissionPhase::kRunning) {
     paused_ = false;
@@ -197,17 +211,20 @@ void RemoteHosts::pause_or_resume(bool cut, Supervisor& supervisor, SteadyTime n
   }
 }
 
+// Only a signal stronger than the last one is sent. After a kill the launcher does not wait for the
+// host.
 void RemoteHosts::end(ProcessIndex process, EndSignal signal) {
   for (Host& host : hosts_) {
     if (process.value() - host.first_process.value() >= host.processes || host.counted) continue;
     if (static_cast<int>(signal) <= host.signalled) return;
     host.signalled = static_cast<int>(signal);
     host.socket.send(nlohmann::json{{"end", host.signalled}}.dump());
-    if (signal == EndSignal::kKill) host.over = true;  // whether it hears it or not
+    if (signal == EndSignal::kKill) host.over = true;  // even if the line does not arrive
     return;
   }
 }
 
+// Done when every host has left, with or without its logs.
 bool RemoteHosts::collect() {
   bool all = true;
   for (Host& host : hosts_) {

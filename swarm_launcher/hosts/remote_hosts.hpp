@@ -15,10 +15,11 @@
 
 namespace swarm::launcher {
 
-/// The launcher's side of robots that other hosts start (`swarm_launcher join`). A host asks for a
-/// number of them over TCP, is given the mission and how to meet, is given when to end them, and then
-/// sends their robot logs home. In flight it is received by its robots' statuses alone: while one is
-/// not, everybody else is paused, since the robots of the two sides do not see each other.
+/// The launcher's side of robots that other hosts start (`swarm_launcher join`). A host requests a
+/// number of robots over TCP, receives the mission and how to meet, is notified when to end them,
+/// and then sends their robot logs. In flight a host is monitored by its robots' statuses only:
+/// while they are not received, the mission is paused, because the robots of the two sides do not
+/// receive each other.
 class RemoteHosts {
  public:
   /// `offer`: all robots that are for other hosts. `dir`: the run's directory.
@@ -32,37 +33,39 @@ class RemoteHosts {
 
   std::uint16_t port() const { return server_.port(); }
 
+  /// A status of a robot arrived. Robots of this host are ignored.
   void on_status(RobotId robot, SteadyTime now);
 
-  /// What people command is theirs: we do not take it back.
+  /// A command of the user takes precedence: a pause of the user is not resumed automatically.
   void on_user_command(CommandKind kind);
 
-  /// Takes what came, and tells the supervisor. Returns what there is to log.
+  /// Accepts hosts, reads their lines and reports to the supervisor. Returns what to log.
   std::vector<LogEvent> step(Supervisor& supervisor, SteadyTime now);
 
-  /// Ends a process of another host.
+  /// Requests the end of a process of another host, and with it of all processes of that host.
   void end(ProcessIndex process, EndSignal signal);
 
-  /// Takes robot logs. Call it, after the flight, until it returns true.
+  /// Receives robot logs. Call it after the flight until it returns true.
   bool collect();
-  /// Robot logs that were promised and are not here.
+  /// Number of robot logs that have not arrived completely.
   std::uint32_t missing_logs() const;
 
  private:
+  /// A connection; a host once it has requested robots.
   struct Host {
     LineSocket socket;
     SteadyTime came;
     HostWatch watch{1, 1.0};
-    std::uint32_t first_robot = 0, robots = 0;  // none: it has not asked yet
+    std::uint32_t first_robot = 0, robots = 0;  // none: no request yet
     ProcessIndex first_process{};
     std::uint32_t processes = 0;
     int signalled = -1;         // strongest signal sent
     bool over = false;     // its processes have ended …
     bool counted = false;  // … and the supervisor knows
-    bool left = false;     // it said good-bye, or is out of reach
+    bool left = false;     // it has left, or the connection is lost
     std::ofstream log_file{};
     std::uint32_t log_robot = 0;
-    std::uint64_t log_bytes = 0;  // still to come
+    std::uint64_t log_bytes = 0;  // not received yet
   };
   struct Block {  // of offer_'s robots
     std::uint32_t first;
@@ -70,10 +73,12 @@ class RemoteHosts {
   };
 
   void take(Host& host);
+  /// False if the line is not valid: then the connection is dropped.
   bool take_line(Host& host, const std::string& line);
   bool answer(Host& host, std::uint32_t robots);
   void take_log(Host& host);
   void drop(Host& host);
+  /// Pauses the mission while a host is cut off.
   void pause_or_resume(bool cut, Supervisor& supervisor, SteadyTime now);
 
   LineServer server_;
@@ -82,10 +87,10 @@ class RemoteHosts {
   std::filesystem::path dir_;
   std::vector<Host> hosts_;
   std::vector<std::size_t> joined_;  // since the last step: indices of hosts_
-  std::vector<Block> free_;          // nobody's yet
+  std::vector<Block> free_;          // not assigned yet
   std::vector<bool> collected_;           // robot logs
   bool paused_ = false;              // by us
-  bool overruled_ = false;           // somebody resumed all the same
+  bool overruled_ = false;           // the user resumed in spite of the cut
   bool begun_ = false;
 };
 

@@ -6,7 +6,7 @@
 
 namespace swarm::launcher {
 
-/// Whose DDS the agents speak.
+/// DDS implementation of the agents.
 enum class AgentDds : std::uint8_t { kFastDds, kCycloneDds, kHalf /* every other one Cyclone's */ };
 
 }  // namespace swarm::launcher

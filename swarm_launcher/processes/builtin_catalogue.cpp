@@ -9,6 +9,7 @@
 namespace swarm {
 
 const Catalogue& builtin_catalogue() {
+  // Created once; initialisation of a static is thread-safe in C++.
   static const Catalogue catalogue = [] {
     agent::DriverRegistry drivers;
     agent::register_builtin_drivers(drivers);

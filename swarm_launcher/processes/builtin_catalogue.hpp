@@ -6,7 +6,8 @@
 
 namespace swarm {
 
-/// The planning methods, control methods and drivers of our own programs.
+/// The planning methods, control methods and drivers of the programs of this build. Created at the
+/// first call; safe from any thread.
 const Catalogue& builtin_catalogue();
 
 }  // namespace swarm

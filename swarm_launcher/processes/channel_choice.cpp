@@ -7,11 +7,13 @@
 namespace swarm::launcher {
 namespace {
 
+// Limits by measurement, see the header.
 constexpr std::uint32_t kTopicsAgentsMax = 32;
 constexpr std::uint32_t kGroupsPerProcessMax = 4;
 
 }  // namespace
 
+// The user's choice comes first, then what is possible, then what is cheaper.
 Result<ChannelChoice> choose_channel(const ChannelQuestion& question) {
   const auto& [wanted, agents, robots_per_process, multicast] = question;
   if (wanted == Channel::kGroups && !multicast) {

@@ -11,21 +11,23 @@
 
 namespace swarm::launcher {
 
+/// A channel and why it was chosen.
 struct ChannelChoice {
   Channel channel = Channel::kTopics;
-  std::string reason;  ///< for people
+  std::string reason;  ///< printed and logged
 };
 
+/// What the choice depends on.
 struct ChannelQuestion {
-  std::optional<Channel> wanted{};  ///< obeyed, or refused where it cannot work
-  std::uint32_t agents = 0;         ///< processes
+  std::optional<Channel> wanted{};  ///< the user's choice; refused if it cannot work
+  std::uint32_t agents = 0;         ///< agent processes
   std::uint32_t robots_per_process = 1;
-  bool multicast = true;  ///< whether the interface carries it
+  bool multicast = true;  ///< whether the interface carries multicast
 };
 
-/// The state channel of a run, and why. Beyond 32 processes the endpoints of moving robots cost
-/// more to discover than all else together (docs/BENCHMARKS.md); a process of many robots listens
-/// nearly everywhere and gains nothing by groups.
+/// Chooses the state channel of a run. Beyond 32 processes, discovering the endpoints of moving
+/// robots costs more than everything else together (docs/BENCHMARKS.md). A process of many robots
+/// receives nearly all cells and gains nothing by groups.
 Result<ChannelChoice> choose_channel(const ChannelQuestion& question);
 
 }  // namespace swarm::launcher

@@ -18,6 +18,7 @@ namespace {
 
 constexpr int kUrgentNice = -10;
 constexpr int kChildNice = 5;
+// Exit code of a child that could not execute its program, as in shells.
 constexpr int kExecFailed = 127;
 
 double seconds(const timeval& t) {
@@ -28,6 +29,7 @@ double seconds(const timeval& t) {
 
 void become_urgent() { ::setpriority(PRIO_PROCESS, 0, kUrgentNice); }
 
+// fork() and exec() instead of posix_spawn(), which cannot set the parent-death signal.
 Result<pid_t> start_process(const std::vector<std::string>& command_line,
                             const std::filesystem::path& log) {
   const int log_fd = ::open(log.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
@@ -40,8 +42,8 @@ Result<pid_t> start_process(const std::vector<std::string>& command_line,
   argv.push_back(nullptr);
 
   const pid_t parent = ::getpid();
-  // A stop signal that reached the child before its exec would end in our handler and be lost with
-  // it: it waits until the child has the default one.
+  // A stop signal between fork and exec would run the launcher's handler in the child and be lost.
+  // So stop signals are blocked until the child has the default actions.
   sigset_t stops;
   sigset_t before;
   sigemptyset(&stops);
@@ -55,6 +57,7 @@ Result<pid_t> start_process(const std::vector<std::string>& command_line,
     ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
     ::setpgid(0, 0);
     ::prctl(PR_SET_PDEATHSIG, SIGTERM);
+    // The launcher may have died before the death signal was set.
     if (::getppid() != parent) ::_exit(kExecFailed);
     ::setpriority(PRIO_PROCESS, 0, kChildNice);
     ::dup2(log_fd, STDOUT_FILENO);
@@ -85,6 +88,7 @@ int number_of(EndSignal signal) {
   return SIGKILL;
 }
 
+// wait4(), because it also returns the resource usage of the child.
 std::optional<ExitedChild> reap_child() {
   int status = 0;
   rusage usage = {};
@@ -97,6 +101,7 @@ std::optional<ExitedChild> reap_child() {
                      .max_rss_mb = static_cast<double>(usage.ru_maxrss) / 1024.0};
 }
 
+// By the running executable, so that a build or installation uses its own programs.
 std::filesystem::path sibling_program(const std::string& name) {
   return std::filesystem::read_symlink("/proc/self/exe").parent_path() / name;
 }

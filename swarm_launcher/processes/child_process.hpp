@@ -14,28 +14,30 @@
 
 namespace swarm::launcher {
 
-/// Asks for a higher priority of this process (root gets it, others go on without): the discovery
-/// server lives here, and one that is starved by hundreds of starting agents answers late, is asked
-/// again, and never catches up. Call it before any thread is started.
+/// Requests a higher priority for this process (granted to root; others continue without). The
+/// discovery server runs in this process: if hundreds of starting agents leave it without CPU time,
+/// it answers late, agents repeat their requests, and it never catches up. Call it before any
+/// thread is started.
 void become_urgent();
 
 /// Starts a program with stdout and stderr appended to `log`. The child
 ///  - is in a process group of its own, so that Ctrl-C at the terminal reaches the launcher alone,
-///  - is given to end (SIGTERM) by the kernel when the launcher dies, so that nothing is orphaned,
-///  - is a little less urgent than the launcher (nice 5), which must not be starved by hundreds of
+///  - gets SIGTERM from the kernel when the launcher dies, so that no process is orphaned,
+///  - has a lower priority (nice 5) than the launcher, which must get CPU time beside hundreds of
 ///  them.
-/// Call it from the thread that lives as long as the launcher: the kernel watches that thread.
+/// Call it from a thread that runs as long as the launcher: the kernel monitors that thread.
 Result<pid_t> start_process(const std::vector<std::string>& command_line,
                             const std::filesystem::path& log);
 
 /// The kernel's number of a signal.
 int number_of(EndSignal signal);
 
+/// A child that has ended, with its resource usage.
 struct ExitedChild {
   pid_t pid = 0;
   ProcessExit exit;
-  double cpu_s = 0.0;  ///< user + system
-  double max_rss_mb = 0.0;
+  double cpu_s = 0.0;       ///< user + system
+  double max_rss_mb = 0.0;  ///< largest resident memory
 };
 
 /// The next child that has ended, if any; never blocks.

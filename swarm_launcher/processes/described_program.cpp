@@ -24,10 +24,11 @@ extern char** environ;
 namespace swarm::launcher {
 namespace {
 
+// Far longer than --describe needs: it only prints tables.
 constexpr Duration kTimeout = std::chrono::seconds(10);
 constexpr std::size_t kMostBytes = 4U << 20U;
 
-/// Reads until the other end closes, or the time is over; false then.
+/// Reads until the other end closes; false if the time is over or the output is too long.
 bool read_all(int pipe, std::string& text) {
   const SteadyTime deadline = std::chrono::steady_clock::now() + kTimeout;
   std::array<char, 4096> piece;
@@ -43,7 +44,7 @@ bool read_all(int pipe, std::string& text) {
   }
 }
 
-/// Starts `program --describe` with its standard output in a pipe. An errno, or 0.
+/// Starts `program --describe` with its standard output in a pipe. Returns 0 or an errno.
 int spawn(const std::filesystem::path& program, int out, pid_t& pid) {
   posix_spawn_file_actions_t actions;
   ::posix_spawn_file_actions_init(&actions);
@@ -59,6 +60,7 @@ int spawn(const std::filesystem::path& program, int out, pid_t& pid) {
 
 }  // namespace
 
+// The program may be anything that the user named: it is killed when it does not end in time.
 Result<Catalogue> describe_program(const std::filesystem::path& program) {
   std::array<int, 2> ends{};
   if (::pipe2(ends.data(), O_CLOEXEC) != 0) {
@@ -90,6 +92,8 @@ Result<Catalogue> describe_program(const std::filesystem::path& program) {
   return catalogue_from_json(text, program.string());
 }
 
+// Another program replaces the components of its kind: drivers and control methods belong to the
+// agent, planning methods to the planner.
 Result<Catalogue> catalogue_of(const std::filesystem::path& agent_program,
                                const std::filesystem::path& planner_program) {
   Catalogue catalogue = builtin_catalogue();

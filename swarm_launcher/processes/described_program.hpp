@@ -9,8 +9,8 @@
 
 namespace swarm::launcher {
 
-/// What a robot or planner program says of itself: runs `program --describe` and reads the JSON
-/// that it prints. kBadInput if it cannot be started, does not end within ten seconds, or prints
+/// The components of a robot or planner program: runs `program --describe` and reads the JSON that
+/// it prints. kBadInput if it cannot be started, does not end within ten seconds, or prints
 /// something else.
 Result<Catalogue> describe_program(const std::filesystem::path& program);
 

@@ -11,14 +11,14 @@
 namespace swarm::launcher {
 namespace {
 
-// Measured: an agent of one robot holds 54 files, with 5 m cells around it joined, and four
-// threads.
+// Measured: an agent of one robot has 54 open files, with the 5 m cells around it joined, and four
+// threads. The limits include a reserve.
 constexpr std::uint64_t kFilesAnAgent = 80;
 constexpr std::uint64_t kFilesARobot = 1;  // its robot log
 constexpr std::uint64_t kFilesARelay = 16;
 constexpr std::uint64_t kThreadsAnAgent = 4;
 constexpr std::uint64_t kThreadsOfOthers = 200;
-/// With fewer processes priorities hardly matter.
+/// With fewer processes, scheduling by session makes little difference.
 constexpr std::uint32_t kManyAgents = 100;
 
 std::uint64_t limit_of(__rlimit_resource resource) {
@@ -39,11 +39,13 @@ HostLimits read_host_limits() {
 void raise_open_files() {
   rlimit limit{};
   if (::getrlimit(RLIMIT_NOFILE, &limit) != 0) return;
-  constexpr rlim_t kEnough = 65'536;  // some libraries walk through all that are allowed
+  constexpr rlim_t kEnough = 65'536;  // some libraries iterate over all possible files
   limit.rlim_cur = std::max(limit.rlim_cur, std::min(limit.rlim_max, kEnough));
   ::setrlimit(RLIMIT_NOFILE, &limit);
 }
 
+// Files are limited per process: the larger of an agent and the launcher counts. Threads are
+// limited per user: all count.
 std::vector<std::string> shortcomings(const HostLimits& limits, const RunSize& run) {
   std::vector<std::string> list;
   const std::uint64_t files = std::max(kFilesAnAgent + kFilesARobot * run.robots_per_process,

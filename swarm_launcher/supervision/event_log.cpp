@@ -15,10 +15,11 @@ void EventLog::write(UtcTime at, const std::string& source, link::Severity sever
                                        {"severity", link::to_string(severity)},
                                        {"code", code},
                                        {"text", text}};
-  // Text from the bus may be any bytes: what is not UTF-8 is replaced.
+  // Text from the bus may contain any bytes: invalid UTF-8 is replaced.
   out_ << line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) << '\n' << std::flush;
 }
 
+// By the sender's stamp, so lines of different sources need not be sorted by time.
 void EventLog::write(const link::EventMessage& event) {
   write(UtcTime(Duration(event.stamp_utc_ns)), link::source_name(event.source), event.severity,
         event.code, event.text);

@@ -11,7 +11,8 @@
 
 namespace swarm::launcher {
 
-/// `events.jsonl`: what happened, one JSON object a line, flushed at once.
+/// `events.jsonl`: events of a run, one JSON object per line, flushed at once so that a crash loses
+/// none.
 class EventLog {
  public:
   explicit EventLog(const std::filesystem::path& file) : out_(file, std::ios::app) {}

@@ -7,21 +7,23 @@
 namespace swarm::launcher {
 namespace {
 
+// Control periods for which a driver executes a command.
 constexpr double kPeriodsOfACommand = 2.0;
-/// A tick this much later than its period still counts as the last one of a robot.
+/// Two log records this many periods apart or less are taken as consecutive.
 constexpr double kPeriodsOfATick = 3.0;
 
-/// How far a robot gets from a speed of now on, under a command and then without one.
+/// Distance [m] that a robot covers from its present speed: first under a command, then braking.
 double travel_m(const BodySpec& body, double speed_mps, double command_mps, double command_s) {
   const double commanded_m = command_mps * command_s;
   if (body.model == "single_integrator") return commanded_m;
-  // It brakes at once, or keeps at most the speed it is commanded to for a while and brakes then.
+  // It brakes at once, or it moves at most at the larger of the two speeds and brakes afterwards.
   const double fastest_mps = std::max(speed_mps, command_mps);
   return commanded_m + fastest_mps * fastest_mps / (2.0 * body.acceleration_max_mps2);
 }
 
 }  // namespace
 
+// The speed is the mean over the last period, if the record before is recent enough.
 std::optional<LastKnown> last_known(std::span<const robot_log::Step> steps, const Mission& mission) {
   if (steps.empty()) return std::nullopt;
   const robot_log::Step& last = steps.back();
@@ -36,6 +38,8 @@ std::optional<LastKnown> last_known(std::span<const robot_log::Step> steps, cons
   return known;
 }
 
+// Three cases after the body at rest: no recent command, a body that follows commands at once, a
+// body with inertia.
 Circle circle_of_fallen(const LastKnown& known, UtcTime silent_since, const Mission& mission,
                         RobotId robot) {
   const BodySpec& body = body_of(mission.robots, robot);
@@ -51,8 +55,8 @@ Circle circle_of_fallen(const LastKnown& known, UtcTime silent_since, const Miss
   } else if (body.model == "single_integrator") {
     circle.center_m += 0.5 * command_s * *known.command_mps;
     circle.radius_m += 0.5 * command_s * known.command_mps->norm();
-  } else {  // one with inertia need not move where it is commanded to
-    // It may have become faster by the end of the period that the speed is the mean of.
+  } else {  // a body with inertia need not move as commanded
+    // The speed is a mean over a period: at its end the robot may have been faster by this.
     const double gained_mps = period_s * body.acceleration_max_mps2;
     const double command_mps = known.command_mps->norm();
     const double speed_mps = known.speed_mps ? *known.speed_mps + gained_mps : body.speed_max_mps;

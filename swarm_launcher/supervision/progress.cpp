@@ -10,17 +10,20 @@
 
 namespace swarm::launcher {
 
+// Control sequences are written to terminals only, and not if the user set NO_COLOR.
 Progress::Progress() : live_(::isatty(STDERR_FILENO) == 1 && std::getenv("NO_COLOR") == nullptr) {}
 
 Progress::~Progress() {
   if (shown_) std::fputc('\n', stderr);
 }
 
+// Carriage return, then "erase to the end of the line".
 void Progress::clear() {
   if (shown_) std::fputs("\r\033[K", stderr);
   shown_ = false;
 }
 
+// Without a terminal only changes of the headline are printed, so that logs stay short.
 void Progress::show(const std::string& headline, const std::string& details) {
   if (live_) {
     clear();

@@ -8,8 +8,8 @@
 
 namespace swarm::launcher {
 
-/// One live line on a terminal, rewritten in place; without a terminal (or with NO_COLOR set) each
-/// change of `headline` is a line of its own and the details are left out. Writes to stderr.
+/// One live line on a terminal, rewritten in place. Without a terminal (or with NO_COLOR set) each
+/// change of `headline` is printed as a line and the details are omitted. Writes to stderr.
 class Progress {
  public:
   Progress();
@@ -18,7 +18,7 @@ class Progress {
   Progress& operator=(const Progress&) = delete;
 
   void show(const std::string& headline, const std::string& details);
-  /// A message of its own, above the live line.
+  /// Prints a message above the live line.
   void print(const std::string& line);
 
  private:
@@ -28,7 +28,7 @@ class Progress {
   std::string headline_;
 };
 
-/// What a run is doing, for the first line.
+/// Headline for the present stage of a run.
 std::string headline_of(const Supervisor& supervisor);
 
 }  // namespace swarm::launcher

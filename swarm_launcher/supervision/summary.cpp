@@ -18,6 +18,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 /// The planner writes its own times; a planner that never planned leaves none.
+// Planning time, for summary.json.
 Json plan_ms(const std::filesystem::path& run_dir) {
   const auto text = shell::read_file(run_dir / shell::kPlanStatsFile, 1U << 16U);
   if (!text) return nullptr;
@@ -25,13 +26,14 @@ Json plan_ms(const std::filesystem::path& run_dir) {
   return stats.is_object() ? stats.value("total_ms", Json()) : Json();
 }
 
-/// By how much the published plans break their own limit.
+/// By how much the published plans exceed their risk limit.
 struct PlansExcess {
   std::size_t plans = 0;
   std::size_t broken = 0;
   double largest_m = 0.0;
 };
 
+// Reads all plans of the run directory: the first one and the replans, plan-*.json.
 PlansExcess plans_excess(const std::filesystem::path& run_dir) {
   constexpr std::size_t kLargestPlan = 16U << 20U;
   PlansExcess excess;
@@ -51,7 +53,8 @@ PlansExcess plans_excess(const std::filesystem::path& run_dir) {
   return excess;
 }
 
-/// The summary of a run that left nothing to audit: it ended before a robot made its first step.
+/// The summary of a run that ended before any robot made a step: it has all keys, so that readers
+/// of summaries need no special case.
 Json empty_summary(const Json& own, const std::string& why) {
   Json summary = {
       {"outcome", nullptr}, {"reasons", {why}}, {"arrived", 0}, {"lost", Json::array()}};
@@ -66,6 +69,7 @@ Json empty_summary(const Json& own, const std::string& why) {
   return summary;
 }
 
+// A quorum time-out is a problem of the machine or the network rather than of the mission.
 ExitCode exit_code_of(Outcome outcome, bool audit_ok) {
   switch (outcome) {
     case Outcome::kCompleted:
@@ -77,7 +81,7 @@ ExitCode exit_code_of(Outcome outcome, bool audit_ok) {
   }
 }
 
-/// Where the report is, or why there is none.
+/// Writes the report and returns its path, or why there is none.
 std::string write_report(const std::filesystem::path& run_dir,
                          const Result<monitor::AuditedRun>& audited) {
   if (!audited) return "none";
@@ -87,6 +91,8 @@ std::string write_report(const std::filesystem::path& run_dir,
 
 }  // namespace
 
+// Writes the launcher's part of summary.json first, since the audit reads it and merges it into its
+// own result; then completes and writes the summary again.
 Result<ExitCode> summarise(const std::filesystem::path& run_dir, const Measurements& measured,
                            bool json) {
   const Json own = {

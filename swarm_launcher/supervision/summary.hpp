@@ -12,17 +12,17 @@
 
 namespace swarm::launcher {
 
-/// What only the launcher can measure.
+/// Measurements that only the launcher can make.
 struct Measurements {
   Outcome outcome = Outcome::kNone;
   std::optional<Channel> channel;  ///< empty: in lock-step
   double discovery_s = -1.0;       ///< negative: never complete
-  double neighbour_discovery_s = -1.0;  ///< from then to everyone hearing its neighbours; negative: never
+  double neighbour_discovery_s = -1.0;  ///< from then until all receive their neighbours
   double cpu_s = 0.0;       ///< of all processes of the run
   double max_rss_mb = 0.0;  ///< of the largest child
   std::uint64_t refused_by_launcher = 0;
-  /// Of a simulation: of all its plans, of planning and flying together, and the median over
-  /// control periods.
+  /// Of a simulation: time of all plans, of the whole simulation, and the median over control
+  /// periods.
   std::optional<double> plan_ms, wall_s, ns_per_agent_step;
 };
 

@@ -11,15 +11,19 @@
 namespace swarm::launcher {
 namespace {
 
+// A process that has not been received after this time no longer delays the next starts.
 constexpr Duration kStartTimeout = std::chrono::seconds(5);
+// A process that fails immediately is not restarted in a tight loop.
 constexpr Duration kRespawnDelay = std::chrono::milliseconds(300);
+// An emergency stop is sent 15 times within 1.5 s, because it must get through a degraded network.
 constexpr Duration kStopRepeat = std::chrono::milliseconds(100);
 constexpr std::uint32_t kStopRepeats = 15;
+// Longest wait for the robots' confirmations.
 constexpr Duration kStopTimeout = std::chrono::seconds(5);
-/// At the rim of a crowded goal a robot may be pushed out again: everyone stays for as long as
-/// this.
+/// At the edge of a dense goal a robot may be pushed out again, so all robots must stay arrived for
+/// this long.
 constexpr Duration kStay = std::chrono::seconds(2);
-/// Arrived robots may never come to rest in a dense crowd; then this long is enough.
+/// In a dense region arrived robots may never come to rest; then this time is enough.
 constexpr Duration kConvergeTimeout = std::chrono::seconds(10);
 
 std::uint32_t process_count(const SupervisorOptions& options) {
@@ -55,8 +59,9 @@ std::string_view to_string(Outcome outcome) {
   return "unknown";
 }
 
+// Joins consecutive ids to ranges.
 std::string describe(const std::vector<RobotId>& robots) {
-  constexpr std::size_t kRanges = 20;  // a line that can be read, and fits into an event
+  constexpr std::size_t kRanges = 20;  // readable, and short enough for an event's text
   std::string text;
   std::size_t ranges = 0;
   for (std::size_t i = 0; i < robots.size(); ++ranges) {
@@ -88,13 +93,14 @@ void Supervisor::on_status(RobotId robot, const RobotReport& report) {
   Robot& r = robots_.at(robot.value());
   r.report = report;
   r.received = true;
-  // What a process sent before it died may come after we know that it died.
+  // A status that a process sent before it died may arrive after its death was noticed.
   if (!r.silent_since || report.sent_at <= *r.silent_since) return;
   r.silent_since.reset();
   std::erase(fallen_, robot);
   risen_.push_back(robot);
 }
 
+// Falling and rising within one step cancel each other: the last one counts.
 void Supervisor::on_silent(RobotId robot, SteadyTime now) {
   Robot& r = robots_.at(robot.value());
   r.silent_since = now;
@@ -102,6 +108,7 @@ void Supervisor::on_silent(RobotId robot, SteadyTime now) {
   if (std::find(fallen_.begin(), fallen_.end(), robot) == fallen_.end()) fallen_.push_back(robot);
 }
 
+// Its robots may have been given up when an earlier host left.
 void Supervisor::on_joined(ProcessIndex first, std::uint32_t count, SteadyTime now) {
   for (std::uint32_t i = first.value(); i < first.value() + count; ++i) {
     Process& p = processes_.at(i);
@@ -112,12 +119,14 @@ void Supervisor::on_joined(ProcessIndex first, std::uint32_t count, SteadyTime n
   }
 }
 
+// In this order: the run is ending; a remote process before the start, which another host may
+// replace; restart; given up. A planner without restarts left ends the run.
 void Supervisor::on_exit(ProcessIndex process, const ProcessExit& exit, SteadyTime now) {
   Process& p = processes_.at(process.value());
   p.alive = false;
   if (stage_ == Stage::kEnding || stage_ == Stage::kDone) return;
   const auto [first, count] = robots_of(process);
-  if (is_remote(process) && stage_ != Stage::kRunning) {  // another host may still come
+  if (is_remote(process) && stage_ != Stage::kRunning) {  // another host may replace it
     p.started = false;
     for (std::uint32_t r = first.value(); r < first.value() + count; ++r) robots_[r].received = false;
     return;
@@ -129,6 +138,7 @@ void Supervisor::on_exit(ProcessIndex process, const ProcessExit& exit, SteadyTi
   pending_log_.push_back({.warning = true,
                           .code = is_planner ? "planner-exit" : "agent-exit",
                           .text = fmt::format("{} {}", who, describe(exit))});
+  // These exit codes mean that planning itself failed: a restart would fail in the same manner.
   const bool hopeless = is_planner && exit.signal == 0 &&
                         (exit.code == static_cast<int>(ExitCode::kCriteriaNotMet) ||
                          exit.code == static_cast<int>(ExitCode::kUsage));
@@ -146,6 +156,7 @@ void Supervisor::on_exit(ProcessIndex process, const ProcessExit& exit, SteadyTi
   for (std::uint32_t i = 0; i < count; ++i) robots_[first.value() + i].lost = true;
 }
 
+// Queued until the next step, which decides with all commands in their order.
 void Supervisor::on_command(CommandKind kind, SteadyTime now) {
   if (kind == CommandKind::kStop && phase_ != MissionPhase::kStopped)
     stop_ends_ = now + kStopTimeout;
@@ -154,6 +165,7 @@ void Supervisor::on_command(CommandKind kind, SteadyTime now) {
 
 void Supervisor::on_interrupt() { ++interrupts_; }
 
+// Applies a command to the phase and sends it. A stop is sent repeatedly by repeat_stop() instead.
 void Supervisor::command(CommandKind kind, SteadyTime now, std::vector<Action>& actions) {
   const MissionPhase before = phase_;
   phase_ = phase_after(phase_, kind);
@@ -168,20 +180,24 @@ void Supervisor::command(CommandKind kind, SteadyTime now, std::vector<Action>& 
   actions.emplace_back(LogEvent{.code = "command", .text = std::string(swarm::to_string(kind))});
 }
 
-/// One change of the scene a step, however many robots fall at once: each is a new plan.
+/// One change of the scene per step for any number of robots, because each change causes a new
+/// plan.
 void Supervisor::keep_bodies(std::vector<Action>& actions) {
   if (!fallen_.empty()) actions.emplace_back(AddBodies{std::exchange(fallen_, {})});
   if (!risen_.empty()) actions.emplace_back(ClearBodies{std::exchange(risen_, {})});
 }
 
-/// An agent that joins the bus. Dozens at once only take the CPU from each other and from those
-/// that answer them; one that hangs must not keep the others waiting.
+/// Whether an agent process has been started and is not received yet. Dozens of such processes
+/// compete for the CPU with each other and with those that answer their discovery. A process that
+/// hangs stops counting after a while, so that it does not block the others.
 bool Supervisor::is_starting(std::uint32_t process, SteadyTime now) const {
   const Process& p = processes_[process];
   return process != kPlanner.value() && p.alive && now - p.started_at < kStartTimeout &&
          !robots_[robots_of(ProcessIndex(process)).first.value()].received;
 }
 
+// First the restarts that are due, then new processes: at most starts_per_s on average, and at most
+// starting_max that are not received yet. The planner, with index 0, is the first.
 void Supervisor::start_due(SteadyTime now, std::vector<Action>& actions) {
   for (std::uint32_t i = 0; i < processes(); ++i) {
     Process& p = processes_[i];
@@ -207,6 +223,8 @@ void Supervisor::start_due(SteadyTime now, std::vector<Action>& actions) {
   }
 }
 
+// Starts the mission when all robots are ready. After the quorum time-out it starts with those that
+// are ready, if they are enough; otherwise the run ends.
 void Supervisor::gather(SteadyTime now, std::vector<Action>& actions) {
   std::vector<RobotId> missing;
   bool discovered = true;
@@ -242,6 +260,7 @@ void Supervisor::gather(SteadyTime now, std::vector<Action>& actions) {
   command(CommandKind::kStart, now, actions);
 }
 
+// A delayed step sends at most two repetitions, so that overdue ones do not come as a burst.
 void Supervisor::repeat_stop(SteadyTime now, std::vector<Action>& actions) {
   while (stops_to_send_ > 0 && now >= next_stop_) {
     actions.emplace_back(SendCommand{CommandKind::kStop});
@@ -250,6 +269,7 @@ void Supervisor::repeat_stop(SteadyTime now, std::vector<Action>& actions) {
   }
 }
 
+// Executes the events of the script whose time has come, in their order.
 void Supervisor::play_script(SteadyTime now, std::vector<Action>& actions) {
   const double t = mission_time(now).count();
   while (next_script_ < options_.script.size() && options_.script[next_script_].at_s <= t) {
@@ -262,7 +282,7 @@ void Supervisor::play_script(SteadyTime now, std::vector<Action>& actions) {
   }
 }
 
-/// Whether the script will still send the swarm somewhere else: then arriving is not the end.
+/// Whether the script contains a later goal: then arrival is not the end of the mission.
 bool Supervisor::script_moves_on() const {
   return std::any_of(options_.script.begin() + static_cast<std::ptrdiff_t>(next_script_),
                      options_.script.end(), [](const ScriptEvent& event) {
@@ -271,6 +291,8 @@ bool Supervisor::script_moves_on() const {
                      });
 }
 
+// Ends the mission: after a stop that all robots confirmed, when no robot is left, when all have
+// settled or have been arrived for long enough, or at the time limit.
 void Supervisor::run(SteadyTime now, std::vector<Action>& actions) {
   if (phase_ == MissionPhase::kStopped) {
     const bool confirmed = stops_to_send_ == 0 && unstopped().empty();
@@ -283,7 +305,8 @@ void Supervisor::run(SteadyTime now, std::vector<Action>& actions) {
     begin_ending(Outcome::kStopped, now);
     return;
   }
-  // Who arrives after a new goal is not known before that goal is out.
+  // Evaluated before the script is played: reports of arrival at a goal that is only now published
+  // cannot exist yet.
   const bool had_goals_left = script_moves_on();
   play_script(now, actions);
   const Counts c = counts();
@@ -303,6 +326,7 @@ void Supervisor::run(SteadyTime now, std::vector<Action>& actions) {
   }
 }
 
+// The first reason counts. From now on no process is restarted.
 void Supervisor::begin_ending(Outcome outcome, SteadyTime now) {
   if (stage_ == Stage::kEnding || stage_ == Stage::kDone) return;
   stage_ = Stage::kEnding;
@@ -311,6 +335,8 @@ void Supervisor::begin_ending(Outcome outcome, SteadyTime now) {
   for (Process& p : processes_) p.respawn_due = false;
 }
 
+// Signals all processes that still run, with SIGINT, then SIGTERM, then SIGKILL, each a grace
+// period later; a second interrupt of the user goes to SIGKILL at once.
 void Supervisor::end(SteadyTime now, std::vector<Action>& actions) {
   const bool all_gone =
       std::none_of(processes_.begin(), processes_.end(), [](const Process& p) { return p.alive; });
@@ -330,6 +356,8 @@ void Supervisor::end(SteadyTime now, std::vector<Action>& actions) {
   }
 }
 
+// Commands of the user are applied before the stage is advanced, so that an emergency stop works in
+// every stage up to the ending.
 std::vector<Action> Supervisor::step(SteadyTime now) {
   std::vector<Action> actions;
   if (interrupts_ > 0) begin_ending(Outcome::kInterrupted, now);
@@ -350,6 +378,7 @@ std::vector<Action> Supervisor::step(SteadyTime now) {
   return actions;
 }
 
+// Arrived and settled count only for the newest goal.
 Supervisor::Counts Supervisor::counts() const {
   Counts c;
   for (const Process& p : processes_) c.started += p.started ? 1 : 0;
@@ -366,6 +395,7 @@ Supervisor::Counts Supervisor::counts() const {
   return c;
 }
 
+// A robot whose process has ended cannot confirm; its driver stops it without commands.
 std::vector<RobotId> Supervisor::unstopped() const {
   std::vector<RobotId> out;
   for (std::uint32_t i = 0; i < robots_.size(); ++i) {

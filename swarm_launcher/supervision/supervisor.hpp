@@ -16,17 +16,18 @@
 
 namespace swarm::launcher {
 
-/// Process of a run: 0 is the planner, 1 … the agents.
+/// Index of a process of a run: 0 is the planner, 1 … the agents.
 using ProcessIndex = StrongId<struct ProcessIndexTag, std::uint32_t>;
 inline constexpr ProcessIndex kPlanner{0};
 
+/// What the supervisor needs to know of a run.
 struct SupervisorOptions {
   std::uint32_t robots = 0;
   std::uint32_t per_process = 1;
-  std::uint32_t remote_processes = 0;  ///< the last ones: started by other hosts
+  std::uint32_t remote_processes = 0;  ///< number of those that other hosts start: the last ones
   LauncherSpec launcher;
   std::vector<ScriptEvent> script;
-  Duration signal_grace = std::chrono::seconds(5);  ///< SIGINT, this, SIGTERM, this, SIGKILL
+  Duration signal_grace = std::chrono::seconds(5);  ///< time between SIGINT, SIGTERM and SIGKILL
 };
 
 /// How a process ended.
@@ -35,18 +36,20 @@ struct ProcessExit {
   int signal = 0;  ///< signal that killed it, 0 if it ended by itself
 };
 
-/// What a robot's status said.
+/// The part of a robot's status that the supervisor uses.
 struct RobotReport {
   bool has_plan = false;
-  bool receives_neighbours = false;  ///< everyone who stands within its communication radius
+  bool receives_neighbours = false;  ///< all robots within its communication radius
   RobotMode mode = RobotMode::kWaiting;
   bool settled = false;
-  std::uint64_t scene_version = 0;  ///< that its plan was made for
-  SteadyTime sent_at{};             ///< by its stamp
+  std::uint64_t scene_version = 0;  ///< scene that its plan was made for
+  SteadyTime sent_at{};             ///< by its stamp, on the launcher's clock
 };
 
+/// Signals that end a process, weakest first.
 enum class EndSignal { kInterrupt, kTerminate, kKill };
 
+/// Actions: what the caller of step() has to do, in the order given.
 struct StartProcess {
   ProcessIndex process;
 };
@@ -60,14 +63,15 @@ struct SendCommand {
 struct ChangeScene {
   SceneChange change;
 };
-/// These robots are not received any more: their bodies become obstacles.
+/// The bodies of these robots, which are not received any more, become obstacles.
 struct AddBodies {
   std::vector<RobotId> robots;
 };
-/// These are received again: their bodies are no obstacles any more.
+/// These robots are received again: their bodies are no longer obstacles.
 struct ClearBodies {
   std::vector<RobotId> robots;
 };
+/// An event for the log; warnings are also shown to the user.
 struct LogEvent {
   bool warning = false;
   std::string code;
@@ -76,28 +80,30 @@ struct LogEvent {
 using Action = std::variant<StartProcess, SignalProcess, SendCommand, ChangeScene, AddBodies,
                             ClearBodies, LogEvent>;
 
+/// How a run ended.
 enum class Outcome {
   kNone,       ///< still going on
-  kCompleted,  ///< every robot that lives has settled
+  kCompleted,  ///< every robot that is not lost has settled
   kTimeLimit,
   kQuorumTimeout,
-  kPlannerFailed,  ///< it said why; restarting would not help, or did not
+  kPlannerFailed,  ///< its log has the reason; restarts cannot help or did not
   kStopped,        ///< emergency stop
   kInterrupted,    ///< SIGINT or SIGTERM to the launcher
   kAllLost,
 };
 std::string_view to_string(Outcome outcome);  ///< snake_case, as in summary.json
 
-/// Decides when processes start, restart and end, and when the mission's commands go out. Pure:
-/// times and observations in, actions out.
+/// Decides when processes start, restart and end, and when mission commands are sent. Pure: times
+/// and observations in, actions out; no clock, no processes, no bus. Not thread-safe.
 ///
-/// Ready is a robot that was received, has the plan, and hears its neighbours.
+/// A robot is ready when it is received, has the plan, and receives its neighbours.
 ///
-///   starting ──last start──▶ gathering ──everyone ready──▶ running ──settled, limit, stop──▶
+///   starting ──last start──▶ gathering ──all ready──▶ running ──settled, limit, stop──▶
 ///   ending ──▶ done
-///      └──────────── interrupt, planner cannot plan, quorum time-out ─────────────────────────▲
+///      └──────────── interrupt, planner cannot plan, quorum time-out ──────────────────▲
 class Supervisor {
  public:
+  /// Stages of a run; see above.
   enum class Stage { kStarting, kGathering, kRunning, kEnding, kDone };
 
   Supervisor(const SupervisorOptions& options, SteadyTime now);
@@ -106,48 +112,56 @@ class Supervisor {
   /// First robot and number of robots of an agent process; of the planner none.
   std::pair<RobotId, std::uint32_t> robots_of(ProcessIndex process) const;
 
+  /// A status of a robot arrived. It ends the silence of the robot only if it was sent after the
+  /// silence began.
   void on_status(RobotId robot, const RobotReport& report);
-  /// Another host has started some of its processes.
+  /// Another host has taken over `count` processes from `first` on.
   void on_joined(ProcessIndex first, std::uint32_t count, SteadyTime now);
+  /// A process has ended: it is restarted if allowed, otherwise its robots are lost.
   void on_exit(ProcessIndex process, const ProcessExit& exit, SteadyTime now);
-  /// A robot is not received any more, whatever became of its process: it stays where it is, in
-  /// everyone's way, until it reports again.
+  /// A robot is not received any more, for whatever reason. It is assumed to stay where it is, as
+  /// an obstacle, until it reports again.
   void on_silent(RobotId robot, SteadyTime now);
-  void on_command(CommandKind kind, SteadyTime now);  ///< of the user
-  /// The swarm has a new goal: who arrives by a plan for an older scene has not arrived.
+  void on_command(CommandKind kind, SteadyTime now);  ///< by the user
+  /// The swarm has a new goal: robots that arrive by a plan for an older scene do not count as
+  /// arrived.
   void on_new_goal(std::uint64_t scene_version) { goal_version_ = scene_version; }
-  void on_interrupt();  ///< the second one kills
+  void on_interrupt();  ///< the second one kills all processes
 
-  /// What to do now. Call it often (every 50 ms or so).
+  /// Returns the actions that are due. Call it often (every 50 ms or so).
   std::vector<Action> step(SteadyTime now);
 
   Stage stage() const { return stage_; }
   Outcome outcome() const { return outcome_; }
   MissionPhase phase() const { return phase_; }
 
+  /// Processes started, and robots by state. A lost robot is in no other group.
   struct Counts {
     std::uint32_t started = 0, ready = 0, arrived = 0, settled = 0, stopped = 0, lost = 0;
   };
   Counts counts() const;
-  /// Robots that live and have not confirmed an emergency stop.
+  /// Robots whose process runs and which have not confirmed an emergency stop.
   std::vector<RobotId> unstopped() const;
+  /// Robots that cannot arrive any more.
   std::vector<RobotId> lost() const;
 
-  /// From the last start of a process to everyone being heard and having the plan; negative if that
-  /// never happened.
+  /// Time [s] from the last start of a process until every robot was received and had the plan;
+  /// negative if that never happened.
   double discovery_s() const { return discovery_s_; }
-  /// From then on to everyone hearing its neighbours as well; negative if that never happened.
+  /// Time [s] from then until every robot received its neighbours as well; negative if that never
+  /// happened.
   double neighbour_discovery_s() const { return neighbour_discovery_s_; }
-  /// Mission time, 0 before the start.
+  /// Mission time, which starts with the start command; 0 before.
   MissionTime mission_time(SteadyTime now) const;
 
  private:
+  /// Life cycle of a process.
   struct Process {
     bool alive = false;
     bool started = false;
     SteadyTime started_at;
     std::uint32_t respawns = 0;
-    SteadyTime respawn_at;
+    SteadyTime respawn_at;  ///< when it may be restarted
     bool respawn_due = false;
   };
   struct Robot {
@@ -157,9 +171,11 @@ class Supervisor {
     std::optional<SteadyTime> silent_since{};  // its body is an obstacle
   };
 
+  /// Whether another host starts the process.
   bool is_remote(ProcessIndex process) const { return process.value() >= local_processes(); }
   std::uint32_t local_processes() const { return processes() - options_.remote_processes; }
   bool is_starting(std::uint32_t process, SteadyTime now) const;
+  /// The steps of a stage; each appends its actions.
   void start_due(SteadyTime now, std::vector<Action>& actions);
   void gather(SteadyTime now, std::vector<Action>& actions);
   void run(SteadyTime now, std::vector<Action>& actions);
@@ -168,7 +184,7 @@ class Supervisor {
   bool has_newest_goal(const Robot& robot) const {
     return robot.report.scene_version >= goal_version_;
   }
-  /// Stopped itself, for its control method failed: it will not arrive.
+  /// The robot has stopped by itself because its control method failed: it will not arrive.
   bool has_failed(const Robot& robot) const {
     return robot.report.mode == RobotMode::kStopped && phase_ != MissionPhase::kStopped;
   }
@@ -186,9 +202,9 @@ class Supervisor {
   std::vector<Robot> robots_;
   std::vector<LogEvent> pending_log_;
   std::vector<CommandKind> pending_commands_;
-  std::vector<RobotId> fallen_;  // since the last step
-  std::vector<RobotId> risen_;
-  std::uint32_t next_start_ = 0;
+  std::vector<RobotId> fallen_;   // since the last step
+  std::vector<RobotId> risen_;    ///< received again since the last step
+  std::uint32_t next_start_ = 0;  ///< first process that was never started
   SteadyTime begun_;
   SteadyTime last_start_;
   SteadyTime started_at_;  // of the mission
@@ -196,17 +212,17 @@ class Supervisor {
   bool all_arrived_ = false;
   double discovery_s_ = -1.0;
   double neighbour_discovery_s_ = -1.0;
-  std::size_t next_script_ = 0;
+  std::size_t next_script_ = 0;  ///< next event of the script
   std::uint64_t goal_version_ = 0;
-  std::uint32_t stops_to_send_ = 0;
+  std::uint32_t stops_to_send_ = 0;  ///< repetitions left
   SteadyTime next_stop_;
   SteadyTime stop_ends_;
   std::uint32_t interrupts_ = 0;
   SteadyTime ending_since_;
-  std::uint32_t signals_sent_ = 0;
+  std::uint32_t signals_sent_ = 0;  ///< steps of the ladder done
 };
 
-/// "3, 7, 12-15" for people; of many ranges the first, "and 51 more".
+/// "3, 7, 12-15" for messages; of many ranges only the first, then "and 51 more".
 std::string describe(const std::vector<RobotId>& robots);
 
 }  // namespace swarm::launcher

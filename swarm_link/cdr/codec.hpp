@@ -11,12 +11,12 @@
 #include "swarm_link/cdr/encoder.hpp"
 #include "swarm_link/wire_bounds.hpp"
 
-/// A message as the bytes that travel on its topic, and back: plain CDR with its encapsulation, by
-/// the list of its fields. tests/conformance/idl holds it to what a vendor's generator makes of the
-/// IDL.
+/// Converts a message to the bytes of its topic and back: plain CDR with its encapsulation, by the
+/// message's list of fields. tests/conformance/idl checks it against the code that a vendor's
+/// generator makes of the IDL.
 namespace swarm::link {
 
-/// Replaces `out`, whose memory it uses again; false when the message is beyond the contract.
+/// Encodes into `out` and reuses its memory. False when a sequence is longer than its bound.
 template <Message M>
 bool encode(const M& message, std::vector<std::byte>& out) {
   static_assert(std::endian::native == std::endian::little);
@@ -30,8 +30,8 @@ bool encode(const M& message, std::vector<std::byte>& out) {
   return true;
 }
 
-/// False when the bytes are not a sample; `out` is unspecified then. What follows behind the sample
-/// is padding.
+/// Decodes either byte order. False when the bytes are not a sample; `out` is then unspecified.
+/// Bytes after the sample are padding and are ignored.
 template <Message M>
 bool decode(std::span<const std::byte> bytes, M& out) {
   if (bytes.size() < cdr::kEncapsulationBytes || bytes[0] != std::byte{0}) return false;

@@ -18,15 +18,17 @@
 namespace swarm::link::cdr {
 
 /// Reads what an Encoder of either byte order wrote. Nothing in the bytes is trusted: every value
-/// must lie within them, and a sequence gets no room before its elements could fit into what is
-/// left: one corrupt length would exhaust memory. Whether it keeps to its bound is the Gate's to
-/// judge, who counts it by reason.
+/// must lie within them, and a sequence is allocated only if its elements could fit into the
+/// remaining bytes, so that one corrupt length cannot exhaust memory. Sequence bounds are checked
+/// by the Gate, which counts such messages by reason.
 template <bool Swap>
 class Decoder {
  public:
   explicit Decoder(std::span<const std::byte> bytes) : begin_(bytes.data()), size_(bytes.size()) {}
 
-  /// False when the bytes are no such value; it is unspecified then.
+  /// Reads one value and advances. False when the bytes do not contain such a value; `value` and
+  /// the position are then unspecified. `Bound`: of a text. A bool must be 0 or 1, since any other
+  /// byte would be undefined behaviour in C++.
   template <std::size_t Bound = 0, class T>
   bool get(T& value) {
     if constexpr (Message<T>) {
@@ -49,6 +51,9 @@ class Decoder {
   }
 
  private:
+  /// Numbers are aligned to their own size, counted from the end of the encapsulation. memcpy,
+  /// because the buffer itself need not be aligned. Enumerations are not range-checked here; the
+  /// content checks do that.
   template <class T>
   bool get_number(T& value) {
     static_assert(std::is_arithmetic_v<T> || std::is_enum_v<T>);
@@ -65,6 +70,8 @@ class Decoder {
     return true;
   }
 
+  /// Reads a length and the elements. The length is compared with the number of elements that could
+  /// fit into the remaining bytes before memory is allocated.
   template <class T>
   bool get_sequence(std::vector<T>& elements) {
     std::uint32_t length = 0;
@@ -73,7 +80,8 @@ class Decoder {
     return std::all_of(elements.begin(), elements.end(), [this](T& e) { return get(e); });
   }
 
-  /// A text that is too long is cut, as where it is written.
+  /// A text that is longer than its bound, or contains a zero byte, is truncated, as the encoder
+  /// does; the following fields are read from the correct position all the same.
   bool get_text(std::string& text, std::size_t bound) {
     std::uint32_t length = 0;
     if (!get(length) || length > size_ - at_) return false;
@@ -83,9 +91,9 @@ class Decoder {
     return true;
   }
 
-  const std::byte* begin_;
+  const std::byte* begin_;  ///< after the encapsulation
   std::size_t size_;
-  std::size_t at_ = 0;
+  std::size_t at_ = 0;  ///< bytes read
 };
 
 }  // namespace swarm::link::cdr

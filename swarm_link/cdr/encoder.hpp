@@ -13,13 +13,15 @@
 
 namespace swarm::link::cdr {
 
-/// The part of a text that travels: up to its bound, and to its first zero, which ends it in CDR.
+/// The part of a text that is sent: up to its bound, and up to its first zero byte, which ends a
+/// text in CDR.
 inline std::string_view travelling(std::string_view text, std::size_t bound) {
   text = text.substr(0, bound);
   return text.substr(0, text.find('\0'));
 }
 
-/// Room enough for a message as it is; its sequences may be longer than their bounds.
+/// Upper bound of the encoded size of a message with its present sequence lengths, which may exceed
+/// their bounds.
 template <Message M>
 std::size_t room_for(const M& message) {
   std::size_t room = 0;
@@ -28,6 +30,8 @@ std::size_t room_for(const M& message) {
     using T = typename F::Type;
     room += most_bytes < T, kIsText<T> ? F::kBound : 0 > ();
     if constexpr (kIsSequence<T>) {
+      // Elements that are sequences or texts would need a sum over all elements; no message has
+      // such.
       static_assert(!kIsSequence<typename T::value_type> && !kIsText<typename T::value_type>);
       room += (message.*F::kMember).size() * most_bytes<typename T::value_type>();
     }
@@ -35,16 +39,20 @@ std::size_t room_for(const M& message) {
   return room;
 }
 
-/// Puts values where CDR has them, in the byte order of this machine. Whoever makes it makes room:
-/// room_for() and kSlack more.
+/// Writes values at the positions that CDR prescribes, in the byte order of this machine. It does
+/// not check the buffer: the caller provides room_for() + kSlack bytes.
 class Encoder {
  public:
-  /// Padding is written as a whole number of the size that follows it.
+  /// Padding is cleared with one store of the size of the number that follows, so a write may touch
+  /// up to this many bytes beyond the value.
   static constexpr std::size_t kSlack = 8;
 
   explicit Encoder(std::byte* begin) : begin_(begin) {}
+  /// Bytes written, without the encapsulation.
   std::size_t size() const { return at_; }
 
+  /// Appends one value: a message field by field, a sequence or text after its length. `Bound`
+  /// truncates a text; a sequence must respect its bound already (fits_wire()).
   template <std::size_t Bound = 0, class T>
   void put(const T& value) {
     if constexpr (Message<T>) {
@@ -69,6 +77,7 @@ class Encoder {
   }
 
  private:
+  /// The length of a text in CDR includes the zero byte at its end.
   void put_text(std::string_view text) {
     put(static_cast<std::uint32_t>(text.size() + 1));
     std::memcpy(begin_ + at_, text.data(), text.size());
@@ -76,8 +85,8 @@ class Encoder {
     begin_[at_++] = std::byte{0};
   }
 
-  std::byte* begin_;
-  std::size_t at_ = 0;
+  std::byte* begin_;    ///< of the caller, after the encapsulation
+  std::size_t at_ = 0;  ///< bytes written
 };
 
 }  // namespace swarm::link::cdr

@@ -8,18 +8,22 @@
 
 #include "swarm_link/fields.hpp"
 
-/// How much room values take in plain CDR (XCDR1): each number at a multiple of its size, counted
-/// behind the encapsulation; before a sequence or text its length.
+/// Sizes of values in plain CDR (XCDR1): a number is aligned to its own size, counted from the end
+/// of the encapsulation; a length precedes each sequence and text.
 namespace swarm::link::cdr {
 
+/// Two bytes of representation identifier (byte order), two of options.
 inline constexpr std::size_t kEncapsulationBytes = 4;
+/// Of the length before a sequence or text.
 inline constexpr std::size_t kLengthBytes = sizeof(std::uint32_t);
 
+/// Rounds up to a multiple of `size`, a power of two.
 constexpr std::size_t aligned(std::size_t at, std::size_t size) {
   return (at + size - 1) & ~(size - 1);
 }
 
-/// Bytes a T takes at least: what a received length is checked against before room is made.
+/// Fewest bytes of a T. A received sequence length is checked against it before memory is
+/// allocated.
 template <class T>
 constexpr std::size_t least_bytes() {
   if constexpr (Message<T>) {
@@ -33,11 +37,11 @@ constexpr std::size_t least_bytes() {
   }
 }
 
-/// Where a T ends that begins at `at`, its sequences and texts as long as their bounds allow.
+/// End of a T that begins at `at`, with sequences and texts as long as their bounds.
 template <class T, std::size_t Bound = 0>
 constexpr std::size_t most_end(std::size_t at);
 
-/// Bytes a T takes at most, wherever it begins.
+/// Most bytes of a T over all alignments of its beginning (the largest alignment is 8).
 template <class T, std::size_t Bound = 0>
 constexpr std::size_t most_bytes() {
   std::size_t most = 0;
@@ -47,6 +51,8 @@ constexpr std::size_t most_bytes() {
   return most;
 }
 
+/// Elements of a sequence are counted with their worst alignment, so the result is an upper bound,
+/// not always exact.
 template <class T, std::size_t Bound>
 constexpr std::size_t most_end(std::size_t at) {
   if constexpr (Message<T>) {

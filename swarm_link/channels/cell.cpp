@@ -11,6 +11,7 @@ namespace swarm::link {
 
 namespace {
 
+// Bound of cell indices, far below the range of 32-bit integers.
 constexpr double kFarthest = 1e6;
 
 std::int32_t index_of(double coordinate_m, double cell_size_m) {
@@ -32,6 +33,7 @@ Cell cell_of(const Vec2& point_m, double cell_size_m) {
   return {index_of(point_m.x(), cell_size_m), index_of(point_m.y(), cell_size_m)};
 }
 
+// Checks the cells of the disc's bounding square, column by column, which yields them sorted.
 std::vector<Cell> cells_touching(const Vec2& center_m, double radius_m, double cell_size_m) {
   SWARM_ASSERT(radius_m >= 0.0);
   const Cell own = cell_of(center_m, cell_size_m);
@@ -43,7 +45,7 @@ std::vector<Cell> cells_touching(const Vec2& center_m, double radius_m, double c
     for (auto y = low.y; y <= high.y; ++y) {
       const double dx = gap_m(center_m.x(), x, cell_size_m);
       const double dy = gap_m(center_m.y(), y, cell_size_m);
-      // The own cell counts even where clamping has moved it away from the point.
+      // The cell of the centre is included even if clamping has moved it away from the point.
       if (dx * dx + dy * dy <= radius_m * radius_m || Cell{x, y} == own) cells.push_back({x, y});
     }
   }

@@ -14,6 +14,7 @@ CellInterest::CellInterest(const CellOptions& options) : options_(options) {
   SWARM_ASSERT(0.0 <= options.join_margin_m && options.join_margin_m <= options.leave_margin_m);
 }
 
+// wanted = join ∪ (wanted before ∩ keep). All three sets are sorted, so each step is linear.
 std::span<const Cell> CellInterest::update(std::span<const Vec2> positions_m) {
   const double size = options_.cell_size_m;
   const auto join =
@@ -28,6 +29,8 @@ std::span<const Cell> CellInterest::update(std::span<const Vec2> positions_m) {
   return wanted_;
 }
 
+// Sorts indices by cell, then splits the sequence at every new cell and at full batches. Batches of
+// earlier calls are reused, with the memory of their states.
 std::span<const CellStatesMessage> CellBatches::sort(std::span<const RobotStateMessage> states) {
   order_.clear();
   for (std::size_t i = 0; i < states.size(); ++i) {
@@ -50,6 +53,7 @@ std::span<const CellStatesMessage> CellBatches::sort(std::span<const RobotStateM
   return std::span(batches_).first(used);
 }
 
+// Collects with repetitions, then sorts: cheaper than a set for the few cells of a process.
 std::vector<Cell> cells_around(std::span<const Vec2> centers_m, double radius_m,
                                double cell_size_m) {
   std::vector<Cell> cells;

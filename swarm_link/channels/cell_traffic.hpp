@@ -9,22 +9,23 @@
 #include "swarm_link/messages.hpp"
 #include "swarm_link/channels/state_channel.hpp"
 
-/// What every state channel does with cells, whatever carries them. Pure.
+/// Cell bookkeeping common to all state channels, independent of what transports the states. Pure.
 namespace swarm::link {
 
-/// The cells a process must hear, with hysteresis: a robot that sways on a border does not make
-/// its process join and leave at every tick.
+/// The cells a process must receive, with hysteresis: a robot that moves to and fro across a border
+/// does not make its process join and leave at every tick.
 class CellInterest {
  public:
   explicit CellInterest(const CellOptions& options);
 
-  /// While robots stand at these places: every cell within hear radius + join margin of one, and
-  /// those wanted before within hear radius + leave margin. Sorted; valid until the next call.
+  /// Cells for robots at these positions: every cell within communication radius + join margin of a
+  /// position, and those wanted before within communication radius + leave margin. Sorted; valid
+  /// until the next call.
   std::span<const Cell> update(std::span<const Vec2> positions_m);
 
  private:
   CellOptions options_;
-  std::vector<Cell> wanted_;
+  std::vector<Cell> wanted_;  ///< sorted
 };
 
 /// Robot states sorted into one batch per cell, or several of at most kMaxCellStates.
@@ -32,13 +33,13 @@ class CellBatches {
  public:
   explicit CellBatches(double cell_size_m) : cell_size_m_(cell_size_m) {}
 
-  /// Valid until the next call; keeps its memory.
+  /// Sorts the states by cell. The result is valid until the next call; memory is reused.
   std::span<const CellStatesMessage> sort(std::span<const RobotStateMessage> states);
 
  private:
   double cell_size_m_;
-  std::vector<std::pair<Cell, std::size_t>> order_;
-  std::vector<CellStatesMessage> batches_;
+  std::vector<std::pair<Cell, std::size_t>> order_;  ///< cell and index of each state
+  std::vector<CellStatesMessage> batches_;           ///< more than the last call needed, reused
 };
 
 /// Sorted union of the cells that discs around the points touch.

@@ -6,6 +6,9 @@
 
 namespace swarm::link {
 
+// Draws the fate of a datagram: lost, or delivered after a delay. Outside the fault window no
+// number is consumed, so the sequence of fates does not depend on the traffic before it. The queue
+// is sorted by due time; equal times keep the order of arrival.
 void FaultyPath::receive(int fd, std::span<const std::byte> bytes, const sockaddr_in& sender,
                          UtcTime at) {
   UtcTime due = at;
@@ -21,6 +24,8 @@ void FaultyPath::receive(int fd, std::span<const std::byte> bytes, const sockadd
   late_.insert(place, {due, fd, sender, {bytes.begin(), bytes.end()}});
 }
 
+// Delivers what is due for this socket and deletes it, together with overdue datagrams of sockets
+// that were closed. Datagrams of other sockets stay until those are drained.
 void FaultyPath::hand_due(int fd, UtcTime now, DatagramSink& sink) {
   const auto end = std::upper_bound(late_.begin(), late_.end(), now,
                                     [](UtcTime time, const Late& late) { return time < late.due; });

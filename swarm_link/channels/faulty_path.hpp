@@ -14,38 +14,40 @@
 
 namespace swarm::link {
 
-/// A bad network on demand, without root, for what one process receives.
+/// A simulated degraded network for what one process receives. Needs no root and no kernel support.
 struct ReceptionFaults {
-  LinkFaults faults{};
-  std::uint64_t seed = 0;  ///< of this process
-  UtcTime run_began{};
+  LinkFaults faults{};     ///< loss, delay and jitter, and when
+  std::uint64_t seed = 0;  ///< of this process; decides which datagrams are lost
+  UtcTime run_began{};     ///< the times in `faults` count from here
 };
 
-/// Called once per datagram; the bytes are valid during the call.
+/// Receives datagrams from a drain. The bytes are valid during the call and may be modified.
 class DatagramSink {
  public:
   virtual ~DatagramSink() = default;
   virtual void datagram(std::span<std::byte> bytes, const sockaddr_in& sender) = 0;
 };
 
-/// Loses datagrams or hands them on late. The n-th one a process receives while there are faults
-/// meets the same fate whenever the seed is the same.
+/// Discards datagrams or delivers them late. The outcome of the n-th datagram that a process
+/// receives while faults are active depends only on n and the seed. Not thread-safe.
 class FaultyPath {
  public:
   explicit FaultyPath(const ReceptionFaults& reception) : reception_(reception) {}
 
-  /// Takes one that arrived at a socket.
+  /// Stores a datagram that arrived at a socket at time `at`, or discards it.
   void receive(int fd, std::span<const std::byte> bytes, const sockaddr_in& sender, UtcTime at);
 
-  /// Hands on what has been kept long enough, in the order it is due.
+  /// Delivers the datagrams of this socket that are due, in the order of their due times.
   void hand_due(int fd, UtcTime now, DatagramSink& sink);
 
  private:
-  /// More are lost, like in a router: a second of what the busiest process hears.
+  /// When the queue is full, further datagrams are lost, as in a router. The size corresponds to
+  /// one second of the traffic of the busiest process.
   static constexpr std::size_t kMostKept = 8192;
-  /// What nobody fetches for so long was for a socket that is closed.
+  /// Datagrams that are overdue by this much belong to a socket that was closed: they are deleted.
   static constexpr Duration kAbandoned = std::chrono::seconds(5);
 
+  /// A datagram that waits for its delivery time.
   struct Late {
     UtcTime due;
     int fd;

@@ -12,38 +12,42 @@
 
 namespace swarm::link {
 
-/// How robots of a process tell others their states and hear those of others near them.
+/// Publishes the states of the robots of a process and receives those of robots near them. Not
+/// thread-safe: the tick of the process calls all functions.
 class StateChannel {
  public:
   virtual ~StateChannel() = default;
 
-  /// Says states, sorted into their cells and batched per cell. Returns how many were sent.
+  /// Publishes states, one batch per cell or several of at most kMaxCellStates. Returns the number
+  /// of states sent.
   virtual std::size_t publish(std::span<const RobotStateMessage> states) = 0;
 
-  /// Declares where this process's robots are, once a tick: joins the cells they need, leaves the
-  /// ones they no longer do (with hysteresis).
+  /// Sets the positions of this process's robots, once per tick: joins the cells they need and
+  /// leaves those they no longer need (with hysteresis).
   virtual void listen_around(std::span<const Vec2> positions_m) = 0;
 
-  /// Appends the cell batches heard since the last call; what this process says itself comes back
-  /// as well (robots of one process hear each other over the bus like all others).
+  /// Appends the cell batches received since the last call, including those that this process sent
+  /// itself: robots of one process receive each other over the bus like all others.
   virtual std::size_t take(std::vector<CellStatesMessage>& out) = 0;
 
-  /// Batches that did not decode, since the start.
+  /// Batches that could not be decoded, since the start.
   virtual std::uint64_t undecodable() const = 0;
 };
 
+/// The spatial grid of a channel and its hysteresis; see CellInterest.
 struct CellOptions {
-  double cell_size_m = 20.0;
-  double communication_radius_m = 4.0;
-  double join_margin_m = 1.5;
-  double leave_margin_m = 3.0;
+  double cell_size_m = 20.0;            ///< edge length of a cell
+  double communication_radius_m = 4.0;  ///< states of robots this near must be received
+  double join_margin_m = 1.5;           ///< a cell is joined this far outside the radius …
+  double leave_margin_m = 3.0;          ///< … and left this far; at least the join margin
 };
 
-/// The `topics` channel: one ordinary topic per cell, endpoints made and discovered as robots move.
-/// Writers are made `join_margin_m` before a robot enters a cell, so that they are discovered when
-/// it does, and those of left cells linger (their discovery is dear, keeping them is not) up to a
-/// small number. Call participant.receive() before take(). An endpoint the bus refuses is tried
-/// again. Works over any participant. \pre participant outlives the channel
+/// The `topics` channel: one ordinary topic per cell, with endpoints that are created and
+/// discovered as robots move. Writers are created when a robot is within `join_margin_m` of a cell,
+/// so that they are discovered by the time it enters. Writers of cells that were left are kept, up
+/// to a small number, because discovery is costly and keeping them is not. Call
+/// participant.receive() before take(). An endpoint that the bus refuses is tried again at the next
+/// call. Works with any participant. \pre participant outlives the channel
 std::unique_ptr<StateChannel> make_topic_channel(Participant& participant,
                                                  const CellOptions& options);
 

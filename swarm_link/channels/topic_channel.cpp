@@ -11,6 +11,8 @@ namespace swarm::link {
 
 namespace {
 
+// Writers of left cells are kept up to this number, since a robot often returns and discovering a
+// new writer takes tenths of a second.
 constexpr std::size_t kLingeringWriters = 8;
 
 class TopicChannel final : public StateChannel {
@@ -31,6 +33,7 @@ class TopicChannel final : public StateChannel {
     return sent;
   }
 
+  // Readers follow the wanted cells exactly; writers are created ahead and retired lazily.
   void listen_around(std::span<const Vec2> positions_m) override {
     ++now_;
     const auto wanted = interest_.update(positions_m);
@@ -47,8 +50,8 @@ class TopicChannel final : public StateChannel {
       auto reader = participant_.make_reader(cell_topic(cell));
       if (reader) readers_.emplace(cell, *std::move(reader));  // else tried again next time
     }
-    // A writer is discovered some tenths of a second after it is made: make it before the robot
-    // crosses into the cell, or its first states there go unheard.
+    // A writer is discovered some tenths of a second after its creation. It is created before the
+    // robot enters the cell; otherwise its first states there would not be received.
     for (const Cell& cell :
          cells_around(positions_m, options_.join_margin_m, options_.cell_size_m)) {
       writer_of(cell);
@@ -74,6 +77,7 @@ class TopicChannel final : public StateChannel {
     std::uint64_t used = 0;  // value of now_
   };
 
+  // The writer of a cell, created if necessary; null if the bus refuses it for now.
   Writer<CellStatesMessage>* writer_of(const Cell& cell) {
     auto it = writers_.find(cell);
     if (it == writers_.end()) {
@@ -85,8 +89,7 @@ class TopicChannel final : public StateChannel {
     return it->second.writer.get();
   }
 
-  // Deletes the writers that were not used for longest, never one used since the last
-  // listen_around().
+  // Deletes the least recently used writers, but none that was used since the last listen_around().
   void retire_writers() {
     while (writers_.size() > kLingeringWriters) {
       const auto oldest = std::min_element(

@@ -7,9 +7,9 @@
 namespace swarm::link {
 namespace {
 
-// Plans and heartbeats are numbered from 1 in each epoch, which is the UTC time [ns] at which its
-// planner began. A planner publishes either at most every few milliseconds, so a larger number was
-// not counted up to: it would outrank all real ones to come.
+// Plans and heartbeats are numbered from 1 in each epoch, which is the UTC time [ns] at which the
+// planner started. A planner publishes one of either every few milliseconds at most, so a larger
+// number is forged; if accepted, it would outrank all later real ones.
 constexpr std::uint64_t kNumbersPerSecond = 1'000;
 
 bool is_reached(std::uint64_t number, std::uint64_t epoch, std::uint64_t latest_ns) {
@@ -21,6 +21,7 @@ std::uint64_t to_ns(UtcTime time) {
   return static_cast<std::uint64_t>(std::max<std::int64_t>(time.time_since_epoch().count(), 0));
 }
 
+// Stamps are signed on the wire; a negative one is in the past.
 bool is_after(std::int64_t stamp_utc_ns, std::uint64_t latest_ns) {
   return stamp_utc_ns > 0 && static_cast<std::uint64_t>(stamp_utc_ns) > latest_ns;
 }
@@ -33,6 +34,7 @@ std::uint64_t Gate::latest_ns(UtcTime now) const {
   return to_ns(now + options_.limits.clock_skew_refuse);
 }
 
+// Content first, order last: only a valid message may become the newest of its topic.
 Checked<FlowPlan> Gate::plan(const PlanMessage& message, UtcTime now) {
   auto checked = check_plan(message, options_.limits);
   if (checked) {
@@ -84,6 +86,7 @@ Checked<void> Gate::command(const CommandMessage& message, UtcTime now) {
   return counted(checked);
 }
 
+// A stop always passes, since refusing a late emergency stop would be worse than repeating one.
 Checked<void> Gate::order(const CommandMessage& message, UtcTime now) {
   const std::uint64_t latest = latest_ns(now);
   if (message.command_id > latest || is_after(message.stamp_utc_ns, latest)) {
@@ -114,6 +117,7 @@ Checked<void> Gate::event(const EventMessage& message) {
   return counted(checked);
 }
 
+// The vector is sized at the first call: only processes that forward states need it.
 Checked<void> Gate::newer_state(const RobotStateMessage& state, UtcTime now) {
   auto checked = check_state(state, options_.limits, clock_for(state, now));
   if (checked) {
@@ -123,6 +127,7 @@ Checked<void> Gate::newer_state(const RobotStateMessage& state, UtcTime now) {
   return counted(checked);
 }
 
+// Readers report totals; the counter takes the difference to the previous call.
 void Gate::set_undecodable(std::uint64_t so_far) {
   refused_.count(RefusalReason::kUndecodable, static_cast<std::uint32_t>(so_far - undecodable_));
   undecodable_ = so_far;

@@ -14,31 +14,31 @@
 
 namespace swarm::link {
 
-/// What stamps are measured against.
+/// Reference that stamps are compared with.
 enum class Stamps : std::uint8_t {
-  kLive,      ///< our clock: an old state is refused
-  kRecorded,  ///< a replay sends what another day wrote: only stamps from the future are refused
+  kLive,      ///< this machine's clock: an old state is refused
+  kRecorded,  ///< replay of old data: only stamps from the future are refused
 };
 
+/// Settings of a Gate.
 struct GateOptions {
   WireLimits limits;
   Stamps stamps = Stamps::kLive;
-  /// Events under this source are ours alone: one that is received is forged.
+  /// Only this process sends events under this source: a received one is forged.
   std::optional<std::uint32_t> own_source{};
 };
 
-/// The one place where received messages are checked; agent, planner, launcher, monitor and gateway
-/// have one each. A message either passes, and becomes the newest of its topic, or is counted by
-/// reason and changes nothing.
+/// Checks received messages; agent, planner, launcher, monitor and gateway have one each. A message
+/// either passes and becomes the newest of its topic, or is counted by reason and changes nothing.
 ///
-/// Each function applies, in this order: the message by itself (content_checks.hpp); its future: no
-/// epoch, scene version, command id or stamp may lie further ahead of `now` than clock_skew_refuse,
-/// for these are UTC stamps of their makers, and an invented one would outrank everything real; its
-/// order: newer than the newest that passed. A planner that takes over has a higher epoch, so its
-/// version 1 passes and what its predecessor still sends does not.
+/// Each function checks, in this order: the message by itself (content_checks.hpp); that it is not
+/// from the future: no epoch, scene version, command id or stamp may lie further ahead of `now`
+/// than clock_skew_refuse, because these are UTC stamps of their senders and an invented one would
+/// outrank everything real; its order: newer than the newest that passed. A planner that takes over
+/// has a higher epoch, so its version 1 passes and messages of its predecessor do not.
 ///
-/// Pure: no clock, no bus. Costs what reading the message costs; state() and batch() allocate
-/// nothing. Not thread-safe.
+/// Pure: no clock, no bus. Linear in the size of the message; state() and batch() do not allocate.
+/// Not thread-safe.
 class Gate {
  public:
   explicit Gate(const GateOptions& options);
@@ -51,14 +51,16 @@ class Gate {
   Checked<void> heartbeat(const HeartbeatMessage& message, UtcTime now);
   /// Ordered by id, except that a stop passes however old it is, and again and again.
   Checked<void> command(const CommandMessage& message, UtcTime now);
-  /// In no order: nothing numbers statuses, and DDS keeps each writer's order.
+  /// Not ordered: statuses have no number, and DDS keeps each writer's order.
   Checked<void> status(const StatusMessage& message, UtcTime now);
-  /// By any clock: a process must be able to report that its own is wrong.
+  /// With any stamp: a process must be able to report that its own clock is wrong.
   Checked<void> event(const EventMessage& message);
 
+  /// The batch without its states, which the caller passes to state() one by one.
   Checked<void> batch(const CellStatesMessage& message) { return counted(check_batch(message)); }
-  /// `own` belongs to the robot of this process that the state claims to be of; null: of none.
-  /// States are not ordered here: what a late one is worth, each robot's neighbour table decides.
+  /// `own` belongs to the robot of this process whose id the state carries; null: the id is of
+  /// another process. States are not ordered here: each robot's neighbour table decides whether a
+  /// late one is useful.
   Checked<void> state(const RobotStateMessage& state, UtcTime now, const EchoGuard* own = nullptr) {
     Checked<void> checked = check_state(state, options_.limits, clock_for(state, now));
     if (checked && own != nullptr && !own->is_echo(state)) {
@@ -66,10 +68,12 @@ class Gate {
     }
     return counted(checked);
   }
-  /// Each state once, and each robot's in the order of their stamps: for what passes states on.
+  /// Passes each state once, and those of a robot in the order of their stamps. For processes that
+  /// forward states.
   Checked<void> newer_state(const RobotStateMessage& state, UtcTime now);
 
-  /// Samples that did not decode, of all readers together, since the start.
+  /// Sets the number of samples that could not be decoded, of all readers together, since the
+  /// start.
   void set_undecodable(std::uint64_t so_far);
 
   const RefusalCounters& refused() const { return refused_; }
@@ -77,16 +81,21 @@ class Gate {
  private:
   using Version = std::pair<std::uint64_t, std::uint64_t>;  // epoch, number in it
 
+  /// Counts a refusal and returns the result unchanged.
   template <class T>
   Checked<T> counted(Checked<T> checked) {
     if (!checked) refused_.count(checked.error());
     return checked;
   }
+  /// The clock that a state is compared with. For recorded data it is the state's own stamp unless
+  /// that lies in the future, so that age is no reason to refuse.
   UtcTime clock_for(const RobotStateMessage& state, UtcTime now) const {
     if (options_.stamps == Stamps::kLive) return now;
     return std::min(now, UtcTime(Duration(state.stamp_utc_ns)));
   }
+  /// Latest stamp [ns] that a sender's clock can have reached.
   std::uint64_t latest_ns(UtcTime now) const;
+  /// Checks future and order, and makes a message that passes the newest of its topic.
   Checked<void> order(const PlanMessage& message, UtcTime now);
   Checked<void> order(const SceneMessage& message, UtcTime now);
   Checked<void> order(const HeartbeatMessage& message, UtcTime now);
@@ -94,9 +103,9 @@ class Gate {
   Checked<void> order(const StatusMessage& message, UtcTime now) const;
 
   GateOptions options_;
-  RefusalCounters refused_;
-  std::uint64_t undecodable_ = 0;
-  NewestKey<Version> plan_{{0, 0}};
+  RefusalCounters refused_;          ///< since the start
+  std::uint64_t undecodable_ = 0;    ///< already counted
+  NewestKey<Version> plan_{{0, 0}};  ///< the newest of each topic
   NewestKey<std::uint64_t> scene_;
   NewestKey<Version> heartbeat_{{0, 0}};
   NewestKey<std::uint64_t> command_{0};

@@ -14,6 +14,7 @@
 namespace swarm::link {
 namespace {
 
+// Enumerations travel as octets; their values are consecutive from 0 to `last`.
 template <class Enum>
 bool is_one_of_first(Enum value, Enum last) {
   return static_cast<std::uint8_t>(value) <= static_cast<std::uint8_t>(last);
@@ -21,11 +22,11 @@ bool is_one_of_first(Enum value, Enum last) {
 
 bool is_printable(const std::string& text) {
   return std::none_of(text.begin(), text.end(), [](char c) {
-    return static_cast<unsigned char>(c) < 0x20 || c == 0x7F;  // would steer a terminal
+    return static_cast<unsigned char>(c) < 0x20 || c == 0x7F;  // would control a terminal
   });
 }
 
-// |a − b|, saturating: both may be anything.
+// |a − b|, saturating, because a received stamp may have any value.
 std::int64_t distance(std::int64_t a, std::int64_t b) {
   std::int64_t difference = 0;
   if (__builtin_sub_overflow(a, b, &difference)) return std::numeric_limits<std::int64_t>::max();
@@ -35,6 +36,7 @@ std::int64_t distance(std::int64_t a, std::int64_t b) {
   return std::abs(difference);
 }
 
+// A robot of a status: finite numbers, a robot of the mission, a position inside the bounds.
 Checked<void> check_robot(const RobotStatusMessage& robot, const WireLimits& limits) {
   if (!all_finite(robot.x_m, robot.y_m, robot.remaining_m, robot.lag_s, robot.nearest_gap_m)) {
     return refuse(RefusalReason::kNotFinite);
@@ -48,6 +50,7 @@ Checked<void> check_robot(const RobotStatusMessage& robot, const WireLimits& lim
 
 }  // namespace
 
+// The order of the tests decides which reason is counted; NaN must be excluded before ranges.
 Checked<void> check_heartbeat(const HeartbeatMessage& message) {
   if (message.schema_version != kSchemaVersion) return refuse(RefusalReason::kSchema);
   if (!all_finite(message.mission_time_s, message.plan_time_s, message.plan_rate)) {
@@ -83,6 +86,8 @@ Checked<void> check_status(const StatusMessage& message, const WireLimits& limit
   return {};
 }
 
+// Bounds are checked by hand, because fits_wire() covers sequences only and texts of other
+// implementations may be longer.
 Checked<void> check_event(const EventMessage& message, const WireLimits& limits) {
   if (message.schema_version != kSchemaVersion) return refuse(RefusalReason::kSchema);
   if (message.code.size() > kMaxEventCode || message.text.size() > kMaxEventText) {
@@ -103,6 +108,8 @@ Checked<void> check_batch(const CellStatesMessage& message) {
   return {};
 }
 
+// Runs for every received state, so it must be cheap. Twice the speed limit is accepted: the check
+// finds implausible values, it does not enforce limits.
 Checked<void> check_state(const RobotStateMessage& state, const WireLimits& limits, UtcTime now) {
   if (!all_finite(state.x_m, state.y_m, state.vx_mps, state.vy_mps)) {
     return refuse(RefusalReason::kNotFinite);

@@ -8,15 +8,15 @@
 
 namespace swarm::link {
 
-/// Lets through only what is newer than everything it let through before. `Key` is what orders a
-/// topic: (epoch, version) of plans, (epoch, number) of heartbeats, a version, an id, a stamp.
+/// Accepts only keys newer than all accepted before. `Key` orders a topic: (epoch, version) of
+/// plans, (epoch, number) of heartbeats, a version, an id, a stamp.
 template <class Key>
 class NewestKey {
  public:
   NewestKey() = default;                             ///< the first key passes, whatever it is
   explicit NewestKey(Key known) : newest_(known) {}  ///< keys up to `known` do not pass
 
-  /// Remembers a key that passes.
+  /// Stores a key that passes; refuses an equal key as duplicate and a lower one as stale.
   Checked<void> accept(const Key& key) {
     if (newest_ && key == *newest_) return refuse(RefusalReason::kDuplicate);
     if (newest_ && key < *newest_) return refuse(RefusalReason::kStale);
@@ -25,7 +25,7 @@ class NewestKey {
   }
 
  private:
-  std::optional<Key> newest_{};
+  std::optional<Key> newest_{};  ///< empty: nothing accepted yet
 };
 
 }  // namespace swarm::link

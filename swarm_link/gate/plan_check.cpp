@@ -11,6 +11,7 @@
 namespace swarm::link {
 namespace {
 
+// Finite numbers first: Gaussian::make() and comparisons need them.
 Checked<PlanNode> to_node(const PlanNodeMessage& node, const WireLimits& limits) {
   if (!all_finite(node.mean_x_m, node.mean_y_m, node.covariance_xx_m2, node.covariance_xy_m2,
                   node.covariance_yy_m2, node.time_s, node.mass)) {
@@ -27,6 +28,7 @@ Checked<PlanNode> to_node(const PlanNodeMessage& node, const WireLimits& limits)
   return PlanNode{.gaussian = *gaussian, .time = MissionTime(node.time_s), .mass = node.mass};
 }
 
+// Both ends must exist, and time must increase along a leg, so the flow has no cycle.
 Checked<PlanLeg> to_leg(const PlanLegMessage& leg, const std::vector<PlanNodeMessage>& nodes) {
   if (!std::isfinite(leg.mass)) return refuse(RefusalReason::kNotFinite);
   if (leg.from_node >= nodes.size() || leg.to_node >= nodes.size() ||
@@ -38,6 +40,7 @@ Checked<PlanLeg> to_leg(const PlanLegMessage& leg, const std::vector<PlanNodeMes
 
 }  // namespace
 
+// Checks the parts, then FlowPlan::make() checks the conservation of mass over the whole flow.
 Checked<FlowPlan> check_plan(const PlanMessage& message, const WireLimits& limits) {
   if (message.schema_version != kSchemaVersion) return refuse(RefusalReason::kSchema);
   if (!fits_wire(message)) return refuse(RefusalReason::kOversized);
@@ -56,7 +59,7 @@ Checked<FlowPlan> check_plan(const PlanMessage& message, const WireLimits& limit
     legs.push_back(*checked);
   }
   auto plan = FlowPlan::make(std::move(nodes), std::move(legs));
-  if (!plan) return refuse(RefusalReason::kBadMass);  // all else was checked above
+  if (!plan) return refuse(RefusalReason::kBadMass);  // everything else was checked above
   if (!std::isfinite(message.excess_m)) return refuse(RefusalReason::kNotFinite);
   if (message.entries.size() > limits.robots) return refuse(RefusalReason::kOutOfRange);
   for (const PlanEntryMessage& entry : message.entries) {

@@ -6,6 +6,7 @@
 
 namespace swarm::link {
 
+// These names appear in the event texts of agents and planner.
 std::string_view to_string(RefusalReason reason) {
   switch (reason) {
     case RefusalReason::kUndecodable:

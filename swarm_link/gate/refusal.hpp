@@ -9,9 +9,10 @@
 
 #include <tl/expected.hpp>
 
-/// Why a message that was received is not used, and how often that happened.
+/// Reasons for which a received message is refused, and their counters.
 namespace swarm::link {
 
+/// The order is part of the wire format: StatusMessage::refused is indexed by it.
 enum class RefusalReason : std::uint8_t {
   kUndecodable,  ///< bytes that are not a sample
   kSchema,       ///< unknown schema version
@@ -23,7 +24,7 @@ enum class RefusalReason : std::uint8_t {
   kStale,        ///< older epoch, version, sequence number or stamp than the newest accepted
   kDuplicate,    ///< the same as the newest accepted
   kClockSkew,    ///< stamp further from our clock than timing.clock_skew_refuse_s
-  kForged,       ///< claims to be us, or a time, version or number that nobody can have reached
+  kForged,       ///< sent under our id, or a time, version or number that cannot be reached yet
   kCount
 };
 
@@ -32,7 +33,7 @@ inline constexpr std::size_t kRefusalReasons = static_cast<std::size_t>(RefusalR
 /// Kebab-case, e.g. "not-finite".
 std::string_view to_string(RefusalReason reason);
 
-/// What a check returns: the value, or why the message is refused.
+/// Result of a check: the value, or why the message is refused.
 template <class T>
 using Checked = tl::expected<T, RefusalReason>;
 

@@ -11,7 +11,7 @@
 namespace swarm::link {
 namespace {
 
-// Beyond this it is no place robots drive in, and no speed they could get out of the way of.
+// Larger coordinates or speeds are not plausible for ground robots and would lose precision.
 constexpr double kMaxCoordinate_m = 1e6;
 constexpr double kMaxSpeed_mps = 1e6;
 
@@ -20,6 +20,7 @@ bool is_place(const PointMessage& p) {
   return std::abs(p.x_m) <= kMaxCoordinate_m && std::abs(p.y_m) <= kMaxCoordinate_m;
 }
 
+// A circle if the obstacle has no vertices, else a polygon of the given ones.
 Checked<Obstacle> to_shape(const SceneObstacleMessage& message,
                            std::span<const PointMessage> vertices) {
   if (message.vertices == 0) {
@@ -40,12 +41,13 @@ Checked<Obstacle> to_shape(const SceneObstacleMessage& message,
   return std::move(*polygon);
 }
 
-/// A body is a circle that stays where it is, by the number of its robot.
+/// A robot's body is a circle at rest whose obstacle id is derived from the robot's id.
 bool is_body(const SceneObstacleMessage& o, const WireLimits& limits) {
   return o.owner_robot_id < limits.robots && o.obstacle_id == body_id(RobotId(o.owner_robot_id)) &&
          o.vertices == 0 && o.velocity_x_mps == 0.0 && o.velocity_y_mps == 0.0;
 }
 
+// Obstacles take their vertices from the common list in order; none may remain.
 Checked<std::vector<SceneObstacle>> to_obstacles(const SceneMessage& message,
                                                  const WireLimits& limits) {
   std::vector<SceneObstacle> obstacles;
@@ -73,6 +75,7 @@ Checked<std::vector<SceneObstacle>> to_obstacles(const SceneMessage& message,
   return obstacles;
 }
 
+// Empty in the message: the goal of the mission file is still valid.
 Checked<std::optional<Mixture>> to_goal(const SceneMessage& message) {
   if (message.goal.empty()) return std::optional<Mixture>();
   std::vector<WeightedGaussian> components;
@@ -91,6 +94,8 @@ Checked<std::optional<Mixture>> to_goal(const SceneMessage& message) {
 
 }  // namespace
 
+// Ids from kFirstBodyId on are reserved for bodies of robots. A risk level of 0 stands for "as in
+// the mission file".
 Checked<Scene> check_scene(const SceneMessage& message, const WireLimits& limits) {
   if (message.schema_version != kSchemaVersion) return refuse(RefusalReason::kSchema);
   if (!fits_wire(message)) return refuse(RefusalReason::kOversized);

@@ -10,7 +10,7 @@
 
 namespace swarm::link {
 
-/// The ranges of a mission that its messages must keep.
+/// Ranges of a mission that its messages must keep.
 struct WireLimits {
   std::uint32_t robots = 0;  ///< ids are below this
   Box bounds_m;              ///< positions lie inside, plus `bounds_slack_m`
@@ -20,6 +20,7 @@ struct WireLimits {
   Duration clock_skew_refuse{};  ///< a stamp further from our clock is refused
 };
 
+/// Limits of a mission; the slack of the bounds is the default.
 WireLimits wire_limits(const Mission& mission);
 
 }  // namespace swarm::link

@@ -18,8 +18,10 @@
 namespace swarm::link {
 namespace {
 
+// Two endpoints per cell: beyond this number their discovery takes too long.
 constexpr std::int64_t kMostCells = 256;
-constexpr int kOwn = 1;  // an endpoint of ours is matched with our own other end
+constexpr int kOwn = 1;  // our reader and writer of a cell match each other
+// Reading the match counts of all endpoints is too costly for every call.
 constexpr Duration kLookEvery = std::chrono::milliseconds(200);
 
 struct TopicCell {
@@ -27,6 +29,8 @@ struct TopicCell {
   WriterPtr<CellStatesMessage> writer;
 };
 
+// Holds one reader and one writer per topic cell for its whole life, since their discovery takes
+// long. Not in use, it closes the tap and sleeps.
 class ChannelGateway final : public Gateway {
  public:
   ChannelGateway(Participant& participant, const GatewayOptions& options,
@@ -48,7 +52,7 @@ class ChannelGateway final : public Gateway {
     }
     if (!tap_) {
       auto made = make_group_tap(options_.domain);
-      if (made) tap_ = std::move(*made);  // else again next time
+      if (made) tap_ = std::move(*made);  // else tried again next time
     }
     received_.clear();
     fresh_.clear();
@@ -57,6 +61,7 @@ class ChannelGateway final : public Gateway {
     } else {
       std::this_thread::sleep_for(timeout);
     }
+    // First the states of the groups, then those of the topics, which must go to the groups, too.
     inbox_.take_fresh(received_, now, fresh_);
     const std::size_t from_groups = fresh_.size();
     received_.clear();
@@ -78,6 +83,7 @@ class ChannelGateway final : public Gateway {
   const RefusalCounters& refused() const override { return inbox_.refused(); }
 
  private:
+  // Updates in_use_ from the match counts of the endpoints.
   void look(UtcTime now) {
     if (now - looked_at_ < kLookEvery) return;
     looked_at_ = now;

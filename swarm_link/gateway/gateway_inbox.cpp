@@ -4,6 +4,7 @@
 
 namespace swarm::link {
 
+// A refused batch is dropped as a whole; a refused state does not affect the rest of its batch.
 void GatewayInbox::take_fresh(std::span<const CellStatesMessage> batches, UtcTime now,
                               std::vector<RobotStateMessage>& fresh) {
   for (const CellStatesMessage& batch : batches) {

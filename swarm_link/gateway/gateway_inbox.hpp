@@ -10,9 +10,9 @@
 
 namespace swarm::link {
 
-/// What a gateway receives from both channels: each state is passed on once. The gateway receives
-/// what it publishes itself as well, so it refuses many states as duplicate or stale: those are
-/// echoes. Not thread-safe.
+/// Filters what a gateway receives from both channels, so that each state is forwarded once. The
+/// gateway also receives what it publishes itself and refuses it as duplicate or stale: echoes. Not
+/// thread-safe.
 class GatewayInbox {
  public:
   explicit GatewayInbox(const WireLimits& limits) : gate_({.limits = limits}) {}
@@ -21,13 +21,13 @@ class GatewayInbox {
   void take_fresh(std::span<const CellStatesMessage> batches, UtcTime now,
                   std::vector<RobotStateMessage>& fresh);
 
-  /// `so_far`: batches that did not decode, of all readers together, since the start.
+  /// `so_far`: batches that could not be decoded, of all readers together, since the start.
   void set_undecodable(std::uint64_t so_far) { gate_.set_undecodable(so_far); }
 
   const RefusalCounters& refused() const { return gate_.refused(); }
 
  private:
-  Gate gate_;
+  Gate gate_;  ///< keeps the newest stamp of each robot
 };
 
 }  // namespace swarm::link

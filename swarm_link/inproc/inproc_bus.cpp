@@ -13,7 +13,8 @@ namespace swarm::link {
 using inproc::Channel;
 
 struct InprocBus::Impl {
-  /// Those of a name and type. They live as long as their endpoints: cell topics come and go.
+  /// The endpoints of a topic, by name and type. Endpoints own their channel, so it is deleted with
+  /// the last one: cell topics come and go. Expired entries are removed on the occasion.
   std::shared_ptr<Channel> channel(const RawTopic& topic) {
     auto& entry = channels[{topic.name, topic.type}];
     auto channel = entry.lock();
@@ -30,6 +31,7 @@ struct InprocBus::Impl {
 
 namespace {
 
+// Makes endpoints on the channels of a bus; its writers share one ownership strength.
 template <class Impl>
 class InprocParticipant final : public Participant {
  public:

@@ -6,10 +6,13 @@
 
 #include "swarm_link/port.hpp"
 
-/// The in-process back: a bus in memory with the semantics of the DDS backs (keep-last histories,
-/// transient-local, exclusive ownership), deterministic, without threads. For tests and lock-step.
+/// The in-process backend: a bus in memory with the semantics of the DDS adapters (keep-last
+/// histories, transient-local, exclusive ownership), deterministic and without threads. For tests
+/// and lock-step simulation.
 namespace swarm::link {
 
+/// Owns the channels of all topics. Participants of one bus communicate; two buses are separate.
+/// Not thread-safe.
 class InprocBus {
  public:
   InprocBus();

@@ -4,6 +4,7 @@
 
 namespace swarm::link::inproc {
 
+// Exclusive ownership as in DDS: per instance, the strongest writer owns it until it is destroyed.
 void InprocReader::deliver(const InprocWriter& from, const Sample& sample) {
   if (!compatible(from.qos(), qos_)) return;
   if (qos_.ownership == Ownership::kExclusive) {
@@ -20,7 +21,7 @@ int InprocReader::matched() const {
                     [&](const InprocWriter* writer) { return compatible(writer->qos(), qos_); }));
 }
 
-// Strongest writer first, so that with exclusive ownership the others stay silent.
+// Strongest writer first, so that with exclusive ownership samples of the others are discarded.
 void InprocReader::catch_up() {
   auto writers = channel_->writers;
   std::stable_sort(writers.begin(), writers.end(),
@@ -31,6 +32,7 @@ void InprocReader::catch_up() {
   }
 }
 
+// The bytes are copied once and shared by all readers and the history.
 bool InprocWriter::write(std::span<const std::byte> bytes) {
   if (bytes.size() < cdr::kEncapsulationBytes + (keyed_ ? sizeof(std::uint32_t) : 0)) return false;
   Sample sample{.bytes = std::make_shared<std::vector<std::byte>>(bytes.begin(), bytes.end()),

@@ -17,13 +17,14 @@
 
 namespace swarm::link::inproc {
 
-/// A sample under way, shared by all who keep it. Histories and ownership are kept per instance.
+/// A sample, shared by all histories that store it. Histories and ownership are per instance.
 struct Sample {
   std::shared_ptr<const std::vector<std::byte>> bytes;
-  std::uint32_t instance = 0;
+  std::uint32_t instance = 0;  ///< value of the key; 0 if the topic has none
 };
 
-/// The key of a keyed topic: the first member. \pre the bytes are little-endian, as ours are
+/// The key of a keyed topic: its first member. \pre the bytes are little-endian, as our encoder's
+/// are
 inline std::uint32_t instance_of(std::span<const std::byte> bytes) {
   std::uint32_t key = 0;
   std::memcpy(&key, bytes.data() + cdr::kEncapsulationBytes, sizeof key);
@@ -35,6 +36,7 @@ class History {
  public:
   explicit History(int depth) : depth_(depth) {}
 
+  /// Appends a sample; the oldest of the same instance is dropped when there are `depth` of them.
   void push(Sample sample) {
     auto& count = counts_[sample.instance];
     if (count == depth_) {
@@ -47,6 +49,8 @@ class History {
     ++count;
   }
 
+  /// Passes all samples to the sink and empties the history first, so that the sink may cause new
+  /// samples.
   std::size_t hand_over(const RawReader::Sink& sink) {
     counts_.clear();
     const std::deque<Sample> all = std::exchange(samples_, {});
@@ -57,21 +61,21 @@ class History {
   const std::deque<Sample>& samples() const { return samples_; }
 
  private:
-  int depth_;
-  std::deque<Sample> samples_;
-  std::map<std::uint32_t, int> counts_;
+  int depth_;                            ///< per instance
+  std::deque<Sample> samples_;           ///< of all instances, oldest first
+  std::map<std::uint32_t, int> counts_;  ///< samples by instance
 };
 
 class InprocWriter;
 class InprocReader;
 
-/// All endpoints of one topic, in order of their making.
+/// All endpoints of one topic, in the order they were created. Endpoints register themselves.
 struct Channel {
   std::vector<InprocWriter*> writers;
   std::vector<InprocReader*> readers;
 };
 
-/// DDS's rule: the writer offers at least what the reader asks for.
+/// The matching rule of DDS: the writer offers at least what the reader requests.
 inline bool compatible(const Qos& offered, const Qos& asked) {
   return offered.ownership == asked.ownership &&
          (offered.reliability == Reliability::kReliable ||
@@ -80,6 +84,8 @@ inline bool compatible(const Qos& offered, const Qos& asked) {
           asked.durability == Durability::kVolatile);
 }
 
+/// Stores delivered samples until they are taken. A transient-local reader first receives the
+/// histories of the existing writers.
 class InprocReader final : public RawReader {
  public:
   InprocReader(std::shared_ptr<Channel> channel, const Qos& qos)
@@ -89,26 +95,31 @@ class InprocReader final : public RawReader {
   }
   ~InprocReader() override { std::erase(channel_->readers, this); }
 
+  /// Hands over what was delivered since the last call.
   std::size_t take(const Sink& sink) override { return history_.hand_over(sink); }
 
   int matched() const override;
 
   const Qos& qos() const { return qos_; }
 
+  /// Stores a sample if QoS and ownership allow it.
   void deliver(const InprocWriter& from, const Sample& sample);
+  /// Releases the instances that the writer owned, so that weaker writers are received.
   void writer_gone(const InprocWriter& writer) {
     std::erase_if(owners_, [&](const auto& entry) { return entry.second == &writer; });
   }
 
  private:
+  /// Delivers the histories of the transient-local writers that exist already.
   void catch_up();
 
   std::shared_ptr<Channel> channel_;
   Qos qos_;
   History history_;
-  std::map<std::uint32_t, const InprocWriter*> owners_;
+  std::map<std::uint32_t, const InprocWriter*> owners_;  ///< of exclusive topics, by instance
 };
 
+/// Delivers to all readers of its topic within write(), in the caller's thread.
 class InprocWriter final : public RawWriter {
  public:
   InprocWriter(std::shared_ptr<Channel> channel, const RawTopic& topic, std::uint32_t strength)
@@ -124,19 +135,21 @@ class InprocWriter final : public RawWriter {
     for (auto* reader : channel_->readers) reader->writer_gone(*this);
   }
 
+  /// False only for bytes without encapsulation or key.
   bool write(std::span<const std::byte> bytes) override;
   int matched() const override;
 
   const Qos& qos() const { return qos_; }
   std::uint32_t strength() const { return strength_; }
+  /// What a late transient-local reader receives.
   const std::deque<Sample>& history() const { return history_.samples(); }
 
  private:
   std::shared_ptr<Channel> channel_;
   Qos qos_;
   bool keyed_;
-  std::uint32_t strength_;
-  History history_;
+  std::uint32_t strength_;  ///< for exclusive ownership
+  History history_;         ///< of a transient-local writer, for late readers
 };
 
 }  // namespace swarm::link::inproc

@@ -16,9 +16,10 @@ namespace swarm::link {
 namespace {
 
 constexpr std::uint32_t kDomains = 230;  // ports of domain 232 end at 65535
+// 250 ports per domain, two per participant, less those that the standard reserves.
 constexpr std::uint32_t kPortPairsPerDomain = 120;
 
-/// A lock file for one domain, held; -1 if somebody else holds it.
+/// Opens and locks the lock file of one domain; -1 if another process holds it.
 int lock_domain(std::uint32_t domain) {
   const auto file =
       std::filesystem::temp_directory_path() / fmt::format("swarmflow-domain-{}.lock", domain);
@@ -38,6 +39,8 @@ DomainLock::~DomainLock() {
   for (const int fd : files_) ::close(fd);
 }
 
+// Tries blocks of consecutive domains from the first candidate on. A block that cannot be locked
+// completely is released by the destructor of `lock`.
 Result<DomainLock> DomainLock::take(int wanted, std::uint32_t participants) {
   const std::uint32_t block = participants / kPortPairsPerDomain + 1;
   const std::uint32_t first = wanted < 0 ? 1 : static_cast<std::uint32_t>(wanted);

@@ -9,9 +9,10 @@
 
 namespace swarm::link {
 
-/// Reserves DDS domains on this machine for one run, so that two runs never hear each other and
-/// never compete for ports. A run of many processes overflows the 120 port pairs of its domain into
-/// the next ones, which are reserved with it. Held by file locks: a crashed launcher frees them.
+/// Reserves DDS domains on this machine for one run, so that two runs never receive each other and
+/// never compete for ports. A run with many processes needs more than the 120 port pairs of its
+/// domain and uses those of the next domains, which are reserved with it. The reservation is a file
+/// lock, which the kernel releases if the launcher crashes.
 class DomainLock {
  public:
   /// `wanted` < 0: the first free block. Fails when the wanted block is in use or none is free.
@@ -21,12 +22,13 @@ class DomainLock {
   DomainLock& operator=(DomainLock&&) = delete;
   ~DomainLock();
 
+  /// The first domain of the block: the one the run uses.
   std::uint32_t domain() const { return domain_; }
 
  private:
   DomainLock() = default;
   std::uint32_t domain_ = 0;
-  std::vector<int> files_;
+  std::vector<int> files_;  ///< of the block; closing releases the locks
 };
 
 }  // namespace swarm::link

@@ -15,10 +15,11 @@
 namespace swarm::link {
 namespace {
 
+// Discovery of one Fast DDS participant costs the square of its peers; 25 are quick to discover.
 constexpr std::uint32_t kAgentsPerRelay = 25;
 
-// Participant indices: the launcher's, the planner's, the gateway's, then the agents'. All
-// participants of a Cyclone process share their port: such a launcher or planner is one hub.
+// Participant indices, in this order: launcher, planner, gateway, agents. All participants of a
+// Cyclone process share its port, so such a launcher or planner is one relay participant.
 std::uint32_t launcher_index(const Meeting& m, std::uint32_t relay) {
   return m.launcher == Vendor::kCycloneDds ? 0 : relay;
 }
@@ -30,6 +31,7 @@ std::uint32_t agent_index(const Meeting& m, std::uint32_t number) {
   return gateway_index(m) + 1 + number;
 }
 
+// Options common to all roles.
 FastDdsOptions member(const Meeting& meeting, std::string name, std::uint32_t index) {
   return {.name = std::move(name),
           .domain = meeting.domain,
@@ -39,6 +41,7 @@ FastDdsOptions member(const Meeting& meeting, std::string name, std::uint32_t in
           .faults = meeting.faults};
 }
 
+// Creates a participant and reports at once if it cannot receive.
 Result<std::unique_ptr<Participant>> make_checked(const FastDdsOptions& options) {
   auto made = make_fastdds_participant(options);
   if (!made) return made;
@@ -46,6 +49,8 @@ Result<std::unique_ptr<Participant>> make_checked(const FastDdsOptions& options)
   return made;
 }
 
+// Launcher or planner with Cyclone DDS: a fixed index, so that agents know its port, and the other
+// of the two as its peer.
 CycloneOptions cyclone_relay(const Meeting& meeting, std::string name, std::uint32_t index,
                            std::uint32_t peer) {
   return {.name = std::move(name),
@@ -69,6 +74,7 @@ std::uint32_t relays_for(std::uint32_t agents) {
   return std::max(1U, (agents + kAgentsPerRelay - 1) / kAgentsPerRelay);
 }
 
+// Some indices after the agents' are for monitors that join later.
 std::uint32_t participants_for(const Meeting& meeting, std::uint32_t agents) {
   constexpr std::uint32_t kMonitors = 4;
   return agent_index(meeting, agents + kMonitors);
@@ -78,6 +84,8 @@ bool built_with(Vendor vendor) {
   return vendor == Vendor::kFastDds ? SWARM_WITH_FASTDDS : SWARM_WITH_CYCLONEDDS;
 }
 
+// With static peers the launcher announces itself to no one: planner and agents announce themselves
+// to its relay participants.
 Result<std::unique_ptr<Participant>> join_as_launcher(const Meeting& meeting) {
   if (meeting.launcher == Vendor::kCycloneDds) {
     if (meeting.relays == 0) return no_server_for_cyclone("--launcher-dds");
@@ -109,7 +117,8 @@ Result<std::unique_ptr<Participant>> join_as_planner(const Meeting& meeting,
     FastDdsOptions options = member(meeting, "planner_service", planner_index(meeting, relay));
     options.ownership_strength = ownership_strength;
     if (meeting.relays > 0) options.static_peers = StaticPeers{.is_relay = true};
-    // Of all its hubs one is enough for what launcher and planner have to tell each other.
+    // One connection between launcher and planner is enough, so only one relay participant of the
+    // planner announces itself.
     if (meeting.relays > 0 && relay == 0) {
       options.static_peers->peers = {launcher_index(meeting, 0)};
       options.static_peers->host = meeting.host;
@@ -121,6 +130,7 @@ Result<std::unique_ptr<Participant>> join_as_planner(const Meeting& meeting,
   return make_relay_participant(std::move(relays));
 }
 
+// A monitor receives cells by unicast, so that it works on interfaces without multicast.
 Result<std::unique_ptr<Participant>> join_as_monitor(const Meeting& meeting, std::uint32_t agents,
                                                      std::uint32_t number) {
   FastDdsOptions options = member(meeting, "swarm_monitor", agent_index(meeting, agents + number));
@@ -150,6 +160,8 @@ Result<std::unique_ptr<Participant>> join_as_gateway(const Meeting& meeting) {
   return make_checked(options);
 }
 
+// Agents are distributed over the relay participants in turn; each announces itself to one of the
+// launcher and the corresponding one of the planner.
 Result<std::unique_ptr<Participant>> join_as_agent(const Meeting& meeting, std::uint32_t number,
                                                    const std::string& name, Vendor vendor,
                                                    bool by_gateway) {

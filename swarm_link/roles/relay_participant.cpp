@@ -9,6 +9,8 @@
 namespace swarm::link {
 namespace {
 
+// Writes to every participant. A peer is matched with one of them only, so it receives a sample
+// once.
 class RelayWriter final : public RawWriter {
  public:
   explicit RelayWriter(std::vector<RawWriterPtr> writers) : writers_(std::move(writers)) {}
@@ -29,6 +31,7 @@ class RelayWriter final : public RawWriter {
   std::vector<RawWriterPtr> writers_;
 };
 
+// Takes from all participants in turn; there is no order between samples of different ones.
 class RelayReader final : public RawReader {
  public:
   explicit RelayReader(std::vector<RawReaderPtr> readers) : readers_(std::move(readers)) {}
@@ -49,6 +52,7 @@ class RelayReader final : public RawReader {
   std::vector<RawReaderPtr> readers_;
 };
 
+// Owns the participants; an endpoint fails when it fails in one of them.
 class RelayParticipant final : public Participant {
  public:
   explicit RelayParticipant(std::vector<std::unique_ptr<Participant>> participants)
@@ -91,6 +95,7 @@ class RelayParticipant final : public Participant {
 
 }  // namespace
 
+// A single participant needs no wrapper.
 std::unique_ptr<Participant> make_relay_participant(std::vector<std::unique_ptr<Participant>> participants) {
   SWARM_ASSERT(!participants.empty());
   if (participants.size() == 1) return std::move(participants.front());

@@ -9,10 +9,10 @@
 
 namespace swarm::link {
 
-/// Several participants as one: its writers say everything through each of them, its readers hear
-/// through all. For those who speak to everyone in a swarm of hundreds: a vendor's reliable
-/// discovery costs the square of the peers a participant has, so the crowd is dealt out to several.
-/// \pre at least one participant
+/// Combines several participants: a writer sends through each of them, a reader receives from all.
+/// For processes that communicate with everyone in a swarm of hundreds: the reliable discovery of a
+/// vendor costs the square of the number of peers of a participant, so the peers are divided among
+/// several. \pre at least one participant
 std::unique_ptr<Participant> make_relay_participant(std::vector<std::unique_ptr<Participant>> participants);
 
 }  // namespace swarm::link

@@ -9,7 +9,9 @@
 
 namespace swarm::link {
 
-/// The meeting place that a run directory tells of.
+/// The meeting of a run, from the file in its run directory. Discovery server and relay
+/// participants exclude each other: `relays` is 0 in a run with a server. `faults`: simulated for
+/// the process that joins, not part of the file.
 inline Meeting meeting_of(const shell::RunInfo& run, ReceptionFaults faults = {}) {
   const auto vendor = [](bool cyclone) { return cyclone ? Vendor::kCycloneDds : Vendor::kFastDds; };
   return {.domain = run.domain,

@@ -58,7 +58,7 @@ class TestFastDdsBus final : public Bus {
   std::uint32_t next_index_;
 };
 
-/// No server: everyone announces itself to those who were there before.
+/// No server: each participant announces itself to those created before it.
 class TestStaticPeersBus final : public Bus {
  private:
   std::unique_ptr<Participant> make(std::uint32_t ownership_strength) override {
@@ -86,7 +86,7 @@ class TestCycloneBus final : public Bus {
   }
 };
 
-/// Has no topics: nothing but groups.
+/// Groups only, no topics.
 class TestGroupBus final : public Bus {
  public:
   std::unique_ptr<StateChannel> channel(const CellOptions& options) override {
@@ -146,7 +146,8 @@ const std::vector<Backend>& backends() {
       {"inproc", [] { return make_inproc_bus(); }},
       {"fastdds_at_tick", [] { return make_fastdds_bus(true); }},
       {"fastdds_threads", [] { return make_fastdds_bus(false); }},
-      {"fastdds_star", []() -> std::unique_ptr<Bus> { return std::make_unique<TestStaticPeersBus>(); }},
+      {"fastdds_peers",
+       []() -> std::unique_ptr<Bus> { return std::make_unique<TestStaticPeersBus>(); }},
       {"cyclone", []() -> std::unique_ptr<Bus> { return std::make_unique<TestCycloneBus>(); }}};
   return all;
 }

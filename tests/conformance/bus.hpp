@@ -13,23 +13,23 @@
 #include "swarm_link/port.hpp"
 #include "swarm_link/channels/state_channel.hpp"
 
-/// What the conformance suite runs against: each back behind the same few functions.
+/// The buses under test: each backend behind the same few functions.
 namespace swarm::link::conformance {
 
 class Bus {
  public:
   virtual ~Bus() = default;
 
-  /// Lives as long as the bus.
+  /// A new participant, valid as long as the bus.
   Participant& participant(std::uint32_t ownership_strength = 0);
 
-  /// A way of hearing neighbours, of a participant of its own.
+  /// A state channel, over a participant of its own.
   virtual std::unique_ptr<StateChannel> channel(const CellOptions& options);
 
-  /// One tick of everybody.
+  /// One tick of all participants.
   void pump();
 
-  /// Ticks until the condition holds. The deadline only guards against hanging.
+  /// Ticks until the condition holds. The deadline only protects against an endless loop.
   template <class Condition>
   bool eventually(Condition condition) {
     for (const Hang guard; !guard.over(); rest()) {
@@ -39,7 +39,8 @@ class Bus {
     return false;
   }
 
-  /// Ticks for a while, for what must not arrive. Too short a while can only hide a fault.
+  /// Ticks for some time, for tests that something does not arrive. A period that is too short can
+  /// only hide a fault.
   void converge();
 
  protected:
@@ -59,14 +60,14 @@ class Bus {
   std::vector<std::unique_ptr<Participant>> participants_;
 };
 
-/// DDS domain of this test process, so that processes side by side do not hear each other. Low
-/// enough for the ports to stay below the kernel's ephemeral ones.
+/// DDS domain of this test process, so that test processes that run at the same time do not receive
+/// each other. Low enough for the ports to stay below the kernel's ephemeral ones.
 std::uint32_t test_domain();
 
 std::unique_ptr<Bus> make_inproc_bus();
 std::unique_ptr<Bus> make_fastdds_bus(bool receive_at_tick = true);
 
-/// A bus on a discovery server that somebody else runs.
+/// A bus on a discovery server that the caller runs.
 std::unique_ptr<Bus> join_fastdds_bus(const DiscoveryAddress& discovery, std::uint32_t first_index);
 
 using MakeBus = std::unique_ptr<Bus> (*)();
@@ -75,7 +76,7 @@ struct Backend {
   MakeBus make;
 };
 const std::vector<Backend>& backends();
-/// The backs, whose channels are made of topics, and the groups.
+/// The backends, whose channels use topics, and the groups.
 const std::vector<Backend>& channel_backends();
 inline std::string name_of(const testing::TestParamInfo<Backend>& back) { return back.param.name; }
 

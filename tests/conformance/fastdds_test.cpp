@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-// What only the Fast DDS back can get wrong: ports, buffers, discovery servers, late receivers.
+// Behaviour specific to the Fast DDS adapter: ports, buffers, discovery servers, late receivers.
 #include <arpa/inet.h>
 #include <gtest/gtest.h>
 #include <netinet/in.h>
@@ -12,7 +12,7 @@
 namespace swarm::link::conformance {
 namespace {
 
-/// UDP ports of the loopback interface that somebody else already uses.
+/// UDP ports of the loopback interface that are in use by another process.
 class OccupiedPorts {
  public:
   OccupiedPorts(std::uint16_t first, int count) {
@@ -22,7 +22,7 @@ class OccupiedPorts {
       address.sin_family = AF_INET;
       address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
       address.sin_port = htons(static_cast<std::uint16_t>(first + i));
-      // A port that a stranger has is just as occupied.
+      // A port that an unrelated process uses is occupied as well.
       (void)::bind(fd, reinterpret_cast<const sockaddr*>(&address), sizeof address);
       fds_.push_back(fd);
     }
@@ -47,7 +47,7 @@ struct FastDds : testing::Test {
   std::unique_ptr<DiscoveryServer> server = make_discovery_server(test_domain(), 0).value();
 };
 
-// The vendor tries 100 ports and then goes on without hearing anything.
+// By default the vendor tries 100 ports and then continues without receiving anything.
 TEST_F(FastDds, ReceivesAfterAHundredAndTenParticipantsUsedThePorts) {
   const OccupiedPorts others(first_port(), 2 * 110);
   const auto bus = join_fastdds_bus(server->address(), 0);
@@ -76,7 +76,8 @@ TEST_F(FastDds, ReportsThatItCannotReceiveWhenNoPortIsFree) {
     const auto checked = participant->self_check();
     ASSERT_FALSE(checked);
     EXPECT_EQ(checked.error().code, ErrorCode::kEnvironment);
-    EXPECT_NE(checked.error().message.find("deaf"), std::string::npos) << checked.error().message;
+    EXPECT_NE(checked.error().message.find("cannot receive"), std::string::npos)
+        << checked.error().message;
   }
 }
 
@@ -167,7 +168,7 @@ TEST_F(FastDds, ReceivesNothingBeforeReceiveIsCalled) {
   EXPECT_TRUE(bus->eventually([&] { return reader->take(received) > 0; }));
 }
 
-// A reader that never ticks must not hold up a reliable writer, nor make it grow.
+// A reader that never ticks must not block a reliable writer, nor make its memory grow.
 TEST_F(FastDds, WritesOnWhileAReaderSleeps) {
   const auto bus = join_fastdds_bus(server->address(), 0);
   const auto writer = bus->participant().make_writer(event_topic()).value();

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-// Two worlds, states by groups and states by topics, and what carries between them.
+// Two sets of robots, with states by groups and by topics, and the gateway between them.
 #include "swarm_link/gateway/gateway.hpp"
 
 #include <functional>
@@ -89,7 +89,7 @@ TEST_P(GatewayRun, CarriesStatesBothWaysAndEachOnce) {
   start_other();
   ASSERT_TRUE(eventually([&] { return gateway->in_use(); }));
 
-  // Best effort, and the other may still be under way: said until it is received.
+  // Best effort, and the other process may still be joining: published again until it is received.
   ASSERT_TRUE(eventually([&] {
     groups->publish(std::vector{state(1, 10), state(2, 120)});
     return count(by_topics, 1) > 0 && count(by_topics, 2) > 0;

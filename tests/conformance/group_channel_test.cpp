@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-// What only multicast groups can get wrong: anybody may send anything there.
+// Behaviour specific to multicast groups, where any process may send anything.
 #include "swarm_link/channels/groups/group_channel.hpp"
 
 #include <set>
@@ -19,7 +19,7 @@ namespace {
 
 using Datagram = std::vector<unsigned char>;
 
-/// A plain socket in the group of a cell: hears and says bytes.
+/// A plain socket in the group of a cell, which receives and sends bytes.
 class Stranger {
  public:
   explicit Stranger(Cell cell) : fd_(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)) {

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-// Vendor headers lie on the default include path, so the compiler does not keep them where they
-// belong: this does.
+// Vendor headers are on the default include path, so the compiler cannot keep them in their
+// folders: this test does.
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -198,8 +198,8 @@ TEST(Includes, OfThePlannerDoNotNameAMethod) {
   });
 }
 
-// What others build on: nothing private, no vendor's or parser's type, and each ring knows only the
-// rings within.
+// The public headers: they include nothing private, no type of a vendor or parser, and each layer
+// knows only the layers within.
 TEST(Includes, OfPublicHeadersArePublic) {
   static const std::regex kThirdParty(
       R"re(^(fmt|nlohmann|yaml-cpp|CLI|coin|lemon|nanoflann|png|zstd|zlib)\b)re");

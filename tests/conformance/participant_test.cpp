@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-// What every back of the bus port must do alike.
+// Behaviour that all backends of the bus must have in common.
 #include <map>
 
 #include <fmt/format.h>
@@ -14,7 +14,7 @@ namespace {
 
 class Participants : public testing::TestWithParam<Backend> {
  protected:
-  // The next `count` messages that a reader hears.
+  // The next `count` messages that a reader receives.
   template <class M>
   std::vector<M> receive(const ReaderPtr<M>& reader, std::size_t count) {
     std::vector<M> received;
@@ -175,7 +175,7 @@ TEST_P(Participants, KeepTheLastOfEachGroupsStatus) {
   deep_topic.qos.depth = 3;
   const auto writer = a.make_writer(deep_topic).value();
   const auto reader = b.make_reader(status_topic()).value();
-  const auto deep = b.make_reader(deep_topic).value();  // tells when all have arrived
+  const auto deep = b.make_reader(deep_topic).value();  // shows when all have arrived
   await_match(writer, deep);
   ASSERT_TRUE(bus->eventually([&] { return writer->matched() == 2; }));
   constexpr std::uint32_t kGroups = 150;

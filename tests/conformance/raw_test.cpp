@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-// Those who look on: samples as they are, of launcher and planner of a run and of a replay.
+// Monitors: encoded samples of the launcher and planner of a run and of a replay.
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -46,7 +46,7 @@ MonitorTopic topic_named(const std::string& recorded) {
                        [&](const MonitorTopic& topic) { return topic.recorded == recorded; });
 }
 
-/// What a reader has heard so far, by when it was published.
+/// The messages that a reader has received so far, sorted by the time of publication.
 std::vector<RawMessage> received(Participant& participant, RawReader& reader, std::size_t expected) {
   std::vector<RawMessage> messages;
   EXPECT_TRUE(eventually([&] {
@@ -92,7 +92,7 @@ TEST(Raw, RepublishesWhatWasReceived) {
   const auto monitor = join_as_monitor(meeting, 0).value();
   const auto plan_reader = monitor->make_reader(topic_named("swarm/plan").wire).value();
   const auto status_reader = monitor->make_reader(topic_named("swarm/status").wire).value();
-  // Larger than a datagram, and said before anybody listens: it is latched.
+  // Larger than a datagram, and published before a reader exists: it is transient-local.
   PlanMessage plan{.version = 3, .epoch = 4};
   plan.nodes.resize(2000);
   RawMessage message{.bytes = bytes_of(plan)};

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-// Every channel over every back: joins, leaves, hears.
+// Every channel over every backend: joining, leaving and receiving cells.
 #include "swarm_link/channels/state_channel.hpp"
 
 #include <set>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-// Words are lost and late, and so is what a new planner has to say.
+// State updates are lost and delayed, and so are the messages of a new planner.
 #include <csignal>
 
 #include "flown_run.hpp"

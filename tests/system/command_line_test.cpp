@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-// What every program promises at the command line: help, version, check, exit codes.
+// The command line of every program: help, version, check, exit codes.
 #include <csignal>
 #include <fstream>
 

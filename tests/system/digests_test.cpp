@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-// What `simulate` makes of every mission of deploy/missions, to the last bit, against
-// tests/data/digests.txt. A commit that changes a line there says why. tests/digests.sh flies more
-// seeds and writes the file anew.
+// Results of `simulate` for every mission of deploy/missions, to the last bit, against
+// tests/data/digests.txt. A commit that changes a line there explains why. tests/digests.sh flies
+// more seeds and rewrites the file.
 #include <algorithm>
 #include <cstdlib>
 #include <fstream>
@@ -49,19 +49,20 @@ std::map<std::string, std::string> stored_digests() {
   return stored;
 }
 
-/// By tests/digests.sh; nothing where the tests fly one seed of the quick missions.
+/// Set by tests/digests.sh; empty where the tests fly one seed of the quick missions.
 std::optional<std::uint64_t> seeds_asked() {
   const char* const asked = std::getenv("SWARM_DIGEST_SEEDS");
   if (asked == nullptr) return std::nullopt;
   return std::strtoull(asked, nullptr, 10);
 }
 
-/// A new plan every second, or a great many robots: tens of seconds each.
+/// Missions with a new plan every second or very many robots: tens of seconds each.
 bool is_slow(const std::string& mission) {
   return mission.starts_with("rover") || mission.starts_with("diffusion") || mission == "big";
 }
 
-/// The C library's mathematics rounds otherwise where the processor lacks fused multiply-add.
+/// The mathematical functions of the C library round differently on processors without fused
+/// multiply-add.
 bool rounds_as_stored() {
 #ifdef __x86_64__
   return read_text("/proc/cpuinfo").find(" fma ") != std::string::npos;

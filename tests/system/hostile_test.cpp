@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-// Somebody publishes rubbish on the bus of a flying swarm. (Samples that only a foreign writer can
-// make, too long for the contract, are in tests/conformance.)
+// A hostile participant publishes invalid messages on the bus of a flying swarm. (Samples that only
+// a foreign writer can make, too long for the contract, are in tests/conformance.)
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -67,7 +67,7 @@ Result<std::unique_ptr<Participant>> intrude(const FlownRun& run) {
                                    .ownership_strength = 1000});
 }
 
-/// What the bus of a run shows: the planner's phase and how many robots are in a mode.
+/// The state of a run by its bus: the planner's phase and how many robots are in a mode.
 class Onlooker {
  public:
   explicit Onlooker(Participant& participant)
@@ -100,7 +100,7 @@ class Onlooker {
   std::map<std::uint32_t, RobotMode> modes_;
 };
 
-/// Who has reported an event with this text.
+/// The sources of the events with this text.
 std::set<std::string> reporters_of(const FlownRun& run, const std::string& text) {
   std::set<std::string> reporters;
   std::istringstream lines(read_text(run.dir() / "events.jsonl"));
@@ -111,7 +111,7 @@ std::set<std::string> reporters_of(const FlownRun& run, const std::string& text)
   return reporters;
 }
 
-// Ids of commands are UTC stamps. One near 2^64, if accepted, would outrank all commands to come.
+// Ids of commands are UTC stamps. One near 2^64, if accepted, would outrank all later commands.
 TEST(HostileBus, ACommandWithAHugeIdLocksNoOtherSenderOut) {
   constexpr std::size_t kRobots = 12;
   FlownRun run;
@@ -210,7 +210,7 @@ TEST(HostileBus, RubbishIsRefusedCountedAndHarmless) {
       }
       for (std::uint32_t robot = 0; robot < 12; ++robot) {
         CellStatesMessage impostor = decent_batch(robot, where[i]);
-        impostor.states[0].x_m = 39;  // far from everyone: who believes it is not harmed
+        impostor.states[0].x_m = 39;  // far from all robots: harmless even if accepted
         impostor.states[0].y_m = 29;
         cells[i]->write(impostor);
       }

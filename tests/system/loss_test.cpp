@@ -66,7 +66,7 @@ TEST(Loss, KilledRobotsLeaveBodiesThatCanBeCleared) {
   const auto changes = scene_changes(run.dir());
   ASSERT_EQ(changes.size(), 4U);
   for (const std::size_t i : {0U, 1U, 2U}) {
-    // The circle of a robot under way, from its last tick to where its driver stops it.
+    // The circle of a moving robot, from its last control period to where its driver stops it.
     const std::string keys = changes[i]["keys"];
     const double radius_m = std::stod(keys.substr(keys.find("radius: ") + 8));
     EXPECT_GE(radius_m, 0.2) << keys;

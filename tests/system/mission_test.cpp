@@ -42,7 +42,7 @@ TEST(Mission, FliesAndIsAudited) {
   EXPECT_EQ(nlohmann::json::parse(run.launcher().out()), summary);
 }
 
-// Cyclone's default configuration counts participants of a machine up to ten.
+// By default Cyclone numbers the participants of a machine up to ten only.
 TEST(Mission, IsFlownByMoreCycloneProcessesThanItsDefaultsAllow) {
   FlownRun run({"--channel", "groups", "--agent-dds", "cyclonedds", "--planner-dds", "cyclonedds",
                 "--launcher-dds", "cyclonedds"});
@@ -63,7 +63,8 @@ TEST(Mission, IsFlownWithRobotsOfAnotherMakeBehindAGateway) {
     return gateways.size() == 1;
   })) << run.launcher().err();
 
-  // One that comes back is found again: the mission begins when everyone hears those around it.
+  // A restarted gateway is discovered again: the mission starts only when every robot receives its
+  // neighbours.
   ::kill(gateways[0], SIGKILL);
 
   EXPECT_EQ(run.launcher().wait(), 0) << run.launcher().err();
@@ -106,14 +107,14 @@ TEST(Mission, FliesOnMulticastGroups) {
 }
 
 TEST(Mission, TwoRunsAtOnceAreIsolated) {
-  // On the same groups of the map, told apart by their domains.
+  // Both use the same multicast addresses; their domains give them different ports.
   FlownRun one({"--robots", "6", "--seed", "1", "--channel", "groups"});
   FlownRun two({"--robots", "6", "--seed", "2", "--channel", "groups"});
 
   EXPECT_EQ(one.launcher().wait(), 0) << one.launcher().err();
   EXPECT_EQ(two.launcher().wait(), 0) << two.launcher().err();
 
-  // Robots of both runs carry the same ids: heard ones would be refused as forged.
+  // Robots of both runs have the same ids: received ones would be refused as forged.
   for (const FlownRun* run : {&one, &two}) {
     EXPECT_EQ(read_text(run->dir() / "events.jsonl").find("message(s): forged"), std::string::npos);
   }

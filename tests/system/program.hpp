@@ -11,7 +11,7 @@
 
 namespace swarm::test {
 
-/// A real program of ours in a real process; killed when it goes out of scope.
+/// One of our programs in a process of its own, killed when the object is destroyed.
 class Program {
  public:
   /// Starts `SWARM_BIN_DIR/name arguments…`; stdout and stderr go to files.
@@ -55,7 +55,8 @@ struct Child {
 std::vector<Child> children_of(pid_t parent);
 std::vector<pid_t> children_of(pid_t parent, const std::string& program);
 
-/// Polls until the condition holds; false when the guard (against hanging) runs out first.
+/// Polls until the condition holds; false at the end of the time limit, which prevents an endless
+/// loop.
 template <class Condition>
 bool eventually(Condition condition, std::chrono::seconds guard = std::chrono::seconds(120));
 

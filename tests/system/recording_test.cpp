@@ -12,7 +12,7 @@
 namespace swarm::test {
 namespace {
 
-/// What was published on each topic, in order.
+/// The messages published on each topic, in order.
 std::map<std::string, std::vector<std::string>> messages_of(const std::filesystem::path& file) {
   std::map<std::string, std::vector<std::string>> messages;
   const auto damage =
@@ -105,7 +105,7 @@ TEST(Recording, SurvivesKilledRecordersAndRobots) {
   EXPECT_EQ(audit(run.dir() / "recording.mcap"), audit(run.dir()));
 }
 
-/// No file grows beyond this, for the programs that are started while it lives.
+/// Limits the size of files, for the programs that are started while this object exists.
 class FullDisk {
  public:
   explicit FullDisk(rlim_t bytes) {
@@ -130,7 +130,8 @@ TEST(Recording, OnAFullDiskDoesNotTroubleTheFlight) {
   }
   run->launcher().wait();
 
-  // Boxes lack the end of the flight, so the audit takes robots for lost; they flew all the same.
+  // The robot logs lack the end of the flight, so the audit counts robots as lost; they flew to the
+  // end nevertheless.
   const std::string events = read_text(run->dir() / "events.jsonl");
   EXPECT_NE(events.find("blackbox-dropped"), std::string::npos);
   EXPECT_EQ(events.find("agent-exit"), std::string::npos);

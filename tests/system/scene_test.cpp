@@ -35,7 +35,7 @@ TEST(Scene, ChangesByScriptAndTheSwarmFollows) {
   ASSERT_EQ(run.launcher().wait(), 0) << run.launcher().err();
 
   expect_good(run.summary(), 12);
-  // Of the new goal: 3 and 9 by its weights, within two.
+  // Robots per component of the new goal: 3 and 9 by its weights, within two.
   ASSERT_EQ(run.summary()["arrived_per_goal"].size(), 2U);
   EXPECT_NEAR(run.summary()["arrived_per_goal"][0].get<double>(), 3.0, 2.0);
   EXPECT_EQ(reported(run.dir(), "scene").size(), 4U);
@@ -84,7 +84,7 @@ TEST(Scene, ThatCannotBePlannedKeepsTheLastPlan) {
   FlownRun run;
   ASSERT_TRUE(run.mission_started());
 
-  // On the mean of goal 1: no plan can keep its promise there.
+  // On the mean of goal 1: no plan can keep its risk limit there.
   Program program("swarm_launcher", {"command", run.dir().string(), "add_obstacle",
                                      "circle_m: {center: [33, 9], radius: 0.3}"});
   ASSERT_EQ(program.wait(), 0) << program.out();

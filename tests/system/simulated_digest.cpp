@@ -47,7 +47,7 @@ class Hash {
   std::uint64_t value_ = 0xCBF2'9CE4'8422'2325ULL;
 };
 
-/// What the robot logs hold, by kind of record.
+/// Hashes of the robot logs, by kind of record.
 struct LogHashes {
   Hash steps, estimates, notes, link;
 
@@ -107,7 +107,7 @@ class HashingObserver final : public launcher::SimulationObserver {
 Result<std::string> simulated_digest(const DigestCase& flight) {
   auto mission = load_mission(flight.mission_file, builtin_catalogue());
   if (!mission) return tl::unexpected(mission.error());
-  // Of a very large swarm a hundred show as much.
+  // Of a very large swarm a hundred robots are enough.
   constexpr std::uint32_t kMostRobots = 200;
   if (mission->robots.count > kMostRobots) mission->robots.count = 100;
   const auto faults = parse_link_faults(flight.fault);
@@ -123,7 +123,7 @@ Result<std::string> simulated_digest(const DigestCase& flight) {
   while ((*simulation)->step()) {
   }
 
-  // Through the files: what a reader finds in them is what counts.
+  // Read back from the files, because their content is what must not change.
   const TemporaryFolder folder;
   std::filesystem::create_directories(robot_log::file_of(folder.path(), RobotId(0)).parent_path());
   if (auto written = recording.write(folder.path()); !written) {

@@ -17,10 +17,10 @@ struct DigestCase {
   std::uint64_t seed = 1;
 };
 
-/// Flies it and hashes what it left, a hash for each kind of output, so that a change shows where
-/// it is: `steps`, `estimates`, `notes` and `link` of all robot logs, the `plans`, the `clock` of
-/// the plan and the `scenes`. Texts for people, process ids and wall times are left out. The same
-/// on any number of threads. Fails as `simulate` would.
+/// Flies it and hashes its output, one hash per kind of output, so that a difference shows where it
+/// is: `steps`, `estimates`, `notes` and `link` of all robot logs, the `plans`, the `clock` of the
+/// plan and the `scenes`. Readable texts, process ids and wall times are excluded. The result does
+/// not depend on the number of threads. Fails as `simulate` would.
 Result<std::string> simulated_digest(const DigestCase& flight);
 
 }  // namespace swarm::test

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-// A short soak: real processes, a real listener.
+// A short soak: real processes, and a receiver that measures their states.
 #include "flown_run.hpp"
 
 namespace swarm::test {

@@ -9,7 +9,7 @@
 namespace swarm::test {
 namespace {
 
-/// The address that a launcher told those who may join.
+/// The address for other hosts, which a launcher prints.
 std::string join_address(Program& launcher) {
   const std::string before = "swarm_launcher join ";
   std::string err;

@@ -24,15 +24,15 @@ namespace {
 constexpr std::size_t kHeadBytes = 4;
 constexpr std::size_t kKeyBytes = sizeof(std::uint32_t);
 
-// The vendor knows its own structs alone; ours begin with them.
+// The vendor passes pointers to its own structs; ours begin with them, so a cast converts.
 struct ByteType {
   ddsi_sertype base;
   bool keyed;
 };
 struct ByteSample {
   ddsi_serdata base;
-  std::vector<std::byte> bytes;  // a multiple of four, as it travels
-  std::uint32_t size;            // without what fills it up
+  std::vector<std::byte> bytes;  // padded to a multiple of four, as on the wire
+  std::uint32_t size;            // without the padding
   bool keyed;
   std::uint32_t key;
 };
@@ -51,6 +51,7 @@ std::uint32_t from_big_endian(const void* bytes) {
   return __builtin_bswap32(value);
 }
 
+// A sample with zeroed bytes. RTPS pads payloads to a multiple of four, so the memory does, too.
 std::unique_ptr<ByteSample> make_sample(const ddsi_sertype* type, ddsi_serdata_kind kind,
                                         std::size_t size) {
   auto sample = std::make_unique<ByteSample>();
@@ -61,12 +62,14 @@ std::unique_ptr<ByteSample> make_sample(const ddsi_sertype* type, ddsi_serdata_k
   return sample;
 }
 
+// The vendor looks instances up by this hash, so it must depend on the type and the key only.
 void set_hash(ByteSample& sample) {
   sample.base.hash = sample.base.type->serdata_basehash;
   if (sample.keyed) sample.base.hash ^= sample.key * 2'654'435'761U;
 }
 
-/// Reads the key and hands it over to the vendor; null, and the sample is dropped, without one.
+/// Reads the key in the byte order of the sample and passes ownership to the vendor. Null, and the
+/// sample is dropped, when it is too short for a key.
 ddsi_serdata* finish(std::unique_ptr<ByteSample> sample) {
   if (sample->keyed) {
     if (sample->size < kHeadBytes + kKeyBytes) return nullptr;
@@ -85,6 +88,8 @@ bool same_key(const ddsi_serdata* a, const ddsi_serdata* b) {
 
 std::uint32_t size_of(const ddsi_serdata* sample) { return as_ours(sample).size; }
 
+// Assembles a received sample from its fragments, which are sorted and may overlap. Null if bytes
+// are missing or a fragment exceeds the sample.
 ddsi_serdata* from_network(const ddsi_sertype* type, ddsi_serdata_kind kind,
                            const nn_rdata* fragment, std::size_t size) {
   if (size < kHeadBytes || size > UINT32_MAX) return nullptr;
@@ -92,7 +97,7 @@ ddsi_serdata* from_network(const ddsi_sertype* type, ddsi_serdata_kind kind,
   std::size_t filled = 0;
   for (; fragment != nullptr; fragment = fragment->nextfrag) {
     if (fragment->min > filled || fragment->maxp1 > size) return nullptr;
-    if (fragment->maxp1 <= filled) continue;  // repeats what came before
+    if (fragment->maxp1 <= filled) continue;  // contains nothing new
     const auto* payload = NN_RMSG_PAYLOADOFF(fragment->rmsg, NN_RDATA_PAYLOAD_OFF(fragment));
     std::memcpy(sample->bytes.data() + filled, payload + (filled - fragment->min),
                 fragment->maxp1 - filled);
@@ -101,6 +106,7 @@ ddsi_serdata* from_network(const ddsi_sertype* type, ddsi_serdata_kind kind,
   return filled == size ? finish(std::move(sample)) : nullptr;
 }
 
+// The same for a sample in consecutive pieces of memory.
 ddsi_serdata* from_parts(const ddsi_sertype* type, ddsi_serdata_kind kind, ddsrt_msg_iovlen_t parts,
                          const ddsrt_iovec_t* part, std::size_t size) {
   if (size < kHeadBytes || size > UINT32_MAX) return nullptr;
@@ -114,7 +120,7 @@ ddsi_serdata* from_parts(const ddsi_sertype* type, ddsi_serdata_kind kind, ddsrt
   return finish(std::move(sample));
 }
 
-/// A sample of the key alone: for an instance whose writer went away.
+/// A sample with the key only, which the vendor needs when it disposes of an instance.
 std::unique_ptr<ByteSample> key_sample(const ddsi_sertype* type, std::uint32_t key) {
   const std::size_t size = kHeadBytes + (as_ours(type).keyed ? kKeyBytes : 0);
   auto sample = make_sample(type, SDK_KEY, size);
@@ -130,6 +136,7 @@ ddsi_serdata* from_keyhash(const ddsi_sertype* type, const ddsi_keyhash* hash) {
   return &key_sample(type, key).release()->base;
 }
 
+// Makes a sample of what dds_write() was called with: a pointer to Bytes.
 ddsi_serdata* from_sample(const ddsi_sertype* type, ddsi_serdata_kind kind, const void* written) {
   const Bytes bytes = *static_cast<const Bytes*>(written);
   if (bytes.size() < kHeadBytes || bytes.size() > UINT32_MAX) return nullptr;
@@ -142,6 +149,7 @@ void to_network(const ddsi_serdata* sample, std::size_t offset, std::size_t size
   std::memcpy(out, as_ours(sample).bytes.data() + offset, size);
 }
 
+// Lets the vendor send the bytes without a copy; the reference keeps them until give_back().
 ddsi_serdata* lend(const ddsi_serdata* sample, std::size_t offset, std::size_t size,
                    ddsrt_iovec_t* lent) {
   lent->iov_base = const_cast<std::byte*>(as_ours(sample).bytes.data() + offset);
@@ -150,12 +158,13 @@ ddsi_serdata* lend(const ddsi_serdata* sample, std::size_t offset, std::size_t s
 }
 void give_back(ddsi_serdata* sample, const ddsrt_iovec_t*) { ddsi_serdata_unref(sample); }
 
-// Nobody takes samples otherwise than by dds_takecdr().
+// Samples are taken by dds_takecdr() only, which needs no conversion.
 bool to_sample(const ddsi_serdata*, void*, void**, void*) { return false; }
 bool untyped_to_sample(const ddsi_sertype*, const ddsi_serdata*, void*, void**, void*) {
   return false;
 }
 
+// The vendor's map from keys to instances stores samples without a type.
 ddsi_serdata* to_untyped(const ddsi_serdata* sample) {
   auto untyped = key_sample(sample->type, as_ours(sample).key);
   untyped->base.type = nullptr;
@@ -168,6 +177,7 @@ std::size_t print(const ddsi_sertype*, const ddsi_serdata* sample, char* out, st
   return static_cast<std::size_t>(std::snprintf(out, size, "%u bytes", as_ours(sample).size));
 }
 
+// The key hash of RTPS: the big-endian key, zero-padded to 16 bytes, or its MD5 if forced.
 void get_keyhash(const ddsi_serdata* sample, ddsi_keyhash* hash, bool force_md5) {
   std::memset(hash->value, 0, sizeof hash->value);
   if (!as_ours(sample).keyed) return;
@@ -206,10 +216,11 @@ void free_type(ddsi_sertype* type) {
   ddsi_sertype_fini(type);
   delete reinterpret_cast<ByteType*>(type);
 }
+// Samples have no memory of the application, so these three have nothing to do.
 void zero_samples(const ddsi_sertype*, void*, std::size_t) {}
 void realloc_samples(void**, const ddsi_sertype*, void*, std::size_t, std::size_t) {}
 void free_samples(const ddsi_sertype*, void**, std::size_t, dds_free_op_t) {}
-bool same_type(const ddsi_sertype*, const ddsi_sertype*) { return true; }  // the names are
+bool same_type(const ddsi_sertype*, const ddsi_sertype*) { return true; }  // names are equal
 std::uint32_t hash_of(const ddsi_sertype*) { return 0; }
 
 const ddsi_sertype_ops kTypeOps = [] {
@@ -226,6 +237,7 @@ const ddsi_sertype_ops kTypeOps = [] {
 
 }  // namespace
 
+// XCDR1 only: our encoder writes nothing else.
 ddsi_sertype* make_byte_type(const std::string& name, bool keyed) {
   auto type = std::make_unique<ByteType>();
   ddsi_sertype_init_flags(&type->base, name.c_str(), &kTypeOps, &kSampleOps,

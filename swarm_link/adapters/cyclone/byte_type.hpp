@@ -13,13 +13,13 @@ struct ddsi_sertype;
 /// (ddsi_sertype, ddsi_serdata): it neither encodes nor decodes, and knows no IDL.
 namespace swarm::link::cyclone {
 
-/// For dds_create_topic_sertype(), which takes it over when it succeeds. Write to such a topic with
-/// dds_write() and a Bytes, take from it with dds_takecdr() and bytes_of(). `keyed`: by the first
-/// member, an unsigned long.
+/// Makes a type for dds_create_topic_sertype(), which takes ownership of it when it succeeds. Write
+/// to such a topic with dds_write() and a Bytes, take from it with dds_takecdr() and bytes_of().
+/// `keyed`: the first member, an unsigned long, is the key.
 using Bytes = std::span<const std::byte>;
 ddsi_sertype* make_byte_type(const std::string& name, bool keyed);
 
-/// As long as the sample lives.
+/// CDR of a sample, with its encapsulation. The view is valid as long as the sample.
 Bytes bytes_of(const ddsi_serdata& sample);
 
 }  // namespace swarm::link::cyclone

@@ -19,9 +19,10 @@ namespace swarm::link {
 namespace cyclone {
 namespace {
 
-// By default Cyclone does not use multicast on the loopback interface and counts participants up to
-// 10: the eleventh process would fail. Without an index there is no such limit. Who knows a few
-// peers says often that it is there, since that is how it finds one that was restarted.
+// By default Cyclone does not use multicast on the loopback interface and numbers participants up
+// to 10 only, so the eleventh process would fail; without an index there is no such limit. A
+// participant with static peers announces itself often (every 0.8 s), because only so it discovers
+// a peer that was restarted.
 std::string config_of(const CycloneOptions& options) {
   std::string discovery =
       fmt::format("<ParticipantIndex>{}</ParticipantIndex>",
@@ -41,6 +42,7 @@ std::string config_of(const CycloneOptions& options) {
       options.interface, options.peer_ports.empty(), discovery);
 }
 
+// Longest time a reliable write may block when its history is full.
 constexpr dds_duration_t kMaxBlocking = DDS_MSECS(100);
 
 /// Deletes an entity, and with it all that belongs to it.
@@ -66,7 +68,8 @@ struct QosDeleter {
 };
 using QosPtr = std::unique_ptr<dds_qos_t, QosDeleter>;
 
-/// A domain is configured once in a process, by whoever needs it first.
+/// Cyclone configures a domain once per process: the first participant determines the
+/// configuration, the last one deletes it.
 std::shared_ptr<Entity> domain_of(const CycloneOptions& options) {
   static std::mutex mutex;
   static std::map<std::uint32_t, std::weak_ptr<Entity>> domains;
@@ -80,6 +83,8 @@ std::shared_ptr<Entity> domain_of(const CycloneOptions& options) {
   return domain;
 }
 
+// Translates our QoS. The durability service holds as many samples as the history, so that late
+// readers of a transient-local topic receive all of them.
 QosPtr translate(const Qos& qos, std::uint32_t ownership_strength) {
   QosPtr out(dds_create_qos());
   dds_qset_reliability(out.get(),
@@ -115,7 +120,7 @@ class CycloneWriter final : public RawWriter {
   }
 
  private:
-  Entity topic_;  // outlives the writer: members go in reverse order
+  Entity topic_;  // declared first: destroyed after the writer
   Entity writer_;
 };
 
@@ -124,6 +129,8 @@ class CycloneReader final : public RawReader {
   CycloneReader(Entity topic, Entity reader)
       : topic_(std::move(topic)), reader_(std::move(reader)) {}
 
+  // Takes samples in batches with dds_takecdr(), which hands over their bytes without decoding.
+  // Each sample must be released.
   std::size_t take(const Sink& sink) override {
     constexpr std::size_t kAtOnce = 64;
     std::array<ddsi_serdata*, kAtOnce> samples;
@@ -134,7 +141,7 @@ class CycloneReader final : public RawReader {
           dds_takecdr(reader_.get(), samples.data(), kAtOnce, infos.data(), DDS_ANY_STATE);
       if (came <= 0) return taken;
       for (std::size_t i = 0; i < static_cast<std::size_t>(came); ++i) {
-        if (infos[i].valid_data) {  // else a writer went away
+        if (infos[i].valid_data) {  // else a notice that a writer has left
           sink({.bytes = bytes_of(*samples[i]), .published_utc_ns = infos[i].source_timestamp});
           ++taken;
         }
@@ -179,15 +186,15 @@ class CycloneParticipant final : public Participant {
     return std::make_unique<CycloneReader>(std::move(*made_topic), std::move(made));
   }
 
-  void receive() override {}  // the vendor's threads do
+  void receive() override {}  // the vendor's threads receive
 
-  Result<void> self_check() const override { return {}; }  // nothing fails in silence here
+  Result<void> self_check() const override { return {}; }  // creation reports failures
 
  private:
   Result<Entity> topic(const RawTopic& t) const {
     ddsi_sertype* type = make_byte_type(t.type, t.keyed);
-    // Without QoS: what its readers and writers ask for counts, and a topic must not be made twice
-    // with different ones.
+    // Without QoS: endpoints carry their own, and creating a topic a second time with a different
+    // QoS would fail.
     Entity made(dds_create_topic_sertype(participant_.get(), t.name.c_str(), &type, nullptr,
                                          nullptr, nullptr));
     if (made.get() >= 0) return made;

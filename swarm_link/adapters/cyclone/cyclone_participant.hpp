@@ -11,24 +11,29 @@
 #include "swarmflow/core/result.hpp"
 #include "swarm_link/port.hpp"
 
-/// The Cyclone DDS back. No Cyclone header is needed to use it.
+/// The Cyclone DDS adapter. No Cyclone header is needed to use it.
 namespace swarm::link {
 
+/// Settings of one Cyclone DDS participant.
 struct CycloneOptions {
-  std::string name;  ///< participant name, seen in DDS tools
-  std::uint32_t domain = 0;
+  std::string name;                      ///< participant name, seen in DDS tools
+  std::uint32_t domain = 0;              ///< DDS domain
   std::uint32_t ownership_strength = 0;  ///< of exclusive writers
-  /// Ports of a host where others listen for announcements. It announces itself there and nowhere
-  /// else, so that it learns of them alone; empty: to all, by multicast.
+  /// Announcement ports of the static peers on `peer_host`. The participant announces itself to
+  /// these ports only, so it discovers these peers only. Empty: it announces itself by multicast to
+  /// all.
   std::vector<std::uint16_t> peer_ports{};
-  std::string peer_host = "127.0.0.1";
-  /// Decides the port it listens at for announcements, as announcement_port() tells; empty: any.
+  std::string peer_host = "127.0.0.1";  ///< address of the static peers
+  /// Decides at which port the participant receives announcements: announcement_port(). Empty: the
+  /// kernel chooses a free port.
   std::optional<std::uint32_t> index{};
-  std::string interface = "127.0.0.1";  ///< address of the interface it speaks on
+  std::string interface = "127.0.0.1";  ///< address of the interface it sends and receives on
 };
 
-/// Joins a domain. All participants of a process in a domain must have the same index, peers and
-/// interface. Cyclone's own threads receive; take() hands over what they have.
+/// Joins a domain. All participants of a process in one domain must have the same index, peers and
+/// interface, because Cyclone configures a domain once per process. Cyclone's own threads receive;
+/// take() hands over the samples they have stored. Fails when the interface or the domain is not
+/// usable.
 Result<std::unique_ptr<Participant>> make_cyclone_participant(const CycloneOptions& options);
 
 }  // namespace swarm::link

@@ -12,7 +12,7 @@
 extern "C" long syscall(long number, ...) noexcept {
   static const auto real = reinterpret_cast<long (*)(long, ...)>(::dlsym(RTLD_NEXT, "syscall"));
   if (number == SYS_gettid) {
-    // A child of fork() would inherit its parent's answer; ours only call exec.
+    // A child after fork() would get its parent's cached id; our children only call exec.
     thread_local const long id = real(SYS_gettid);
     return id;
   }

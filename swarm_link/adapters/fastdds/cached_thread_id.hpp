@@ -5,10 +5,10 @@
 namespace swarm::link::fastdds {
 
 /// Makes gettid() cheap for the vendor's library. Debian builds libfastrtps with assertions, and
-/// every step of its discovery readers asks the kernel for the thread's id to assert a lock: a
-/// third of the CPU of 120 agents. The source file puts a syscall() before libc's that answers this
-/// one question from a thread-local variable and passes everything else on. The call itself does
-/// nothing; it makes the linker take the file.
+/// its discovery readers call gettid() at each step to assert that a lock is held: a third of the
+/// CPU of 120 agents. The source file defines a syscall() that takes precedence over the one of
+/// libc: it answers gettid from a thread-local variable and forwards every other call. This
+/// function does nothing at run time; calling it makes the linker include that file.
 void cache_thread_ids();
 
 }  // namespace swarm::link::fastdds

@@ -19,6 +19,7 @@ namespace {
 
 namespace dds = eprosima::fastdds::dds;
 
+// Owns the server's participant.
 class FastDdsDiscoveryServer final : public DiscoveryServer {
  public:
   FastDdsDiscoveryServer(dds::DomainParticipant* participant, std::uint16_t port)
@@ -33,7 +34,7 @@ class FastDdsDiscoveryServer final : public DiscoveryServer {
   std::uint16_t port_;
 };
 
-// A port nobody listened on a moment ago; 0 if the kernel has none.
+// A UDP port of the loopback interface that was free a moment ago; 0 if the kernel has none.
 std::uint16_t free_udp_port() {
   const int fd = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
   if (fd < 0) return 0;
@@ -47,6 +48,8 @@ std::uint16_t free_udp_port() {
   return ok ? ntohs(address.sin_port) : std::uint16_t{0};
 }
 
+// Starts a server at a port and checks that it really got this port, since clients derive the
+// server's GUID from it.
 Result<std::unique_ptr<DiscoveryServer>> start_at(std::uint32_t domain, std::uint16_t port) {
   using namespace fastdds;
   const auto ports = first_ports(domain, 0);
@@ -61,7 +64,7 @@ Result<std::unique_ptr<DiscoveryServer>> start_at(std::uint32_t domain, std::uin
                   fmt::format("DDS refused a discovery server at 127.0.0.1:{}", port));
     }
     auto server = std::make_unique<FastDdsDiscoveryServer>(participant, port);
-    if (!sockets->can_receive(port)) {  // the vendor would quietly listen elsewhere
+    if (!sockets->can_receive(port)) {  // the vendor would use another port without an error
       return fail(ErrorCode::kEnvironment,
                   fmt::format("discovery server: UDP port 127.0.0.1:{} is taken", port));
     }

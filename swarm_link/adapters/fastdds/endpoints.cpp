@@ -12,11 +12,13 @@ namespace swarm::link::fastdds {
 
 namespace dds = eprosima::fastdds::dds;
 
+// The endpoint goes before its topic: the vendor refuses to delete a topic in use.
 FastDdsWriter::~FastDdsWriter() {
   publisher_.delete_datawriter(writer_);
   topics_.release(topic_);
 }
 
+// The sample only views the bytes; serialize() copies them within the call.
 bool FastDdsWriter::write(std::span<const std::byte> bytes) {
   try {
     ByteSample sample{.bytes = bytes};
@@ -37,17 +39,18 @@ FastDdsReader::~FastDdsReader() {
   topics_.release(topic_);
 }
 
+// Takes one sample at a time into a buffer that is reused: no allocation once it has grown.
 std::size_t FastDdsReader::take(const Sink& sink) {
   std::size_t taken = 0;
   try {
     dds::SampleInfo info;
     while (reader_->take_next_sample(&sample_, &info) == ReturnCode_t::RETCODE_OK) {
-      if (!info.valid_data) continue;  // a writer went away
+      if (!info.valid_data) continue;  // a notice that a writer has left
       sink({.bytes = sample_.bytes, .published_utc_ns = info.source_timestamp.to_ns()});
       ++taken;
     }
   } catch (const std::exception&) {
-    return taken;  // what the vendor throws ends here; the next call goes on
+    return taken;  // no exception leaves the adapter; the next call continues
   }
   return taken;
 }

@@ -16,24 +16,29 @@
 
 namespace swarm::link::fastdds {
 
+/// A data writer of Fast DDS. Exceptions of the vendor do not leave it. \pre publisher and registry
+/// outlive it
 class FastDdsWriter final : public RawWriter {
  public:
   FastDdsWriter(eprosima::fastdds::dds::Publisher& publisher,
                 eprosima::fastdds::dds::DataWriter* writer, TopicRegistry& topics,
                 std::string topic)
       : publisher_(publisher), writer_(writer), topics_(topics), topic_(std::move(topic)) {}
+  /// Deletes the vendor's writer, then releases the topic.
   ~FastDdsWriter() override;
+  /// See RawWriter. Large samples are only queued here, see writer_qos().
   bool write(std::span<const std::byte> bytes) override;
   int matched() const override;
 
  private:
   eprosima::fastdds::dds::Publisher& publisher_;
-  eprosima::fastdds::dds::DataWriter* writer_;
+  eprosima::fastdds::dds::DataWriter* writer_;  ///< owned; deleted through its publisher
   TopicRegistry& topics_;
   std::string topic_;
 };
 
-/// A reader's hold on the multicast group it listens to.
+/// Membership of one reader in the multicast group it receives from, for as long as this object
+/// exists. The participant's socket leaves the group with its last member.
 class GroupMembership {
  public:
   GroupMembership(std::shared_ptr<ReceiveSockets> sockets, const ReceiveSockets::Locator& group)
@@ -43,6 +48,7 @@ class GroupMembership {
   }
   GroupMembership(const GroupMembership&) = delete;
   GroupMembership& operator=(const GroupMembership&) = delete;
+  /// False when the kernel refused the group: then this reader receives nothing.
   bool joined() const { return joined_; }
 
  private:
@@ -51,6 +57,7 @@ class GroupMembership {
   bool joined_;
 };
 
+/// A data reader of Fast DDS, polled by its owner. \pre subscriber and registry outlive it
 class FastDdsReader final : public RawReader {
  public:
   FastDdsReader(eprosima::fastdds::dds::Subscriber& subscriber,
@@ -61,17 +68,18 @@ class FastDdsReader final : public RawReader {
         topics_(topics),
         topic_(std::move(topic)),
         group_(std::move(group)) {}
+  /// Deletes the vendor's reader, then releases the topic; the group is left last.
   ~FastDdsReader() override;
   std::size_t take(const Sink& sink) override;
   int matched() const override;
 
  private:
   eprosima::fastdds::dds::Subscriber& subscriber_;
-  eprosima::fastdds::dds::DataReader* reader_;
+  eprosima::fastdds::dds::DataReader* reader_;  ///< owned; deleted through its subscriber
   TopicRegistry& topics_;
   std::string topic_;
-  std::unique_ptr<GroupMembership> group_;  // null: receives at the participant's own address
-  ByteSample sample_;                       // kept for its memory
+  std::unique_ptr<GroupMembership> group_;  // null: unicast, at the participant's address
+  ByteSample sample_;                       // reused, so that take() does not allocate
 };
 
 }  // namespace swarm::link::fastdds

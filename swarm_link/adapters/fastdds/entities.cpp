@@ -14,6 +14,8 @@ namespace swarm::link::fastdds {
 
 namespace dds = eprosima::fastdds::dds;
 
+// Creates the sockets, then the participant over them, then publisher and subscriber. Discovery
+// servers other than on loopback are refused, since such a server is bound to it.
 Result<std::unique_ptr<Entities>> Entities::make(const FastDdsOptions& options) {
   const auto ports = first_ports(options.domain, options.index);
   if (!ports) return tl::unexpected(ports.error());
@@ -27,8 +29,9 @@ Result<std::unique_ptr<Entities>> Entities::make(const FastDdsOptions& options) 
     auto sockets = std::make_shared<ReceiveSockets>(ports->data, options.receive_at_tick,
                                                     options.receive_buffer_bytes, options.interface,
                                                     options.faults);
-    // The vendor announces a participant before it hands it what its sockets receive: a hub that
-    // answers at once would go unheard, and does not repeat itself.
+    // The vendor announces a participant before it delivers what its sockets receive. A peer that
+    // answers at once would not be received and does not repeat its answer; so announcements are
+    // discarded until the participant is complete.
     sockets->set_silent(options.static_peers.has_value());
     auto* participant = dds::DomainParticipantFactory::get_instance()->create_participant(
         options.domain, client_qos(options, *ports, sockets), nullptr, dds::StatusMask::none());
@@ -62,6 +65,7 @@ Entities::Entities(FastDdsOptions options, Ports ports, std::shared_ptr<ReceiveS
       subscriber_(participant->create_subscriber(dds::SUBSCRIBER_QOS_DEFAULT)),
       topics_(*participant) {}
 
+// The vendor deletes a participant only after everything it contains.
 Entities::~Entities() {
   participant_->delete_contained_entities();
   dds::DomainParticipantFactory::get_instance()->delete_participant(participant_);
@@ -69,6 +73,7 @@ Entities::~Entities() {
 
 void Entities::register_type(const dds::TypeSupport& type) { participant_->register_type(type); }
 
+// On failure the topic is released again, so that it does not stay registered without a user.
 Result<dds::DataWriter*> Entities::make_writer(const std::string& topic, const std::string& type,
                                                const Qos& qos) {
   const auto vendor_topic = topics_.acquire(topic, type);
@@ -93,14 +98,18 @@ Result<dds::DataReader*> Entities::make_reader(
   return fail(ErrorCode::kEnvironment, fmt::format("DDS refused a reader of '{}'", topic));
 }
 
+// Otherwise the vendor's threads receive.
 void Entities::receive() {
   if (options_.receive_at_tick) sockets_->drain();
 }
 
+// The vendor reports none of these failures: a participant without a free port simply receives
+// nothing. Checked here: a data and a discovery port, the known port of a relay participant, and
+// the size of the receive buffers that the kernel grants.
 Result<void> Entities::self_check() const {
   if (!sockets_->can_receive_data() || !sockets_->can_receive_metatraffic()) {
     return fail(ErrorCode::kEnvironment,
-                fmt::format("participant '{}' is deaf: none of {} UDP ports from {}:{} on "
+                fmt::format("participant '{}' cannot receive: none of {} UDP ports from {}:{} on "
                             "(domain {}, index {}) was free for its {}; end old processes, use "
                             "another domain, or give the address of an interface",
                             options_.name, options_.port_tries + 1, options_.interface,
@@ -110,7 +119,7 @@ Result<void> Entities::self_check() const {
   }
   if (options_.static_peers && options_.static_peers->is_relay && !sockets_->can_receive(ports_.metatraffic)) {
     return fail(ErrorCode::kEnvironment,
-                fmt::format("hub '{}': UDP port {}:{} (domain {}, index {}) is taken; end "
+                fmt::format("relay '{}': UDP port {}:{} (domain {}, index {}) is taken; end "
                             "old processes or use another domain",
                             options_.name, options_.interface, ports_.metatraffic, options_.domain,
                             options_.index));

@@ -11,9 +11,11 @@ namespace rtps = eprosima::fastrtps::rtps;
 
 namespace {
 
-// The vendor's default of 10 instances would drop the eleventh robot's status.
+// The vendor's default is 10 instances: statuses of an eleventh group of robots would be dropped.
 constexpr int kMaxInstances = 16'384;
 
+// The part of the QoS that writers and readers have in common. Data-sharing is off, because every
+// sample is to take the same path: the network.
 template <class VendorQos>
 void translate(const Qos& qos, VendorQos& out) {
   out.reliability().kind = qos.reliability == Reliability::kReliable
@@ -30,13 +32,15 @@ void translate(const Qos& qos, VendorQos& out) {
   out.resource_limits().allocated_samples = 1;
   out.ownership().kind = qos.ownership == Ownership::kExclusive ? dds::EXCLUSIVE_OWNERSHIP_QOS
                                                                 : dds::SHARED_OWNERSHIP_QOS;
-  // Buffers as large as the samples that come, not as the largest that could.
+  // Buffers grow to the size of actual samples instead of the largest possible one.
   out.endpoint().history_memory_policy = rtps::DYNAMIC_REUSABLE_MEMORY_MODE;
   out.data_sharing().off();  // no shared memory
 }
 
 }  // namespace
 
+// Large samples are sent asynchronously: a thread of the vendor sends their fragments. The
+// heartbeat period bounds how long a reader does not notice that the last sample was lost.
 dds::DataWriterQos writer_qos(const Qos& qos, std::uint32_t ownership_strength) {
   dds::DataWriterQos out;
   translate(qos, out);
@@ -47,6 +51,7 @@ dds::DataWriterQos writer_qos(const Qos& qos, std::uint32_t ownership_strength) 
   return out;
 }
 
+// Hashes the topic's name into a group of the domain; all participants compute the same one.
 rtps::Locator_t group_of(std::uint32_t domain, const std::string& topic) {
   std::uint32_t hash = 2'166'136'261U;  // FNV-1a
   for (const char c : topic) hash = (hash ^ static_cast<unsigned char>(c)) * 16'777'619U;

@@ -13,14 +13,15 @@
 
 namespace swarm::link::fastdds {
 
-/// Our QoS in the vendor's words: the one place where they are translated.
+/// Translates our QoS to Fast DDS; no other file does. `ownership_strength` has an effect on
+/// writers of exclusive topics only.
 eprosima::fastdds::dds::DataWriterQos writer_qos(const Qos& qos, std::uint32_t ownership_strength);
 
-/// The multicast group that a topic's readers listen to. Topics may share one: a reader hears only
-/// the writers it is matched with.
+/// The multicast group of a topic, by a hash of its name. Topics may share a group: each reader
+/// accepts only samples of the writers it is matched with.
 eprosima::fastrtps::rtps::Locator_t group_of(std::uint32_t domain, const std::string& topic);
 
-/// `group`: where the reader listens instead of at its participant's own address.
+/// `group`: the reader receives from this group instead of its participant's own address.
 eprosima::fastdds::dds::DataReaderQos reader_qos(
     const Qos& qos, const std::optional<eprosima::fastrtps::rtps::Locator_t>& group = {});
 

@@ -19,7 +19,7 @@ namespace swarm::link {
 namespace fastdds {
 namespace {
 
-/// What the vendor throws ends here.
+/// Converts exceptions of the vendor to errors.
 template <class Make>
 auto guarded(const char* kind, const std::string& topic, Make make) -> decltype(make()) {
   try {
@@ -29,6 +29,7 @@ auto guarded(const char* kind, const std::string& topic, Make make) -> decltype(
   }
 }
 
+// The adapter's implementation of Participant.
 class FastDdsParticipant final : public Participant {
  public:
   explicit FastDdsParticipant(std::unique_ptr<Entities> entities)
@@ -47,6 +48,7 @@ class FastDdsParticipant final : public Participant {
   Result<RawReaderPtr> make_reader(const RawTopic& topic) override {
     return guarded("reader", topic.name, [&]() -> Result<RawReaderPtr> {
       register_type(topic);
+      // A topic with many readers is received by multicast: one datagram reaches all of them.
       std::optional<eprosima::fastrtps::rtps::Locator_t> group;
       if (topic.qos.many_readers && multicast_) group = group_of(entities_->options().domain, topic.name);
       const auto made = entities_->make_reader(topic.name, topic.type, topic.qos, group);
@@ -69,13 +71,14 @@ class FastDdsParticipant final : public Participant {
   Result<void> self_check() const override { return entities_->self_check(); }
 
  private:
+  // The vendor accepts a type only once per participant.
   void register_type(const RawTopic& topic) {
     if (!types_.insert(topic.type).second) return;
     entities_->register_type(eprosima::fastdds::dds::TypeSupport(new RawType(topic)));
   }
 
   std::unique_ptr<Entities> entities_;
-  std::set<std::string> types_;  // that are registered
+  std::set<std::string> types_;  // registered so far
   bool multicast_ = entities_->options().receive_at_tick &&
                     entities_->options().cells_by_multicast &&
                     carries_multicast(entities_->options().interface);  // else by unicast

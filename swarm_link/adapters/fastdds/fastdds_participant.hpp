@@ -12,45 +12,48 @@
 #include "swarm_link/port.hpp"
 #include "swarmflow/core/result.hpp"
 
-/// The Fast DDS back. This header is vendor-free; the vendor's headers stay inside this folder.
+/// The Fast DDS adapter. This header includes no vendor header; those stay in this folder.
 namespace swarm::link {
 
-/// Where a run's discovery server listens (loopback unless told otherwise).
+/// Address of the discovery server of a run; on the loopback interface unless set otherwise.
 struct DiscoveryAddress {
   std::string host = "127.0.0.1";
   std::uint16_t port = 0;
 };
 
-/// Discovery without a server: a participant announces itself to a few others, who answer, and to
-/// nobody else.
+/// Discovery without a server: a participant announces itself to a few listed peers, which answer,
+/// and to no other participant. So the cost of discovery does not grow with the square of the
+/// swarm.
 struct StaticPeers {
-  bool is_relay = false;  ///< others know its port: it listens at that of its index, or is of no use
-  std::vector<std::uint32_t> peers{};  ///< indices of the hubs to announce itself to
-  std::string host = "127.0.0.1";      ///< where those are
+  bool is_relay = false;               ///< peers know its port: it must get the port of its index
+  std::vector<std::uint32_t> peers{};  ///< indices of the relay participants it announces itself to
+  std::string host = "127.0.0.1";      ///< address of those peers
 };
 
+/// Settings of one Fast DDS participant.
 struct FastDdsOptions {
-  std::string name;  ///< participant name, seen in DDS tools
-  std::uint32_t domain = 0;
-  std::uint32_t index = 0;       ///< unique per domain; decides the first ports tried
-  DiscoveryAddress discovery{};  ///< the server this participant is a client of, unless in a …
-  std::optional<StaticPeers> static_peers{};
-  std::string interface = "127.0.0.1";  ///< address of the interface it speaks on
-  /// Of exclusive writers. A stand-by planner that waits in the background has less; one that
-  /// replaces another must have more: a killed writer keeps its topic until its lease ends, and an
-  /// equal or weaker one goes unheard that long (measured with a lease of 15 s: 14 s, against 0.9
-  /// s).
+  std::string name;                           ///< participant name, seen in DDS tools
+  std::uint32_t domain = 0;                   ///< DDS domain
+  std::uint32_t index = 0;                    ///< unique per domain; decides the first ports tried
+  DiscoveryAddress discovery{};               ///< its server, unless it has static peers
+  std::optional<StaticPeers> static_peers{};  ///< set: no discovery server is used
+  std::string interface = "127.0.0.1";        ///< address of the interface it sends and receives on
+  /// Strength of exclusive writers. A planner on stand-by has a lower one. A planner that replaces
+  /// another must have a higher one: a killed writer owns its topic until its lease ends, and until
+  /// then samples of an equal or weaker writer are discarded (measured with a lease of 15 s: 14 s,
+  /// against 0.9 s with a higher strength).
   std::uint32_t ownership_strength = 0;
-  /// Readers of cells hear by a multicast group each, where the interface carries it; who joins a
-  /// star without multicast cannot speak to such.
+  /// Readers of cell topics receive from one multicast group each, if the interface carries
+  /// multicast. A participant with static peers that has no multicast cannot send to such readers.
   bool cells_by_multicast = true;
   bool receive_at_tick = true;  ///< no receive thread on data ports; see Participant::receive
-  int receive_buffer_bytes = 4 << 20;
-  ReceptionFaults faults{};         ///< of data that is received at the tick
-  std::uint32_t port_tries = 4000;  ///< occupied ports skipped before giving up (self_check tells)
+  int receive_buffer_bytes = 4 << 20;  ///< of each socket, asked of the kernel
+  ReceptionFaults faults{};            ///< simulated loss and delay of received data
+  std::uint32_t port_tries = 4000;     ///< occupied ports to skip; then self_check() fails
 };
 
-/// Hosts the discovery server of a run; lives in the launcher's process. Bound to loopback.
+/// The discovery server of a run, in the launcher's process, bound to loopback. It ends when the
+/// object is destroyed.
 class DiscoveryServer {
  public:
   virtual ~DiscoveryServer() = default;
@@ -61,7 +64,9 @@ class DiscoveryServer {
 Result<std::unique_ptr<DiscoveryServer>> make_discovery_server(std::uint32_t domain,
                                                                std::uint16_t port);
 
-/// Joins a run, by its discovery server or in a star; UDP on one interface, no shared memory.
+/// Joins a run through its discovery server or with static peers. Uses UDP on one interface and no
+/// shared memory. With `receive_at_tick` no thread of the vendor delivers data: samples arrive when
+/// the owner calls receive().
 Result<std::unique_ptr<Participant>> make_fastdds_participant(const FastDdsOptions& options);
 
 }  // namespace swarm::link

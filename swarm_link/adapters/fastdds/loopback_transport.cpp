@@ -33,6 +33,7 @@ rtps::Locator to_locator(const sockaddr_in& address) {
   return locator;
 }
 
+// Without the white list the vendor would open its sockets on all interfaces.
 std::shared_ptr<rtps::UDPv4TransportDescriptor> udp_on(const std::string& interface,
                                                        int buffer_bytes) {
   auto udp = std::make_shared<rtps::UDPv4TransportDescriptor>();
@@ -44,12 +45,16 @@ std::shared_ptr<rtps::UDPv4TransportDescriptor> udp_on(const std::string& interf
 
 namespace {
 
+// Unicast locators are equal by port, because each socket is bound to the one interface; groups
+// also by address, because all groups of a domain share a port.
 bool same_channel(const rtps::Locator& a, const rtps::Locator& b) {
   const bool multicast = IPLocator::isMulticast(a);
   return a.port == b.port && multicast == IPLocator::isMulticast(b) &&
          (!multicast || to_address(a).sin_addr.s_addr == to_address(b).sin_addr.s_addr);
 }
 
+// Wraps the vendor's UDP transport. Receiving from data ports and groups goes to ReceiveSockets,
+// everything else to the vendor's transport.
 class LoopbackTransport final : public rtps::ChainingTransport {
  public:
   explicit LoopbackTransport(const LoopbackTransportDescriptor& descriptor)
@@ -65,7 +70,7 @@ class LoopbackTransport final : public rtps::ChainingTransport {
   bool OpenInputChannel(const rtps::Locator& locator, rtps::TransportReceiverInterface* receiver,
                         std::uint32_t max_message_size) override {
     if (sockets().owns(locator)) return sockets().open(locator, receiver);
-    // Straight to the low level: nothing is to be done to the bytes under way.
+    // Directly to the lower transport: its datagrams need no processing by this one.
     const bool opened = low_level_transport_->OpenInputChannel(locator, receiver, max_message_size);
     if (opened) sockets().note_opened(locator.port);
     return opened;
@@ -76,6 +81,7 @@ class LoopbackTransport final : public rtps::ChainingTransport {
     return low_level_transport_->CloseInputChannel(locator);
   }
 
+  // Reports success while silent, so that the vendor does not log errors.
   bool send(eprosima::fastrtps::rtps::SenderResource* socket, const octet* bytes,
             std::uint32_t size, eprosima::fastrtps::rtps::LocatorsIterator* begin,
             eprosima::fastrtps::rtps::LocatorsIterator* end,
@@ -84,7 +90,7 @@ class LoopbackTransport final : public rtps::ChainingTransport {
     return socket->send(bytes, size, begin, end, deadline);
   }
 
-  // Never called: that direction is not wrapped (see OpenInputChannel).
+  // Never called, because received datagrams do not pass this transport (see OpenInputChannel).
   void receive(rtps::TransportReceiverInterface*, const octet*, std::uint32_t, const rtps::Locator&,
                const rtps::Locator&) override {}
 
@@ -109,6 +115,7 @@ ReceiveSockets::~ReceiveSockets() {
   for (const auto& socket : sockets_) ::close(socket.fd);
 }
 
+// The vendor adds 2 to a port that is taken, so parity distinguishes data from metatraffic ports.
 bool ReceiveSockets::is_data_port(std::uint32_t port) const {
   return first_data_port_ != 0 && port >= first_data_port_ && (port - first_data_port_) % 2 == 0;
 }
@@ -127,6 +134,7 @@ const ReceiveSockets::Socket* ReceiveSockets::find(const Locator& locator) const
   return const_cast<ReceiveSockets*>(this)->find(locator);
 }
 
+// A unicast locator may carry any address of the host: the socket is bound to our interface.
 bool ReceiveSockets::open(const Locator& locator, Receiver* receiver) {
   sockaddr_in address = to_address(locator);
   if (!is_multicast(address.sin_addr)) address.sin_addr = interface_;
@@ -147,6 +155,7 @@ bool ReceiveSockets::close(const Locator& locator) {
   return true;
 }
 
+// Readers of one group share its socket: only the first one joins in the kernel.
 bool ReceiveSockets::join(const Locator& group) {
   const std::lock_guard lock(mutex_);
   Socket* const socket = find(group);
@@ -175,6 +184,8 @@ void ReceiveSockets::note_opened(std::uint32_t port) {
   opened_.push_back(port);
 }
 
+// Runs in the owner's thread and calls the vendor's receive function for each datagram. The mutex
+// is held throughout, so no socket is closed while it is read.
 void ReceiveSockets::drain() {
   struct ToVendor final : DatagramSink {
     const Socket* socket = nullptr;
@@ -184,7 +195,7 @@ void ReceiveSockets::drain() {
                                          static_cast<std::uint32_t>(bytes.size()), socket->locator,
                                          to_locator(sender));
       } catch (const std::exception&) {
-        // The vendor choked on one datagram: as good as lost.
+        // The vendor threw on a malformed datagram: treated as lost.
       }
     }
   } to_vendor;

@@ -29,6 +29,8 @@ rtps::Locator_t locator(const std::string& address, std::uint16_t port) {
 
 rtps::Locator_t loopback(std::uint16_t port) { return locator(kLoopback, port); }
 
+// What clients and the server share. The lease is long, so that a participant that gets no CPU for
+// some seconds, while hundreds of processes start, is not taken for dead.
 dds::DomainParticipantQos common_qos(std::shared_ptr<ReceiveSockets> sockets,
                                      const std::string& interface, int buffer_bytes) {
   dds::DomainParticipantQos qos;
@@ -38,7 +40,7 @@ dds::DomainParticipantQos common_qos(std::shared_ptr<ReceiveSockets> sockets,
   qos.transport().listen_socket_buffer_size = static_cast<std::uint32_t>(buffer_bytes);
   qos.transport().send_socket_buffer_size = static_cast<std::uint32_t>(buffer_bytes);
 
-  // The vendor makes and zeroes a buffer of 64 KiB for every thread that might send one day.
+  // By default the vendor allocates and zeroes a buffer of 64 KiB for every thread that might send.
   qos.allocation().send_buffers.preallocated_number = 1;
   qos.allocation().send_buffers.dynamic = true;
 
@@ -51,12 +53,13 @@ dds::DomainParticipantQos common_qos(std::shared_ptr<ReceiveSockets> sockets,
   return qos;
 }
 
-/// Agents say often that they are there, since that is how they find a hub that was restarted: a
-/// planner within the two seconds in which nobody misses it.
+/// Static peers. Agents announce themselves every 0.8 s, because only so they discover a restarted
+/// planner within the two seconds in which robots tolerate its absence. Relay participants announce
+/// themselves less often: they answer announcements anyway.
 void announce_to(const StaticPeers& static_peers, std::uint32_t domain, rtps::BuiltinAttributes& builtin) {
   auto& discovery = builtin.discovery_config;
   discovery.discoveryProtocol = rtps::DiscoveryProtocol_t::SIMPLE;
-  discovery.initial_announcements = {5, {0, 50'000'000}};  // the first is held back
+  discovery.initial_announcements = {5, {0, 50'000'000}};  // the first is discarded
   discovery.leaseDuration_announcementperiod = static_peers.is_relay
                                                    ? eprosima::fastrtps::Duration_t{3, 0}
                                                    : eprosima::fastrtps::Duration_t{0, 800'000'000};
@@ -67,6 +70,7 @@ void announce_to(const StaticPeers& static_peers, std::uint32_t domain, rtps::Bu
 
 }  // namespace
 
+// Ports beyond 65535 do not exist; the limit leaves room for taken ports that are skipped.
 Result<Ports> first_ports(std::uint32_t domain, std::uint32_t index) {
   const std::uint64_t metatraffic = 7410 + 250ULL * domain + 2ULL * index;
   if (metatraffic > 65'000) {
@@ -79,6 +83,7 @@ Result<Ports> first_ports(std::uint32_t domain, std::uint32_t index) {
   return Ports{.metatraffic = port, .data = static_cast<std::uint16_t>(port + 1)};
 }
 
+// A fixed tag with domain and port: unique among the servers of a machine.
 rtps::GuidPrefix_t server_prefix(std::uint32_t domain, std::uint16_t port) {
   rtps::GuidPrefix_t prefix;
   const auto byte = [](std::uint32_t value) { return static_cast<rtps::octet>(value & 0xFFU); };
@@ -95,7 +100,7 @@ dds::DomainParticipantQos client_qos(const FastDdsOptions& options, Ports ports,
   auto qos = common_qos(std::move(sockets), options.interface, options.receive_buffer_bytes);
   qos.name(options.name.c_str());
   auto& wire = qos.wire_protocol();
-  // Explicit, so that the transport knows which port is data.
+  // Explicit locators, so that the transport knows which port carries data.
   wire.default_unicast_locator_list.push_back(locator(options.interface, ports.data));
   wire.builtin.metatrafficUnicastLocatorList.push_back(
       locator(options.interface, ports.metatraffic));
@@ -115,7 +120,7 @@ dds::DomainParticipantQos client_qos(const FastDdsOptions& options, Ports ports,
 dds::DomainParticipantQos server_qos(std::uint32_t domain, std::uint16_t port,
                                      Ports unused_data_ports,
                                      std::shared_ptr<ReceiveSockets> sockets) {
-  constexpr int kBufferBytes = 8 << 20;  // all clients talk to this one socket
+  constexpr int kBufferBytes = 8 << 20;  // all clients send to this one socket
   auto qos = common_qos(std::move(sockets), kLoopback, kBufferBytes);
   qos.name("swarm_discovery");
   auto& wire = qos.wire_protocol();

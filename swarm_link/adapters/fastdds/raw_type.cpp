@@ -11,11 +11,12 @@ RawType::RawType(const RawTopic& topic) {
   setName(topic.type.c_str());
   m_typeSize = static_cast<std::uint32_t>(topic.usual_bytes);
   m_isGetKeyDefined = topic.keyed;
-  // Types are compared by name; their descriptions would only make discovery heavier.
+  // Types are matched by name. Descriptions of types would only increase the discovery traffic.
   auto_fill_type_object(false);
   auto_fill_type_information(false);
 }
 
+// Writes the bytes as they are. The payload's own encapsulation field repeats the byte order.
 bool RawType::serialize(void* data, Payload* payload) {
   const auto bytes = static_cast<ByteSample*>(data)->bytes;
   if (bytes.size() < cdr::kEncapsulationBytes || bytes.size() > payload->max_size) return false;
@@ -25,6 +26,7 @@ bool RawType::serialize(void* data, Payload* payload) {
   return true;
 }
 
+// Copies the payload and never fails: the vendor would drop the sample without counting it.
 bool RawType::deserialize(Payload* payload, void* data) {
   const auto* bytes = reinterpret_cast<const std::byte*>(payload->data);
   auto& sample = *static_cast<ByteSample*>(data);
@@ -33,6 +35,7 @@ bool RawType::deserialize(Payload* payload, void* data) {
   return true;
 }
 
+// The vendor asks this for the size of the payload buffer that serialize() needs.
 std::function<std::uint32_t()> RawType::getSerializedSizeProvider(void* data) {
   return
       [data] { return static_cast<std::uint32_t>(static_cast<ByteSample*>(data)->bytes.size()); };
@@ -42,7 +45,7 @@ bool RawType::getKey(void* data, eprosima::fastrtps::rtps::InstanceHandle_t* han
   if (!m_isGetKeyDefined) return false;
   const auto bytes = static_cast<ByteSample*>(data)->bytes;
   if (bytes.size() < cdr::kEncapsulationBytes + sizeof(std::uint32_t)) return false;
-  // A key's serialization is big-endian, whatever the sample's.
+  // The key is serialized big-endian, independent of the byte order of the sample.
   const bool little = bytes[1] == std::byte{1};
   for (std::size_t i = 0; i < 16; ++i) {
     handle->value[i] =

@@ -10,6 +10,7 @@ namespace swarm::link::fastdds {
 
 namespace dds = eprosima::fastdds::dds;
 
+// The vendor fails when a topic is created twice in a participant: all endpoints share one.
 Result<dds::Topic*> TopicRegistry::acquire(const std::string& name, const std::string& type) {
   const auto [it, inserted] = entries_.try_emplace(name);
   auto& entry = it->second;

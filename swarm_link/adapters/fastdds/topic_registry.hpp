@@ -12,23 +12,26 @@
 
 namespace swarm::link::fastdds {
 
-/// The vendor's topics of one participant, shared by its endpoints and deleted with the last of
-/// them: cell topics come and go for hours.
+/// The vendor's topics of one participant, counted by their endpoints. The last endpoint deletes
+/// its topic, because cell topics come and go for hours. Not thread-safe.
 class TopicRegistry {
  public:
+  /// \pre the participant outlives the registry
   explicit TopicRegistry(eprosima::fastdds::dds::DomainParticipant& participant)
       : participant_(participant) {}
 
+  /// Creates the topic, or adds a user to it. Fails when it exists with another type.
   Result<eprosima::fastdds::dds::Topic*> acquire(const std::string& name, const std::string& type);
+  /// Removes a user. \pre acquired before
   void release(const std::string& name);
 
  private:
   struct Entry {
     eprosima::fastdds::dds::Topic* topic = nullptr;
-    int uses = 0;
+    int uses = 0;  ///< endpoints of it
   };
   eprosima::fastdds::dds::DomainParticipant& participant_;
-  std::map<std::string, Entry> entries_;
+  std::map<std::string, Entry> entries_;  ///< by name
 };
 
 }  // namespace swarm::link::fastdds

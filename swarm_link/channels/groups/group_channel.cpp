@@ -19,11 +19,14 @@ namespace swarm::link {
 
 namespace {
 
+// Hashes a cell into the 65536 groups of 239.255.0.0/16. The factor 359 is 2·179 + 1: cells that
+// are at most 181 columns and 179 rows apart get different values.
 sockaddr_in group_of(std::uint32_t domain, const Cell& cell) {
   return multicast_group(
       domain, static_cast<std::uint32_t>(cell.x) * 359U + static_cast<std::uint32_t>(cell.y));
 }
 
+// Random, so that a restarted process is another writer for RTPS tools.
 GuidPrefix random_prefix() {
   std::random_device device;
   GuidPrefix prefix{};
@@ -31,16 +34,16 @@ GuidPrefix random_prefix() {
   return prefix;
 }
 
-/// One socket per group: the kernel then finds a datagram's few listeners by its address (a socket
-/// of many groups makes it look at every listener of the machine), and its limit of 20 groups per
-/// socket never matters. Open files are the limit.
+/// One socket per group: the kernel then finds the few receivers of a datagram by its address.
+/// (With sockets of many groups it would check every receiver of the machine, and Linux limits a
+/// socket to 20 groups.) The number of open files is the limit.
 class GroupSocket {
  public:
   GroupSocket(const sockaddr_in& group, const in_addr& interface, int buffer_bytes)
       : fd_(open_receive_socket(group, buffer_bytes)),
         joined_(fd_ >= 0 && join_group(fd_, group.sin_addr, interface)) {}
   ~GroupSocket() {
-    if (fd_ >= 0) ::close(fd_);  // and with it the membership
+    if (fd_ >= 0) ::close(fd_);  // which also ends the membership
   }
   GroupSocket(GroupSocket&& other) noexcept
       : fd_(std::exchange(other.fd_, -1)), joined_(other.joined_) {}
@@ -75,6 +78,8 @@ class GroupChannel final : public StateChannel, private DatagramSink {
 
   bool can_send() const { return sender_ >= 0; }
 
+  // One datagram per batch. A datagram that the kernel refuses is lost, like any other: the next
+  // state follows a control period later.
   std::size_t publish(std::span<const RobotStateMessage> states) override {
     std::size_t sent = 0;
     for (const CellStatesMessage& batch : batches_.sort(states)) {
@@ -89,8 +94,10 @@ class GroupChannel final : public StateChannel, private DatagramSink {
     return sent;
   }
 
+  // Leaves groups by closing their sockets, then joins new ones. Both lists are sorted by group, so
+  // membership is looked up by binary search.
   void listen_around(std::span<const Vec2> positions_m) override {
-    groups_.clear();  // two cells may share one
+    groups_.clear();  // two cells may have the same group
     for (const Cell& cell : interest_.update(positions_m)) {
       groups_.push_back(group_of(options_.domain, cell).sin_addr.s_addr);
     }
@@ -106,7 +113,7 @@ class GroupChannel final : public StateChannel, private DatagramSink {
       sockaddr_in address = group_of(options_.domain, {});
       address.sin_addr.s_addr = group;
       GroupSocket socket(address, interface_, options_.receive_buffer_bytes);
-      if (socket.joined()) joined_.insert(at, {group, std::move(socket)});  // else again next time
+      if (socket.joined()) joined_.insert(at, {group, std::move(socket)});  // else next time
     }
   }
 
@@ -125,6 +132,7 @@ class GroupChannel final : public StateChannel, private DatagramSink {
     GroupSocket socket;
   };
 
+  // Decodes one datagram into the caller's vector; called by the drain during take().
   void datagram(std::span<std::byte> bytes, const sockaddr_in&) override {
     const auto payload = decode_rtps(bytes);
     if (payload && decode(*payload, taking_->emplace_back())) return;
@@ -141,7 +149,7 @@ class GroupChannel final : public StateChannel, private DatagramSink {
   int sender_;
   DatagramDrain drain_;
   std::vector<Joined> joined_;     // sorted by group
-  std::vector<in_addr_t> groups_;  // kept for its memory, as are these two
+  std::vector<in_addr_t> groups_;  // reused, as are the next two
   std::vector<std::byte> payload_;
   std::vector<std::byte> datagram_;
   std::vector<CellStatesMessage>* taking_ = nullptr;

@@ -13,8 +13,10 @@
 namespace swarm::link {
 namespace {
 
+// Holds the bursts of all robots of a machine, which publish within the same control period.
 constexpr int kBufferBytes = 8 << 20;
 
+// A socket bound to the groups' port without an address; see GroupTap.
 class SocketTap final : public GroupTap, private DatagramSink {
  public:
   explicit SocketTap(int fd) : fd_(fd) {}
@@ -43,6 +45,7 @@ class SocketTap final : public GroupTap, private DatagramSink {
   std::uint64_t undecodable() const override { return undecodable_; }
 
  private:
+  // Passes the payload to the raw sink or decodes it, depending on which take function is active.
   void datagram(std::span<std::byte> bytes, const sockaddr_in&) override {
     const auto payload = decode_rtps(bytes);
     if (payload && sink_ != nullptr) {
@@ -55,6 +58,7 @@ class SocketTap final : public GroupTap, private DatagramSink {
     ++undecodable_;
   }
 
+  // Waits until a datagram is there; false at the end of the timeout.
   bool wait(Duration timeout) const {
     pollfd waiting{.fd = fd_, .events = POLLIN, .revents = 0};
     const auto ms = std::chrono::duration_cast<std::chrono::milliseconds>(timeout).count();
@@ -78,8 +82,8 @@ Result<std::unique_ptr<GroupTap>> make_group_tap(std::uint32_t domain) {
   const int fd = open_receive_socket(anywhere, kBufferBytes, true);
   if (fd < 0) {
     return fail(ErrorCode::kEnvironment,
-                fmt::format("cannot listen at UDP port {} for the states of DDS domain {}; end who "
-                            "holds it, or use another domain",
+                fmt::format("cannot listen at UDP port {} for the states of DDS domain {}; end the "
+                            "process that uses it, or use another domain",
                             port, domain));
   }
   return std::make_unique<SocketTap>(fd);

@@ -15,23 +15,26 @@
 
 namespace swarm::link {
 
-/// Hears every state that any robot of a domain says by the `groups` channel, the moment it is
-/// said: for measuring. One socket, however many cells there are: the kernel hands it what is sent
-/// to any group that somebody on this machine has joined, and robots join their own.
+/// Receives every state that any robot of a domain publishes on the `groups` channel, for
+/// measuring. It uses one socket for all cells: the kernel delivers to it what is sent to any group
+/// that a process on this machine has joined, and robots join the groups around them. Not
+/// thread-safe.
 class GroupTap {
  public:
   virtual ~GroupTap() = default;
 
-  /// Waits up to `timeout` for something to come and appends it. Returns how many batches came.
+  /// Waits up to `timeout` for datagrams and appends their batches. Returns the number of batches.
   virtual std::size_t take(Duration timeout, std::vector<CellStatesMessage>& out) = 0;
 
-  /// The same for samples as they are, CDR with its encapsulation; they live as long as the call.
+  /// The same for encoded samples, CDR with its encapsulation. The bytes are valid during the call.
   using RawSink = std::function<void(std::span<const std::byte>)>;
   virtual std::size_t take_raw(Duration timeout, const RawSink& sink) = 0;
 
+  /// Datagrams that are not samples of the groups, since the start.
   virtual std::uint64_t undecodable() const = 0;
 };
 
+/// Fails when the UDP port of the domain is not available.
 Result<std::unique_ptr<GroupTap>> make_group_tap(std::uint32_t domain);
 
 }  // namespace swarm::link

@@ -8,6 +8,7 @@ namespace swarm::link {
 
 namespace {
 
+// Constants of the RTPS 2.3 message format.
 constexpr std::array<std::uint8_t, 4> kMagic{'R', 'T', 'P', 'S'};
 constexpr std::uint8_t kMajor = 2;
 constexpr std::uint8_t kMinor = 3;
@@ -19,7 +20,7 @@ constexpr std::uint8_t kData = 0x15;
 constexpr std::uint8_t kLittleEndian = 0x01;
 constexpr std::uint8_t kInlineQos = 0x02;
 constexpr std::uint8_t kHasData = 0x04;
-// "SWC", user-defined writer without key.
+// Entity id of our writers: "SWC" and the kind "user-defined writer without key".
 constexpr std::array<std::uint8_t, 4> kWriterId{0x53, 0x57, 0x43, 0x03};
 
 std::uint8_t byte_at(std::span<const std::byte> bytes, std::size_t at) {
@@ -32,7 +33,8 @@ bool equal(std::span<const std::byte> bytes, std::span<const std::uint8_t> expec
       [](std::uint8_t e, std::byte b) { return e == std::to_integer<std::uint8_t>(b); });
 }
 
-// The sample of a DATA submessage's body. Inline QoS is not ours: such a message is refused.
+// The sample in the body of a DATA submessage. Our writers send no inline QoS, so a submessage with
+// it is refused.
 std::optional<std::span<std::byte>> sample_of(std::span<std::byte> body, std::uint8_t flags) {
   if ((flags & kHasData) == 0 || (flags & kInlineQos) != 0) return std::nullopt;
   if (body.size() < kDataHeaderBytes) return std::nullopt;
@@ -42,6 +44,7 @@ std::optional<std::span<std::byte>> sample_of(std::span<std::byte> body, std::ui
 
 }  // namespace
 
+// Field by field in the order of the specification, little-endian.
 void encode_rtps(const GuidPrefix& writer, std::uint64_t sequence_number,
                  std::span<const std::byte> payload, std::vector<std::byte>& out) {
   out.clear();
@@ -53,11 +56,11 @@ void encode_rtps(const GuidPrefix& writer, std::uint64_t sequence_number,
     for (const unsigned shift : {0U, 8U, 16U, 24U}) put((value >> shift) & 0xFFU);
   };
   put_all(kMagic);
-  put_all(std::array<std::uint8_t, 4>{kMajor, kMinor, 0, 0});  // of no registered vendor
+  put_all(std::array<std::uint8_t, 4>{kMajor, kMinor, 0, 0});  // vendor id 0: unknown
   put_all(writer);
-  // Length 0: up to the end of the message, which may be longer than 16 bits can say.
+  // Length 0 means up to the end of the message, which may exceed the 16 bits of this field.
   put_all(std::array<std::uint8_t, 4>{kData, kLittleEndian | kHasData, 0, 0});
-  put_all(std::array<std::uint8_t, 4>{0, 0, 16, 0});  // no extra flags; QoS would come after 16
+  put_all(std::array<std::uint8_t, 4>{0, 0, 16, 0});  // no extra flags; 16 octets to the data
   put_all(std::array<std::uint8_t, 4>{0, 0, 0, 0});   // to any reader
   put_all(kWriterId);
   put32(static_cast<std::uint32_t>(sequence_number >> 32U));
@@ -65,6 +68,7 @@ void encode_rtps(const GuidPrefix& writer, std::uint64_t sequence_number,
   out.insert(out.end(), payload.begin(), payload.end());
 }
 
+// Walks over the submessages up to the first DATA. Each length is checked before it is used.
 std::optional<std::span<std::byte>> decode_rtps(std::span<std::byte> datagram) {
   if (datagram.size() < kHeaderBytes || !equal(datagram, kMagic)) return std::nullopt;
   if (byte_at(datagram, kMagic.size()) != kMajor) return std::nullopt;

@@ -9,22 +9,23 @@
 #include <span>
 #include <vector>
 
-/// One sample of a best-effort writer as an RTPS 2.3 message: header, one DATA submessage, the
-/// serialized sample. What any RTPS tool can read, in 44 bytes more than the sample.
+/// Encodes one sample of a best-effort writer as an RTPS 2.3 message: header, one DATA submessage,
+/// the serialized sample. Any RTPS tool can read it; it adds 44 bytes to the sample.
 ///
-/// Not the vendor's reader: that one drops what is older than the newest number it saw of a writer.
-/// With one socket per group samples arrive out of order, and a forged number would silence a robot
-/// for good; here every sample is handed on, and the edge judges it.
+/// The vendor's reader is not used, because it drops samples older than the newest sequence number
+/// it received from a writer. With one socket per group samples arrive out of order, and one forged
+/// number would make a robot unreceivable for good. Here every sample is passed on to the Gate.
 namespace swarm::link {
 
+/// Identifies a sending process in RTPS.
 using GuidPrefix = std::array<std::uint8_t, 12>;
 
-/// Writes a message into `out`, which keeps its memory. The payload begins with its encapsulation.
+/// Writes a message into `out` and reuses its memory. The payload begins with its encapsulation.
 void encode_rtps(const GuidPrefix& writer, std::uint64_t sequence_number,
                  std::span<const std::byte> payload, std::vector<std::byte>& out);
 
-/// The payload of the first DATA submessage of the groups' writers; nothing when the bytes are not
-/// a message, or not one of ours. Never reads beyond the bytes. O(submessages).
+/// The payload of the first DATA submessage if it comes from a writer of the groups; empty when the
+/// bytes are not an RTPS message or not one of ours. Never reads beyond the bytes. O(submessages).
 std::optional<std::span<std::byte>> decode_rtps(std::span<std::byte> datagram);
 
 }  // namespace swarm::link

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-// Samples from a peer that does not keep to the contract: refused or counted, never a crash, and
-// the next good sample is received.
+// Samples from a peer that violates the contract are refused or counted and never cause a crash,
+// and the next valid sample is received.
 #include <gtest/gtest.h>
 
 #include "swarm_link/gate/content_checks.hpp"
@@ -12,7 +12,7 @@ namespace swarm::link::conformance {
 namespace {
 
 struct HostilePeers : testing::Test {
-  // Sends until it arrives: as a message, which is returned, or as one more that did not decode.
+  // Sends until it arrives: as a message, which is returned, or as one more undecodable sample.
   template <class M, class Send>
   std::vector<M> provoke(const ReaderPtr<M>& reader, Send send) {
     const auto before = reader->undecodable();

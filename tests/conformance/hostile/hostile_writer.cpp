@@ -23,7 +23,7 @@ namespace swarm::link::conformance {
 namespace dds = eprosima::fastdds::dds;
 
 struct HostilePeer::Impl {
-  // One participant per kind of lie: a type name can be registered only once in each.
+  // One participant per kind of malformed sample: a type name can be registered only once in each.
   struct Line {
     dds::DomainParticipant* participant = nullptr;
     dds::DataWriter* writer = nullptr;

@@ -7,8 +7,8 @@
 
 #include "swarm_link/adapters/fastdds/fastdds_participant.hpp"
 
-/// A peer of another make: a plain participant of the vendor's, with types of its own under our
-/// type names. This header is vendor-free.
+/// A foreign peer: a plain participant of the vendor, with its own types under our type names. This
+/// header is vendor-free.
 namespace swarm::link::conformance {
 
 class HostilePeer {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-// Our bytes against those of the code that a vendor generates from the IDL.
+// Compares our bytes with those of the code that a vendor's generator makes of the IDL.
 #include <algorithm>
 
 #include <fastcdr/Cdr.h>

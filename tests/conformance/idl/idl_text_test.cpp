@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-// Every list of fields against the text of the IDL: names, types, order and bounds.
+// Compares every list of fields with the text of the IDL: names, types, order and bounds.
 #include "swarm_core/robot_log/idl_text.hpp"
 
 #include <map>
@@ -15,7 +15,7 @@
 namespace swarm::link::conformance {
 namespace {
 
-/// What `T` is in IDL.
+/// The name of type `T` in the IDL.
 template <class T>
 std::string idl_type() {
   if constexpr (std::is_enum_v<T>) return idl_type<std::underlying_type_t<T>>();

@@ -16,7 +16,7 @@ namespace swarm::link::conformance {
 inline constexpr UtcTime kNow{std::chrono::seconds(1'800'000'000)};
 inline constexpr auto kHuge = std::numeric_limits<std::uint64_t>::max();
 
-/// Stamps and ids of that many seconds after kNow.
+/// Stamps and ids of a time `seconds` after kNow.
 std::int64_t ns_after(int seconds);
 std::uint64_t id_after(int seconds);
 

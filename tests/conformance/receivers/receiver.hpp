@@ -12,8 +12,8 @@
 #include "swarm_link/gate/refusal.hpp"
 #include "swarm_link/messages.hpp"
 
-/// The five programs' ways of receiving, as one: what is published reaches them, and what they know
-/// and what they refused can be read. No bus, no clock.
+/// The receiving sides of the five programs behind one interface: a test publishes to them and
+/// reads their state and what they refused. No bus, no clock.
 namespace swarm::link::conformance {
 
 using AnyMessage = std::variant<PlanMessage, SceneMessage, HeartbeatMessage, CommandMessage,

@@ -19,7 +19,7 @@
 namespace swarm::link::conformance {
 namespace {
 
-/// What was published on a topic and not taken yet.
+/// Messages published on a topic and not taken yet.
 template <class M>
 using Queue = std::shared_ptr<std::vector<M>>;
 
@@ -52,7 +52,7 @@ class QueueChannel final : public StateChannel {
   QueueReader<CellStatesMessage> reader_;
 };
 
-/// A receiver of the topics of these messages, by readers.
+/// A receiver with one reader for each of these topics.
 template <class... M>
 class QueueReceiver : public Receiver {
  public:
@@ -181,7 +181,7 @@ class GatewayReceiver final : public QueueReceiver<CellStatesMessage> {
   std::vector<RobotStateMessage> passed_on_;
 };
 
-/// Gets bytes, as they were on the bus.
+/// Receives encoded samples, as from the bus.
 class MonitorReceiver final : public Receiver {
  public:
   explicit MonitorReceiver(const Mission& mission) : sut_(mission) {}
@@ -217,7 +217,7 @@ class MonitorReceiver final : public Receiver {
   static bool encode(const M& message, std::vector<std::byte>& bytes) {
     return link::encode(message, bytes);
   }
-  /// Our own encoder makes no batch that is too long: the last state is appended to its bytes.
+  /// Our encoder refuses a batch that is too long: the last state is appended to its bytes.
   static bool encode(CellStatesMessage batch, std::vector<std::byte>& bytes) {
     constexpr std::size_t kCountAt = 16, kStateBytes = 56;
     const auto count = static_cast<std::uint32_t>(batch.states.size());

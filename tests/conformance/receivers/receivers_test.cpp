@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-// One table of messages that must be refused, against every program that receives them: refused,
-// counted by reason, nothing changed, and the next good message is used.
+// Every message of a table must be refused by every program that receives it: counted by reason,
+// without a change of state, and the next valid message is used.
 #include <string>
 #include <vector>
 

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-// A robot program of somebody else's: the built-in potential field, but that of robot 3 fails as
-// its mission asks: it throws, returns a velocity that is not a number, or sleeps for two seconds,
-// two seconds after its start.
+// A third-party robot program: the built-in potential field, except that robot 3 fails as its
+// mission requests: two seconds after its start it throws, returns a velocity that is not a number,
+// or sleeps for two seconds.
 #include <chrono>
 #include <cstring>
 #include <limits>

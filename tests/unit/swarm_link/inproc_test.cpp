@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-// What only the in-process bus promises; what it shares with DDS is in tests/conformance.
+// Behaviour specific to the in-process bus; what it has in common with DDS is in tests/conformance.
 #include <gtest/gtest.h>
 
 #include "swarm_link/inproc/inproc_bus.hpp"

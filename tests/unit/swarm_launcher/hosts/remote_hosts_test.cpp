@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-// The launcher's side of other hosts, against hosts that behave and hosts that do not.
+// The launcher's side of other hosts, with hosts that follow the protocol and hosts that do not.
 #include "swarm_launcher/hosts/remote_hosts.hpp"
 
 #include <algorithm>
@@ -48,7 +48,7 @@ struct Bench {
     }
   }
 
-  /// Steps until it is so; the limit guards against hanging.
+  /// Steps until the condition holds; the limit prevents an endless loop.
   bool until(const std::function<bool()>& condition) {
     for (int i = 0; i < 2000 && !condition(); ++i) {
       step(1);
@@ -168,7 +168,7 @@ TEST(RemoteHosts, PausesTheOthersWhileAHostIsSilentUnlessSomebodyResumes) {
   bench.step(5);
   EXPECT_EQ(bench.supervisor.phase(), MissionPhase::kRunning);
 
-  bench.start_mission();  // heard again
+  bench.start_mission();  // received again
   bench.step(60);         // and silent again
   EXPECT_EQ(bench.supervisor.phase(), MissionPhase::kPaused);
   bench.hosts.on_user_command(CommandKind::kPause);

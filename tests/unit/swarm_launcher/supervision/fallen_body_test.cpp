@@ -20,15 +20,16 @@ Mission mission_of(const std::string& model) {
 
 UtcTime at_s(double s) { return UtcTime(from_seconds(100.0 + s)); }
 
-// Drivers integrate in steps of 5 ms: of the last one before rest, at 3 m/s², this much too far.
+// Drivers integrate in steps of 5 ms: during the last step before rest, at 3 m/s², they overshoot
+// by this much.
 constexpr double kStep_m = 2e-5;
 
 bool covers(const Circle& circle, const Vec2& centre_m, double radius_m) {
   return (centre_m - circle.center_m).norm() + radius_m <= circle.radius_m + kStep_m;
 }
 
-// The driver is the oracle: wherever the body goes after the last command, it is inside, whatever
-// it was commanded before.
+// The driver is the oracle: wherever the body moves after the last command, it stays inside the
+// circle, for any command before.
 TEST(CircleOfFallen, CoversTheBodyFromTheLastTickToItsRest) {
   Rng rng(4);
   for (const std::string model : {"single_integrator", "double_integrator", "unicycle"}) {

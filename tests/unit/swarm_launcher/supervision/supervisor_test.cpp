@@ -13,7 +13,7 @@ namespace {
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-/// Drives a supervisor with a clock of its own and pretends to be its processes.
+/// Drives a supervisor with a simulated clock and plays the part of its processes.
 struct Bench {
   SteadyTime now{seconds(100)};
   SupervisorOptions options;

@@ -26,7 +26,7 @@ bool decodes(std::span<const std::byte> bytes) {
   return decode(bytes, message);
 }
 
-/// A sample cut anywhere is none, and reading it stays inside (with a sanitizer: for certain).
+/// A truncated sample is refused, and decoding stays within the bytes (proved under a sanitizer).
 template <class M>
 void expect_refused_when_cut() {
   Rng rng(1);

@@ -61,7 +61,7 @@ testing::AssertionResult refused(const Checked<T>& verdict, RefusalReason reason
   return testing::AssertionFailure() << "refused as " << to_string(verdict.error());
 }
 
-// Applies a change to a good message and tells what the check says.
+// Applies a change to a valid message.
 template <class M, class Change>
 M changed(M message, Change change) {
   change(message);
@@ -337,9 +337,9 @@ TEST(CheckScene, RefusesEveryField) {
   EXPECT_TRUE(out_of_range([](auto& s) { s.obstacles[0].radius_m = 0; }));
   EXPECT_TRUE(out_of_range([](auto& s) { s.obstacles[0].moving_from_utc_ns = 201; }));
   EXPECT_TRUE(out_of_range([](auto& s) { s.obstacles[0].obstacle_id = 8; }));  // not ascending
-  EXPECT_TRUE(out_of_range([](auto& s) { s.obstacles[1].obstacle_id = 9; }));  // not given out yet
+  EXPECT_TRUE(out_of_range([](auto& s) { s.obstacles[1].obstacle_id = 9; }));  // not assigned yet
   EXPECT_TRUE(out_of_range([](auto& s) { s.obstacles[1].vertices = 4; }));     // has only three
-  EXPECT_TRUE(out_of_range([](auto& s) { s.vertices.push_back({9, 9}); }));    // nobody's
+  EXPECT_TRUE(out_of_range([](auto& s) { s.vertices.push_back({9, 9}); }));    // not used
   EXPECT_TRUE(out_of_range([](auto& s) { s.vertices[2] = {2, 1}; }));          // no area
   EXPECT_TRUE(out_of_range([](auto& s) { s.next_id = 0x8000'0001; }));         // bodies' numbers
   EXPECT_TRUE(out_of_range([](auto& s) { s.obstacles[2].owner_robot_id = 100; }));  // no such robot

@@ -50,7 +50,7 @@ RobotStateMessage state(std::uint32_t robot, UtcTime stamp) {
 }
 
 struct GateTest : testing::Test {
-  /// Whether what the gate refused since the last call is one message, for this reason.
+  /// Whether the gate refused exactly one message since the last call, for this reason.
   testing::AssertionResult counted(RefusalReason reason) {
     RefusalCounters expected = before;
     expected.count(reason);

@@ -9,7 +9,7 @@
 namespace swarm::link {
 namespace {
 
-/// Two halves of a swarm that do not hear each other, and one that belongs to both.
+/// Two buses that do not receive each other, and a participant that belongs to both.
 struct RelayParticipant : testing::Test {
   std::unique_ptr<Participant> both() {
     std::vector<std::unique_ptr<Participant>> members;

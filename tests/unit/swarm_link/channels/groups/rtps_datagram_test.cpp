@@ -33,14 +33,14 @@ TEST(RtpsDatagram, FollowsTheStandard) {
                                    0,    0,    16,   0,                               //
                                    0,    0,    0,    0,                               // any reader
                                    0x53, 0x57, 0x43, 3,                               // writer
-                                   1,    0,    0,    0,   2, 0, 0, 0,  // number, high word first
+                                   1,    0,    0,    0,   2, 0, 0, 0,  // number, high half first
                                    0,    1,    0,    0,   42});        // CDR, little endian
 
   EXPECT_EQ(message(bytes_of({0, 1, 0, 0, 42})), expected);
 }
 
 TEST(RtpsDatagram, ComesBack) {
-  Bytes payload(70'000, std::byte{7});  // longer than a submessage's 16-bit length can say
+  Bytes payload(70'000, std::byte{7});  // longer than the 16-bit length of a submessage
   Bytes sent = message(payload);
 
   const auto received = decode_rtps(sent);
