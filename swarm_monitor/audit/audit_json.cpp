@@ -12,7 +12,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// A value that was not measured becomes null, so that a reader can tell it from zero.
+/// A value that was not measured becomes null, which readers can distinguish from zero.
 Json number(const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); }
 
 std::string metres(const std::optional<double>& value, const char* none) {
