@@ -23,7 +23,7 @@ const RAW = {
 
 let peer, scene;
 
-/** What the page is given of the map: the first frame that it gets. */
+/** What the page receives of the map: the first frame that it gets. */
 async function pageScene() {
   const socket = new WebSocket(`${SERVER}ws`, 'swarmflow.view.v1', { origin });
   const [frame] = await once(socket, 'message');

@@ -73,7 +73,7 @@ export function showMixture(viewFrame, theme, mixture) {
   mixture.upload();
 }
 
-/** `chosen`: null or {x, y, held, beliefs}; beliefs as x, y pairs in every three floats after one. */
+/** `chosen`: null or {x, y, held, estimates}; estimates: three floats per neighbour, of which the last two are x and y. */
 export function showChosen(chosen, scene, camera, theme, lines, rings) {
   lines.records.clear();
   rings.records.clear();

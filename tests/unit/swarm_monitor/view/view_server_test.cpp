@@ -220,7 +220,7 @@ TEST_F(ViewServerTest, IsControlledWithTheTokenAlone) {
   std::vector<ControlAction> done;
   const Control control = [&](const ControlRequest& request) -> Result<std::string> {
     done.push_back(request.action);
-    return "as you say";
+    return "as requested";
   };
   const auto answer = [&](const ViewServerOptions& options, const std::string& token) {
     start(options);
