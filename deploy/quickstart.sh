@@ -1,6 +1,6 @@
 #!/bin/sh
 # From a bare Debian 12 to a hundred flying robots: installs what is missing, builds, flies the demo mission
-# with one process per robot, and says where the report is.   deploy/quickstart.sh [--robots N]
+# with one process per robot, and prints where the report is.   deploy/quickstart.sh [--robots N]
 set -eu
 root=$(cd "$(dirname "$0")/.." && pwd)
 robots=100

@@ -4,14 +4,16 @@
 #include "swarm_core/app/stop_signal.hpp"
 #include "swarm_monitor/cli/commands.hpp"
 
+/// Each subcommand declares its options and a closure; the one that was given on the command line
+/// is run.
 int main(int argc, char** argv) {
   using namespace swarm;
   return shell::run_main("swarm_monitor", [&]() -> Result<ExitCode> {
     CLI::App app(
-        "Looks at a swarm that flies or has flown, records it and judges it.\n"
+        "Shows a swarm in motion or afterwards, records it and judges it.\n"
         "  swarm_monitor audit RUN_DIR    exits with 0 if the mission met its criteria, else 1\n"
         "  swarm_monitor report RUN_DIR   writes report.html and paths.svg into it\n"
-        "  swarm_monitor view RUN_DIR     shows it in the browser, while it flies or afterwards",
+        "  swarm_monitor view RUN_DIR     shows it in the browser, in progress or afterwards",
         "swarm_monitor");
     app.require_subcommand(1);
     shell::add_common_options(app);

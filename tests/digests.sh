@@ -3,7 +3,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # Flies every mission in lock-step with three seeds and compares with tests/data/digests.txt.
 #   tests/digests.sh [--update] [BUILD_DIR]     (default: build/release)
-# With --update the file is written anew; say in the commit why a line changes.
+# With --update the file is written anew; give the reason of every changed line in the commit.
 set -eu
 root=$(cd "$(dirname "$0")/.." && pwd)
 update=false

@@ -2,7 +2,7 @@
 # SPDX-FileCopyrightText: The Swarmflow authors
 # SPDX-License-Identifier: Apache-2.0
 """Draws diffusion_q.png and diffusion_jie.png beside itself: strokes of one width on [-6, 6] x [-6, 6] m, a pixel of
-0.05 m each, dark where its centre lies on a stroke. Prints the areas, which say how many robots fit."""
+0.05 m each, dark where its centre lies on a stroke. Prints the areas, which limit the robots."""
 import math
 import pathlib
 import struct

@@ -19,7 +19,8 @@
 namespace swarm::monitor {
 namespace {
 
-/// `3, 7, 12 and 40 more`
+/// The first ten entries of a list and the number of the others, as in `3, 7, 12 and 40 more`: the
+/// reasons of a failed audit stay readable when hundreds of robots fail.
 std::string list(const std::vector<std::string>& words) {
   constexpr std::size_t kShown = 10;
   const std::vector<std::string> first(
@@ -29,8 +30,9 @@ std::string list(const std::vector<std::string>& words) {
   return text;
 }
 
-/// First point of the robot's last stay in arrival. Holding and stopping are rest: they do not end
-/// it.
+/// Time of the first point of the robot's last stay in mode "arrived" [s since the begin of the
+/// run]; empty if its last stay ended. Only moving or waiting ends a stay: a hold or a stop leaves
+/// the robot where it is.
 std::optional<double> stays_arrived_from(const Track& track) {
   std::optional<double> since;
   for (const TrackPoint& point : track.points) {
@@ -43,8 +45,9 @@ std::optional<double> stays_arrived_from(const Track& track) {
   return since;
 }
 
-/// From the stamp of the emergency stop that the robot noted as its cause to its last change of
-/// position.
+/// Time from the stamp of the emergency stop, which the robot logged as the cause of its mode
+/// "stopped", to the last change of its position [ms]. Both stamps are wall clock times, on several
+/// hosts of different clocks, so that a negative difference counts as 0.
 std::optional<double> stop_latency_ms(const Track& track, UtcTime begin) {
   const auto stopped =
       std::find_if(track.notes.begin(), track.notes.end(), [](const robot_log::Note& note) {
@@ -54,6 +57,8 @@ std::optional<double> stop_latency_ms(const Track& track, UtcTime begin) {
   if (stopped == track.notes.end() || track.points.empty()) return std::nullopt;
   const Vec2& rest_m = track.points.back().position_m;
   const auto moving =
+      // The last point at which the robot was not yet at its final position; the point after it is
+      // the first at rest.
       std::find_if(track.points.rbegin(), track.points.rend(),
                    [&](const TrackPoint& point) { return point.position_m != rest_m; });
   if (moving == track.points.rbegin() || moving == track.points.rend()) return 0.0;
@@ -61,11 +66,14 @@ std::optional<double> stop_latency_ms(const Track& track, UtcTime begin) {
   return std::max(0.0, 1e3 * (at_rest_s - to_seconds(stopped->caused - begin)));
 }
 
-/// Robots that fill a drawing are home where its shape function is within the tolerance.
+/// Whether the robots fill a drawing. They are arrived where the drawing's shape function is within
+/// the tolerance, whichever Gaussian is nearest.
 bool fills_shape(const RecordedRun& run) {
   return run.mission.control.method == "intermittent_diffusion";
 }
 
+/// Whether a position counts as arrived: inside the 99 % ellipse of component `goal`, or within the
+/// tolerance of the shape function [m²] if the mission fills a drawing.
 bool is_at_goal(const RecordedRun& run, std::size_t goal, const Vec2& position_m) {
   if (fills_shape(run) && run.mission.goal_shape != nullptr) {
     return run.mission.goal_shape->at(position_m).energy_m2 <=
@@ -74,10 +82,13 @@ bool is_at_goal(const RecordedRun& run, std::size_t goal, const Vec2& position_m
   return run.goal().components()[goal].gaussian.contains_99(position_m);
 }
 
+/// Judges one robot by its own track. A robot without a point, or whose log does not end with the
+/// note "exit", is lost and cannot have arrived.
 RobotAudit audit_robot(const Track& track, const RecordedRun& run) {
   RobotAudit result{.robot = track.robot};
   result.lost = !track.ended_gracefully || track.points.empty();
   if (track.points.empty()) return result;
+  // The sum of the straight pieces between logged steps, at most the length of the driven path.
   for (std::size_t k = 1; k < track.points.size(); ++k) {
     result.path_m += (track.points[k].position_m - track.points[k - 1].position_m).norm();
   }
@@ -94,6 +105,8 @@ RobotAudit audit_robot(const Track& track, const RecordedRun& run) {
   return result;
 }
 
+/// Duration of the mission: from the first step in motion of any robot to the last arrival, or to
+/// the last step of all if a robot did not arrive. Empty if no robot moved.
 std::optional<double> mission_duration_s(const RecordedRun& run, const Audit& audit) {
   std::optional<double> first_motion;
   double last_step = 0.0;
@@ -115,6 +128,8 @@ std::optional<double> mission_duration_s(const RecordedRun& run, const Audit& au
   return std::max(0.0, (all_arrived ? last_arrival : last_step) - *first_motion);
 }
 
+/// Audits every robot and adds up what counts over the whole swarm: arrivals per goal, lost robots,
+/// late steps, state rate and the quantiles of stop latency and state age. O(steps).
 void count_robots(const RecordedRun& run, Audit& audit) {
   std::set<std::uint32_t> processes;
   std::uint64_t steps = 0;
@@ -124,6 +139,8 @@ void count_robots(const RecordedRun& run, Audit& audit) {
   std::vector<double> stop_ms;
   Histogram age;
   audit.robots = static_cast<std::uint32_t>(run.tracks.size());
+  // A histogram of all robots' state ages: quantiles of the swarm, not a mean of the robots'
+  // quantiles.
   audit.arrived_per_goal.assign(run.goal().components().size(), 0);
   for (const Track& track : run.tracks) {
     const RobotAudit robot = audit_robot(track, run);
@@ -139,6 +156,8 @@ void count_robots(const RecordedRun& run, Audit& audit) {
     steps += track.points.size();
     late += track.late_steps;
     states_sent += track.states_sent;
+    // The time that a robot was recorded, so that the rate is per robot and independent of the
+    // length of the run.
     if (!track.points.empty()) {
       recorded_s += track.points.back().time_s - track.points.front().time_s;
     }
@@ -168,6 +187,10 @@ void count_robots(const RecordedRun& run, Audit& audit) {
   }
 }
 
+/// Mean path of the robots that are not lost, and its ratio to the geodesic bound: the mean length
+/// of the shortest obstacle-avoiding paths from their first to their last positions, assigned
+/// optimally. Only obstacles that stand throughout the run enter the bound, which would otherwise
+/// not be one.
 void measure_paths(const RecordedRun& run, Audit& audit) {
   std::vector<Vec2> starts, ends;
   double sum = 0.0;
@@ -186,7 +209,8 @@ void measure_paths(const RecordedRun& run, Audit& audit) {
   if (bound > 0.0) audit.path_ratio = *audit.mean_path_m / bound;
 }
 
-/// What tracking needs of the arrivals.
+/// The parts of tracking that need the audit's arrivals: their spread (5 % to 95 %) and the mission
+/// time beyond the duration of the first plan.
 void measure_arrivals(Audit& audit) {
   std::vector<double> arrivals_s;
   for (const RobotAudit& robot : audit.by_robot) {
@@ -201,7 +225,7 @@ void measure_arrivals(Audit& audit) {
   }
 }
 
-/// `3-7, 12-9 and 40 more`
+/// Pairs of robots as text, as in `3-7, 12-9 and 40 more`.
 std::string list_pairs(const std::vector<Approach>& contacts) {
   std::vector<std::string> pairs;
   for (const Approach& contact : contacts) {
@@ -210,6 +234,7 @@ std::string list_pairs(const std::vector<Approach>& contacts) {
   return list(pairs);
 }
 
+/// Collects the reasons why the run fails, one line each; without any the outcome is "ok".
 void judge(const AuditedRun& audited, Audit& audit) {
   if (!audit.lost.empty()) {
     std::vector<std::string> ids;
@@ -247,8 +272,10 @@ void judge(const AuditedRun& audited, Audit& audit) {
        failed_criteria(audited.run.mission.criteria, audit.tracking, audit.path_ratio)) {
     audit.reasons.push_back(std::move(reason));
   }
-  if (fills_shape(audited.run)) return;  // whoever finds room stays: no counts are asked for
+  if (fills_shape(audited.run)) return;  // robots stay where they find room: no counts
   const auto& goals = audited.run.goal().components();
+  // Robots choose goals by their share of the mixture, which rounds: a goal may be off by two
+  // robots, or by 2 % of a large swarm.
   const double tolerance = std::max(2.0, 0.02 * audit.robots);
   for (std::size_t g = 0; g < goals.size(); ++g) {
     const double wanted = goals[g].weight * audit.robots;
@@ -258,7 +285,9 @@ void judge(const AuditedRun& audited, Audit& audit) {
   }
 }
 
-/// What the launcher measured stays as it said; anything else in its summary is not believed.
+/// Copies the four numbers that only the launcher can measure (planning time, discovery, CPU,
+/// memory) from its summary. The audit recomputes everything else and ignores the summary's other
+/// keys.
 void carry_over(const std::string& summary, Audit& audit) {
   const auto json = nlohmann::json::parse(summary, nullptr, false);
   if (!json.is_object()) return;
@@ -274,6 +303,8 @@ void carry_over(const std::string& summary, Audit& audit) {
 
 }  // namespace
 
+/// The order of the steps matters: bodies of dead robots must be laid before the clearances are
+/// computed, and tracking must be measured before the reasons are collected.
 AuditedRun audit_recorded(RecordedRun recorded) {
   AuditedRun audited{.run = std::move(recorded)};
   lay_fallen_bodies(audited.run);
@@ -293,6 +324,8 @@ AuditedRun audit_recorded(RecordedRun recorded) {
   std::set<std::uint32_t> touching;
   for (const Approach& contact : audited.obstacles.contacts) touching.insert(contact.robot);
   audit.collisions_obstacle = static_cast<std::uint32_t>(touching.size());
+  // A gap is infinite where there was nothing to come near to; JSON has no infinity, so it becomes
+  // an empty value.
   const auto known = [](double gap) {
     return std::isfinite(gap) ? std::optional<double>(gap) : std::nullopt;
   };

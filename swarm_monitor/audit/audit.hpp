@@ -14,17 +14,18 @@
 
 namespace swarm::monitor {
 
-/// Quantiles of how old neighbours' states were when the controllers used them.
+/// Quantiles of the age of neighbours' states when controllers used them, over all states and
+/// robots.
 struct StateAge {
   double p50_ms = 0.0, p99_ms = 0.0, p999_ms = 0.0, max_ms = 0.0;
 };
 
-/// How long robots took to come to rest after an emergency stop was commanded, over the robots.
+/// Quantiles over the robots of the time from the command of an emergency stop to rest.
 struct StopLatency {
   double p50_ms = 0.0, p99_ms = 0.0, max_ms = 0.0;
 };
 
-/// One robot's part in an audit.
+/// The audit of one robot.
 struct RobotAudit {
   RobotId robot{};
   bool lost = false;  ///< no robot log, or it ends without the note "exit"
@@ -33,7 +34,9 @@ struct RobotAudit {
   bool arrived = false;
   std::optional<std::size_t> goal{};     ///< index into Mission::goal, of its last step
   std::optional<double> arrived_at_s{};  ///< time from which on it stayed arrived
+  /// Length of the straight pieces between logged steps [m].
   double path_m = 0.0;
+  /// Whether any logged position lies outside the world's rectangle.
   bool left_bounds = false;
   std::optional<double> stop_ms{};  ///< stamp of the stop it obeyed to its last change of position
 };
@@ -57,23 +60,26 @@ struct Audit {
   std::optional<double> mission_s;  ///< first step in motion to the last arrival, else to the end
   std::optional<StateAge> state_age;
   std::optional<EstimateError> estimate;
-  std::optional<double> states_hz;   ///< states that a robot says, on average over the run
-  std::optional<StopLatency> stop;   ///< empty if nobody was stopped
+  std::optional<double> states_hz;   ///< published by a robot, mean over the run
+  std::optional<StopLatency> stop;   ///< empty if no robot was stopped
   double deadline_miss_ratio = 0.0;  ///< share of control steps that began over 20 ms late
   std::uint64_t refused_messages = 0;
   std::uint32_t outside_bounds = 0;  ///< robots that ever left the world's rectangle
   std::uint64_t damaged_records = 0;
-  Tracking tracking{};  ///< how it flew what was published
+  Tracking tracking{};  ///< how the swarm followed the published plans
 
-  /// Measured by the launcher, carried over from its summary.
+  /// Measured by the launcher, copied from its summary: planning time of the first plan, time until
+  /// all robots received their neighbours, CPU time of all processes, memory of the largest.
   std::optional<double> plan_ms, discovery_s, cpu_s, max_rss_mb;
 
   std::vector<RobotAudit> by_robot;  ///< not part of the JSON document
+  /// The outcome: every robot arrived, none touched anything, and all criteria of the mission are
+  /// met.
 
   bool ok() const { return reasons.empty(); }
 };
 
-/// Everything the audit found, for the report.
+/// A run with everything that the audit found in it, for the report.
 struct AuditedRun {
   RecordedRun run;
   Clearance robots{};
@@ -81,20 +87,21 @@ struct AuditedRun {
   Audit audit{};
 };
 
-/// The pure part: judges a recorded run.
+/// Judges a recorded run. A pure function: the same records give the same audit. Cost: see
+/// robot_clearance() and measure_tracking(), which dominate.
 AuditedRun audit_recorded(RecordedRun run);
 
 /// Reads a run directory or a recording and audits it, with the launcher's measurements if its
 /// summary is there.
 Result<AuditedRun> audit_run_fully(const std::filesystem::path& from);
 
-/// The same, without what only the report needs. Fails (kEnvironment) if it is unreadable.
+/// The same without the run's records. Fails (kEnvironment) if the run cannot be read.
 Result<Audit> audit_run(const std::filesystem::path& from);
 
 /// The audit as a JSON document; unknown values are null.
 std::string to_json(const Audit& audit);
 
-/// The audit in a few lines for people.
+/// The audit in a few lines of text.
 std::string to_text(const Audit& audit);
 
 }  // namespace swarm::monitor

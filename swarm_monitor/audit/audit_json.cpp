@@ -12,6 +12,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+/// A value that was not measured becomes null, which readers can distinguish from zero.
 Json number(const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); }
 
 std::string metres(const std::optional<double>& value, const char* none) {
@@ -20,6 +21,7 @@ std::string metres(const std::optional<double>& value, const char* none) {
 
 }  // namespace
 
+/// The keys are an interface: scripts and tests read them.
 std::string to_json(const Audit& audit) {
   Json lost = Json::array();
   for (const RobotId id : audit.lost) lost.push_back(id.value());
@@ -73,6 +75,8 @@ std::string to_json(const Audit& audit) {
   return json.dump(2) + "\n";
 }
 
+/// The same numbers as to_json() in one line each, units included. Lines of values that were not
+/// measured are left out.
 std::string to_text(const Audit& audit) {
   std::string text = fmt::format("{}: {} of {} robots arrived, {} lost, {} processes\n",
                                  audit.ok() ? "ok" : "criteria not met", audit.arrived,
@@ -104,12 +108,12 @@ std::string to_text(const Audit& audit) {
                         audit.state_age->p50_ms, audit.state_age->p99_ms, audit.state_age->max_ms);
   }
   if (audit.estimate) {
-    text += fmt::format("  belief error     {:.1f} cm (p50), {:.1f} (p99), {:.1f} (max)\n",
+    text += fmt::format("  estimate error   {:.1f} cm (p50), {:.1f} (p99), {:.1f} (max)\n",
                         audit.estimate->p50_cm, audit.estimate->p99_cm, audit.estimate->max_cm);
   }
   if (audit.states_hz) {
-    text +=
-        fmt::format("  states           {:.2f} a second said by each robot\n", *audit.states_hz);
+    text += fmt::format("  states           {:.2f} a second published by each robot\n",
+                        *audit.states_hz);
   }
   text += fmt::format("  late steps       {:.3f} %, refused messages {}\n",
                       100.0 * audit.deadline_miss_ratio, audit.refused_messages);

@@ -13,7 +13,7 @@
 /// robot moves in a straight line, so the nearest approach lies anywhere, not only at the ticks.
 namespace swarm::monitor {
 
-/// Nearest approach of two bodies.
+/// Nearest approach of two bodies, surface to surface; negative gaps are overlaps.
 struct Approach {
   double gap_m = std::numeric_limits<double>::infinity();
   double time_s = 0.0;
@@ -30,7 +30,7 @@ struct Clearance {
 
   Approach nearest;                ///< +∞ when nothing ever was near anything
   std::vector<Approach> contacts;  ///< deepest approach of each pair that touched (gap ≤ 0)
-  /// The same of pairs of which one had fallen and lay there; counts nowhere else.
+  /// The same for pairs of which one had fallen and lay there; they enter no other member.
   std::vector<Approach> fallen_contacts;
   std::vector<double> by_window_m;
   std::vector<double> by_robot_m;  ///< smallest gap of each robot, at most kCap_m

@@ -9,6 +9,8 @@
 namespace swarm::monitor {
 namespace {
 
+/// Position on a track by linear interpolation between its steps; empty outside the track's time,
+/// where nothing is known of the robot. O(log points).
 std::optional<Vec2> position_at(const Track& track, double time_s) {
   const auto& points = track.points;
   if (points.empty() || time_s < points.front().time_s || time_s > points.back().time_s) {
@@ -25,6 +27,8 @@ std::optional<Vec2> position_at(const Track& track, double time_s) {
 
 }  // namespace
 
+/// The quantiles are nearest-rank ones: the smallest error that at least a share q of the errors do
+/// not exceed. Errors are reported in cm because they are a few cm large.
 std::optional<EstimateError> estimate_error(std::span<const Track> tracks) {
   std::vector<double> errors_cm;
   for (const Track& track : tracks) {

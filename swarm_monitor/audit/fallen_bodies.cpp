@@ -8,6 +8,8 @@
 
 namespace swarm::monitor {
 
+/// Times are those of the tracks, since RecordedRun::begin. A body lies until the end of the run
+/// unless a scene cleared it.
 void lay_fallen_bodies(RecordedRun& run) {
   double end_s = 0.0;
   for (const Track& track : run.tracks) {
@@ -21,7 +23,8 @@ void lay_fallen_bodies(RecordedRun& run) {
     if (robot >= run.tracks.size() || !body.cleared) continue;
     Track& track = run.tracks[robot];
     const double cleared_s = to_seconds(*body.cleared - run.begin);
-    // A body of an earlier life was cleared when the robot came back: its log goes on.
+    // A body of an earlier incarnation was cleared when the robot came back: its log continues
+    // after that, and the robot is its own body.
     if (track.body_until_s > 0.0 && cleared_s >= track.points.back().time_s) {
       track.body_until_s = std::min(track.body_until_s, cleared_s);
     }

@@ -6,10 +6,10 @@
 
 namespace swarm::monitor {
 
-/// Lets the bodies of fallen robots lie: a robot whose log ends without "exit" stays at its last
-/// point until the end of the run, or until the scene says that its body was cleared. One whose log
-/// goes on has been respawned: its body is that of the track, also between its two incarnations.
-/// O(robots + scenes · bodies).
+/// Sets Track::body_until_s of fallen robots: a robot whose log ends without "exit" stays at its
+/// last point until the end of the run, or until a scene records that its body was cleared. A robot
+/// whose log continues has been respawned: its body is the track itself, also between two
+/// incarnations. O(robots + scenes · bodies).
 void lay_fallen_bodies(RecordedRun& run);
 
 }  // namespace swarm::monitor

@@ -9,18 +9,23 @@
 namespace swarm::monitor {
 namespace {
 
-/// Cells a box may touch before it counts as large.
+/// Number of cells that a box may touch before it is handled apart. Entering a box that spans the
+/// map into every cell would cost more than comparing it with all others.
 constexpr double kMostCells = 256.0;
 
+/// Closed boxes: boxes that share only an edge overlap.
 bool overlap(const Box& a, const Box& b) {
   return (a.min_m.array() <= b.max_m.array()).all() && (b.min_m.array() <= a.max_m.array()).all();
 }
 
 }  // namespace
 
+/// Enters each box into all cells it touches and sorts the entries by cell, so that the boxes of
+/// one cell are neighbours in memory. O(entries · log entries).
 PairGrid::PairGrid(std::span<const Item> items, double cell_m) : items_(items), cell_m_(cell_m) {
   for (std::uint32_t i = 0; i < items_.size(); ++i) {
     const Box& box = items_[i].box;
+    // Upper bound of the cells per axis. The negated comparison also catches NaN of a damaged log.
     const Vec2 cells = (box.max_m - box.min_m) / cell_m_ + Vec2::Ones();
     if (!(cells.x() * cells.y() <= kMostCells)) {
       large_.push_back(i);
@@ -41,6 +46,8 @@ std::int64_t PairGrid::cell_of(double coordinate_m) const {
   return static_cast<std::int64_t>(std::floor(coordinate_m / cell_m_));
 }
 
+/// Compares the boxes of each cell pairwise. A pair shares every cell of its overlap and is
+/// reported in the cell of the overlap's lower left corner alone.
 void PairGrid::for_each_pair(const std::function<void(std::uint32_t, std::uint32_t)>& visit) const {
   const auto report = [&](const Item& a, const Item& b) {
     visit(std::min(a.id, b.id), std::max(a.id, b.id));
@@ -57,6 +64,8 @@ void PairGrid::for_each_pair(const std::function<void(std::uint32_t, std::uint32
       if (cell_of(corner.x()) == first.x && cell_of(corner.y()) == first.y) report(a, b);
     }
   }
+  // Large boxes against all others. A pair of two large ones is reported by the one with the
+  // smaller index.
   for (const std::uint32_t i : large_) {
     for (std::uint32_t j = 0; j < items_.size(); ++j) {
       const bool other_is_large = std::find(large_.begin(), large_.end(), j) != large_.end();

@@ -11,9 +11,10 @@
 
 namespace swarm::monitor {
 
-/// Finds all pairs of overlapping boxes: each box is entered into every square cell it touches, and
-/// a pair is reported in the one cell that holds the lower left corner of its overlap, hence once.
-/// Boxes over too many cells (a robot that jumped) are compared with everybody.
+/// Finds all pairs of overlapping boxes: each box is entered into every square cell that it
+/// touches, and a pair is reported only in the cell that holds the lower left corner of its
+/// overlap, hence once. Boxes over too many cells (of a robot that jumped) are compared with all
+/// others.
 class PairGrid {
  public:
   struct Item {

@@ -26,6 +26,8 @@
 namespace swarm::monitor {
 namespace {
 
+/// Limits on the files of a run directory. Far above what runs write; they keep a wrong or hostile
+/// file from exhausting the memory.
 constexpr std::size_t kMaxMissionBytes = 16U << 20U;
 constexpr std::size_t kMaxSummaryBytes = 1U << 20U;
 constexpr std::size_t kMaxEventsBytes = 256U << 20U;
@@ -34,11 +36,15 @@ constexpr std::size_t kMaxSceneBytes = 64U << 20U;
 constexpr std::size_t kMaxPlanningBytes = 64U << 10U;
 constexpr std::size_t kMaxClockBytes = 64U << 20U;
 
+/// Reads events.jsonl: one JSON object per line, with its stamp in UTC nanoseconds. Times become
+/// seconds since the begin of the run. Lines without a stamp are left out, since they have no place
+/// in the order of time.
 std::vector<RunEvent> read_events(const std::string& text, UtcTime begin) {
   std::vector<RunEvent> events;
   std::istringstream lines(text);
   for (std::string line; std::getline(lines, line);) {
-    // The last line of a killed launcher may be cut: what is no event is left out.
+    // The last line of a killed launcher may be incomplete: lines that are not JSON objects are
+    // left out.
     const auto json = nlohmann::json::parse(line, nullptr, false);
     if (!json.is_object()) continue;
     const auto word = [&](const char* key) {
@@ -63,6 +69,8 @@ void TrackMaker::add(const robot_log::Record& record) {
   std::visit([this](const auto& r) { take(r); }, record);
 }
 
+/// A header begins each incarnation of the robot's process. Its counters start from 0, so those of
+/// the incarnation before are added first.
 void TrackMaker::take(const robot_log::Header& header) {
   close_incarnation();
   track_.radius_m = header.radius_m;
@@ -70,6 +78,8 @@ void TrackMaker::take(const robot_log::Header& header) {
   track_.ended_gracefully = false;
 }
 
+/// One control step. A step that does not ascend in time (a clock that was set back) counts as
+/// damage: interpolation needs strictly ascending times.
 void TrackMaker::take(const robot_log::Step& step) {
   if (step.lateness_us > Track::kLate_us) ++track_.late_steps;
   const double time_s = to_seconds(step.stamp - origin_);
@@ -94,39 +104,48 @@ void TrackMaker::take(const robot_log::Estimate& estimate) {
                             .position_m = estimate.position_m});
 }
 
+/// The note "exit" is the last record of a process that ended gracefully; without it the robot is
+/// lost.
 void TrackMaker::take(const robot_log::Note& note) {
   track_.notes.push_back(note);
   if (note.code == "exit") track_.ended_gracefully = true;
 }
 
+/// Adds the newest counters of an incarnation to the track: link statistics are cumulative within
+/// an incarnation, so only the last record counts.
 void TrackMaker::close_incarnation() {
   track_.state_age.merge(incarnation_.state_age);
   track_.states_sent += incarnation_.states_sent;
-  track_.refused += std::accumulate(incarnation_.refused.begin(), incarnation_.refused.end(), std::uint64_t{0});
+  track_.refused +=
+      std::accumulate(incarnation_.refused.begin(), incarnation_.refused.end(), std::uint64_t{0});
   incarnation_ = {};
 }
 
+/// Closes the last incarnation, whose counters no later header closes.
 Track TrackMaker::finish() {
   close_incarnation();
   return std::move(track_);
 }
 
+/// The newest scene with a goal of its own decides; without one the mission file's goal holds.
 const Mixture& RecordedRun::goal() const {
   return scenes.empty() || !scenes.back().goal ? mission.goal : *scenes.back().goal;
 }
 
 namespace {
 
-/// The files of a run beside its robot logs, by name.
+/// The text files of a run beside its robot logs, by name.
 using Texts = std::map<std::string, std::string, std::less<>>;
 
+/// The text of a file, empty if the run has none: readers of optional files treat both alike.
 const std::string& text_of(const Texts& texts, std::string_view name) {
   static const std::string kNone;
   const auto it = texts.find(name);
   return it == texts.end() ? kNone : it->second;
 }
 
-/// The version of the plan in a file: 1 of `plan.json`, 2 of `plan-0002.json`; 0 of any other name.
+/// The version of the plan in a file: 1 for `plan.json`, 2 for `plan-0002.json`, 0 for any other
+/// name.
 std::uint32_t plan_version_of(std::string_view file) {
   if (file == shell::kPlanFile) return 1;
   constexpr std::string_view kBegin = "plan-", kEnd = ".json";
@@ -139,7 +158,8 @@ std::uint32_t plan_version_of(std::string_view file) {
   return error == std::errc{} && end == file.data() + file.size() ? version : 0;
 }
 
-/// A plan that cannot be read is left out.
+/// All plans of a run by ascending version. A plan that cannot be read is left out: the audit then
+/// reports that the clock names a plan that was not recorded.
 std::vector<PublishedPlan> read_plans(const Texts& texts) {
   std::vector<PublishedPlan> plans;
   for (const auto& [name, text] : texts) {
@@ -155,12 +175,15 @@ std::vector<PublishedPlan> read_plans(const Texts& texts) {
   return plans;
 }
 
-/// Tracks in the making, by robot, with times since any stamp near the run: seconds since 1970
-/// would be too coarse.
+/// Tracks under construction, by robot. Times are taken relative to the first record that is read
+/// and shifted to the first step at the end: seconds since 1970 as a double resolve only 0.2 µs,
+/// which is too coarse for differences of nanosecond stamps.
 class TrackTable {
  public:
   explicit TrackTable(std::uint32_t robots) : makers_(robots) {}
 
+  // Records of robots that the mission does not have are ignored: a directory may hold logs of an
+  // earlier, larger run.
   void add(RobotId robot, const robot_log::Record& record) {
     if (robot.value() >= makers_.size()) return;
     if (!origin_) origin_ = robot_log::stamp_of(record);
@@ -174,13 +197,13 @@ class TrackTable {
     double begin_s = std::numeric_limits<double>::infinity();
     for (std::uint32_t i = 0; i < makers_.size(); ++i) {
       Track track = makers_[i] ? makers_[i]->finish() : Track{.robot = RobotId(i)};
-      // A box without a header tells no radius: take the mission's.
+      // A log without a header has no radius: the mission's default holds.
       if (track.processes.empty()) track.radius_m = run.mission.robots.radius_m;
       if (!track.points.empty()) begin_s = std::min(begin_s, track.points.front().time_s);
       run.tracks.push_back(std::move(track));
     }
     if (!std::isfinite(begin_s)) return false;
-    // In whole nanoseconds, so that it does not matter which record was read first.
+    // In whole nanoseconds, so that the result does not depend on which record was read first.
     const Duration begin = from_seconds(begin_s);
     const auto since_begin = [begin](double time_s) {
       return to_seconds(from_seconds(time_s) - begin);
@@ -198,6 +221,8 @@ class TrackTable {
   std::optional<UtcTime> origin_;
 };
 
+/// Parses the mission of a run. Components that this program does not know are accepted (open
+/// catalogue): a run of a user's own driver or method can be audited.
 Result<RecordedRun> with_mission(const std::string& yaml, const std::filesystem::path& from) {
   auto mission = parse_mission(yaml, std::string(shell::kMissionFile), {}, open_catalogue());
   if (!mission) {
@@ -207,6 +232,8 @@ Result<RecordedRun> with_mission(const std::string& yaml, const std::filesystem:
   return RecordedRun{.mission = std::move(*mission)};
 }
 
+/// Adds the files that directory and recording have in common. Fails if no log holds a step: then
+/// there is no time axis and nothing to audit.
 Result<RecordedRun> finished(RecordedRun run, TrackTable& tracks, const Texts& texts,
                              const std::filesystem::path& from) {
   if (!tracks.finish(run)) {
@@ -222,6 +249,8 @@ Result<RecordedRun> finished(RecordedRun run, TrackTable& tracks, const Texts& t
   return run;
 }
 
+/// Reads a run directory. Robot logs are read one after the other and only their tracks are kept.
+/// Damage of a log is reported at its robot and does not end the audit.
 Result<RecordedRun> read_directory(const std::filesystem::path& run_dir) {
   Texts texts;
   for (const auto& [name, limit] : {std::pair{shell::kMissionFile, kMaxMissionBytes},
@@ -259,6 +288,8 @@ Result<RecordedRun> read_directory(const std::filesystem::path& run_dir) {
   return run;
 }
 
+/// Reads a recording in one pass. The mission must be attached before the first robot record, as
+/// merge writes it, since it sets the number of tracks.
 Result<RecordedRun> read_recording(const std::filesystem::path& file) {
   Texts texts;
   std::optional<TrackTable> tracks;
@@ -287,7 +318,8 @@ Result<RecordedRun> read_recording(const std::filesystem::path& file) {
   if (!*run) return *run;
   run = finished(std::move(**run), *tracks, texts, file);
   if (!*run) return *run;
-  // Which robots' records these were cannot be told.
+  // The reader cannot attribute damaged bytes of a merged file to a robot, so the first robot
+  // carries the count: the audit reports the sum.
   if (damage->damaged > 0) (*run)->tracks.front().damaged += damage->damaged;
   for (Track& track : (*run)->tracks) {
     if (track.points.empty()) track.unreadable = "the recording holds nothing of this robot";
@@ -297,12 +329,14 @@ Result<RecordedRun> read_recording(const std::filesystem::path& file) {
 
 }  // namespace
 
+/// The largest excess over all plans, since any of them was flown.
 double RecordedRun::plan_excess_m() const {
   double largest_m = 0.0;
   for (const PublishedPlan& plan : plans) largest_m = std::max(largest_m, plan.excess_m);
   return largest_m;
 }
 
+/// A file is a recording, a directory the run directory itself: both give the same tracks.
 Result<RecordedRun> read_run(const std::filesystem::path& from) {
   return std::filesystem::is_regular_file(from) ? read_recording(from) : read_directory(from);
 }

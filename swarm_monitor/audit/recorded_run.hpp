@@ -16,13 +16,13 @@
 
 namespace swarm::monitor {
 
-/// Where a robot was at a time, and what it was doing from then on.
+/// A control step of a robot: its position, and its mode from then on.
 struct TrackPoint {
   double time_s = 0.0;  ///< since RecordedRun::begin
   Vec2 position_m = Vec2::Zero();
   RobotMode mode = RobotMode::kWaiting;
   std::uint8_t goal = robot_log::Step::kNoGoal;
-  std::uint16_t neighbours = 0;    ///< it believed near
+  std::uint16_t neighbours = 0;    ///< in its neighbour table
   std::uint32_t plan_version = 0;  ///< of the plan it follows in time; 0: none
   float plan_time_s = 0.0F;        ///< τ of that plan as the robot has it
   float reference_x_m = 0.0F;      ///< x_ref(τ) as the robot has it
@@ -31,33 +31,34 @@ struct TrackPoint {
   Vec2 reference_m() const { return {reference_x_m, reference_y_m}; }
 };
 
-/// Where a robot took another to be.
+/// Position that a robot estimated for one of its neighbours.
 struct EstimatePoint {
   double time_s = 0.0;  ///< since RecordedRun::begin
   RobotId neighbour;
   Vec2 position_m = Vec2::Zero();
 };
 
-/// Everything one robot's robot log says. Between two points a robot moves in a straight line at
-/// constant speed, also from the end of one life of its process to the begin of the next.
+/// Contents of one robot's log. Between two points a robot moves in a straight line at constant
+/// speed, also from the end of one incarnation of its process to the begin of the next.
 struct Track {
   RobotId robot{};
   double radius_m = 0.0;
   std::vector<TrackPoint> points{};  ///< times strictly increasing
   std::vector<EstimatePoint> estimates{};
-  std::vector<std::uint32_t> processes{};  ///< one a life
-  bool ended_gracefully = false;           ///< the last life noted "exit"
-  /// A fallen robot's body stays at the last point until this time; a time before that point is
-  /// that of no body. Set by lay_fallen_bodies().
+  std::vector<std::uint32_t> processes{};  ///< one per incarnation
+  bool ended_gracefully = false;           ///< the last incarnation noted "exit"
+  /// The body of a fallen robot stays at the last point until this time; a time before the last
+  /// point means that there is no body. Set by lay_fallen_bodies().
   double body_until_s = 0.0;
   std::string unreadable{};   ///< why there is no robot log; empty if there is one
-  std::uint64_t damaged = 0;  ///< stretches of the file that are no record, and steps back in time
+  std::uint64_t damaged = 0;  ///< unreadable stretches of the file, and steps back in time
   std::uint64_t late_steps = 0;   ///< later than kLate_us
-  std::uint64_t refused = 0;      ///< messages, over all lives
-  Histogram state_age{};          ///< over all lives
-  std::uint64_t states_sent = 0;  ///< over all lives
+  std::uint64_t refused = 0;      ///< messages, over all incarnations
+  Histogram state_age{};          ///< over all incarnations
+  std::uint64_t states_sent = 0;  ///< over all incarnations
   std::vector<robot_log::Note> notes{};
 
+  /// A step that begins later than this counts as a missed deadline [µs].
   static constexpr std::int32_t kLate_us = 20'000;
 };
 
@@ -71,10 +72,10 @@ struct RunEvent {
 struct PublishedPlan {
   std::uint32_t version = 0;  ///< 1 is the first
   FlowPlan plan;
-  double excess_m = 0.0;  ///< by how much it breaks its own constraints
+  double excess_m = 0.0;  ///< largest violation of its own constraints [m]
 };
 
-/// A run, read. Audits and reports are pure functions of it.
+/// A run as it was read. Audits and reports are pure functions of it.
 struct RecordedRun {
   Mission mission;
   std::vector<PublishedPlan> plans{};  ///< by ascending version
@@ -82,11 +83,11 @@ struct RecordedRun {
   std::vector<Track> tracks{};         ///< by robot id, mission.robots.count of them
   std::vector<RunEvent> events{};
   std::vector<Scene> scenes{};               ///< the first as in the mission file
-  std::string launcher_summary{};            ///< summary.json as it was then
+  std::string launcher_summary{};            ///< text of summary.json
   std::vector<PlanClock> clock{};            ///< the plan's clock as published; stamps ascend
   std::optional<PlanningRecord> planning{};  ///< what the planning method promised, if recorded
 
-  /// Where the swarm was to be in the end.
+  /// The final goal of the swarm: that of the newest scene with a goal, else the mission's.
   const Mixture& goal() const;
   /// The plan that the mission started with; null if none was published.
   const FlowPlan* first_plan() const { return plans.empty() ? nullptr : &plans.front().plan; }
@@ -94,12 +95,12 @@ struct RecordedRun {
   double plan_excess_m() const;
 };
 
-/// Of a run directory, or of a recording of one. Fails (kEnvironment) if there is no readable
-/// mission or no robot log at all. What single robots lack is given by their tracks; a missing plan,
-/// clock or event log is no error.
+/// Reads a run directory, or a recording of one. Fails (kEnvironment) if there is no readable
+/// mission or no robot log at all. What single robots lack is noted in their tracks; a missing
+/// plan, clock or event log is no error.
 Result<RecordedRun> read_run(const std::filesystem::path& from);
 
-/// Makes a track of the records of one robot log, with times since `origin`.
+/// Builds a track from the records of one robot log, with times since `origin` [s].
 class TrackMaker {
  public:
   TrackMaker(RobotId robot, UtcTime origin) : origin_(origin) { track_.robot = robot; }
@@ -110,6 +111,7 @@ class TrackMaker {
   void take(const robot_log::Estimate& estimate);
   void take(const robot_log::LinkStats& stats) { incarnation_ = stats; }
   void take(const robot_log::Note& note);
+  /// Closes the last incarnation and hands over the track; the maker is empty afterwards.
   Track finish();
 
  private:
@@ -117,7 +119,7 @@ class TrackMaker {
 
   UtcTime origin_;
   Track track_{};
-  robot_log::LinkStats incarnation_{};  // newest counters of the current life
+  robot_log::LinkStats incarnation_{};  // newest counters of the current incarnation
 };
 
 }  // namespace swarm::monitor

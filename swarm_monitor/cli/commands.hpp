@@ -8,7 +8,7 @@
 
 #include "swarmflow/core/result.hpp"
 
-/// The program's subcommands.
+/// A subcommand of the program.
 namespace swarm::monitor::cli {
 
 struct Command {
@@ -16,6 +16,7 @@ struct Command {
   std::function<Result<ExitCode>()> act;  ///< what it does once they are read
 };
 
+/// Each declares its options at `program`; the returned action reads them after parsing.
 Command add_audit(CLI::App& program);
 Command add_report(CLI::App& program);
 Command add_record(CLI::App& program);

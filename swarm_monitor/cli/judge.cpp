@@ -8,6 +8,7 @@
 
 namespace swarm::monitor::cli {
 
+/// The options live as long as the command, hence the shared pointer that its closure keeps.
 Command add_audit(CLI::App& program) {
   struct Options {
     std::filesystem::path from;
@@ -23,6 +24,7 @@ Command add_audit(CLI::App& program) {
             const auto result = audit_run(o->from);
             if (!result) return tl::unexpected(result.error());
             std::fputs((o->json ? to_json(*result) : to_text(*result)).c_str(), stdout);
+            // The exit code is the verdict, so that a script needs to parse nothing.
             return result->ok() ? ExitCode::kOk : ExitCode::kCriteriaNotMet;
           }};
 }

@@ -23,8 +23,10 @@
 namespace swarm::monitor::cli {
 namespace {
 
+/// Longest wait per step of view and top; it also bounds the delay of Ctrl-C.
 constexpr Duration kTimeout = std::chrono::milliseconds(10);
-/// Places among those who look on at a run: recorder 0, view 1, top 2.
+/// Numbers of the monitors of a run: recorder 0, view 1, top 2. Each number has a participant port
+/// of its own, so that all three can join the same run.
 constexpr std::uint32_t kViewNumber = 1;
 constexpr std::uint32_t kTopNumber = 2;
 
@@ -33,11 +35,14 @@ struct ViewOptions {
   ViewServerOptions server{};
 };
 
+/// Whether a run is in progress: its launcher writes the summary at the end.
 bool flies(const std::filesystem::path& from) {
   return std::filesystem::is_directory(from) &&
          !std::filesystem::exists(from / shell::kSummaryFile);
 }
 
+/// Serves until a stop signal. The address is printed first, with the token in the fragment, which
+/// browsers do not send to servers.
 Result<ExitCode> serve(ViewServerOptions options, ViewSource& source) {
   const auto server = ViewServer::make(options, source);
   if (!server) return tl::unexpected(server.error());
@@ -48,6 +53,7 @@ Result<ExitCode> serve(ViewServerOptions options, ViewSource& source) {
   return ExitCode::kOk;
 }
 
+/// A run in progress is joined on the bus, a finished run or a recording is read as a whole.
 Result<ExitCode> view(ViewOptions options) {
   if (!flies(options.from)) {
     if (options.server.allow_control) {
@@ -69,6 +75,8 @@ Result<ExitCode> view(ViewOptions options) {
   return serve(options.server, **source);
 }
 
+/// Joins the run as a monitor and redraws the terminal once a second, between polls of 10 ms; ends
+/// with the run.
 Result<ExitCode> top(const std::filesystem::path& run_dir) {
   auto source = look_at_run(run_dir, kTopNumber);
   if (!source) return tl::unexpected(source.error());
@@ -86,7 +94,7 @@ Result<ExitCode> top(const std::filesystem::path& run_dir) {
     facts.latency = (*source)->state().meter().latency();
     winsize window{};
     if (live && ::ioctl(STDOUT_FILENO, TIOCGWINSZ, &window) == 0 && window.ws_row > 0) {
-      facts.rows = static_cast<std::size_t>(std::max(3, window.ws_row - 11));
+      facts.rows = static_cast<std::size_t>(std::max(3, window.ws_row - 11));  // 11: other lines
     }
     received = all;
     shown = now;
@@ -115,14 +123,14 @@ Command add_view(CLI::App& program) {
   command->add_option("--host-name", o->server.host_names,
                       "Name, beside addresses and this machine's own, under which it is opened");
   command->add_flag("--allow-control", o->server.allow_control,
-                    "Let who has the printed address pause, stop and change the mission");
+                    "Allow anyone who has the printed address to control the mission");
   return {command, [o] { return view(*o); }};
 }
 
 Command add_top(CLI::App& program) {
   const auto run_dir = std::make_shared<std::filesystem::path>();
   CLI::App* const command =
-      program.add_subcommand("top", "Show a run that flies in the terminal, once a second");
+      program.add_subcommand("top", "Show a run in progress in the terminal, once a second");
   command->add_option("run_dir", *run_dir, "Directory of the run")
       ->required()
       ->check(CLI::ExistingDirectory);

@@ -23,7 +23,7 @@ Command add_record(CLI::App& program) {
   const auto o = std::make_shared<RecordOptions>();
   o->stop_requested = stop_requested;
   CLI::App* const record =
-      program.add_subcommand("record", "Record the bus of a run that flies, as it is");
+      program.add_subcommand("record", "Record the bus of a run in progress, as it is");
   record->add_option("run_dir", o->run_dir, "Directory of the run")->required();
   record->add_option("--out", o->out, "Recording (default: bus.mcap in the run directory)")
       ->type_name("FILE");
@@ -47,6 +47,8 @@ Command add_merge(CLI::App& program) {
   merge->add_option("run_dir", o->run_dir, "Directory of the run")->required();
   merge->add_option("--out", o->out, "Recording (default: recording.mcap in the run directory)")
       ->type_name("FILE");
+  // Progress goes to stderr and only to a terminal, so that the JSON on stdout and log files stay
+  // clean.
   return {merge, [o]() -> Result<ExitCode> {
             const bool live = ::isatty(STDERR_FILENO) != 0;
             const auto result = merge_run(o->run_dir, o->out, [live](double share) {
@@ -68,8 +70,10 @@ Command add_cat(CLI::App& program) {
   CLI::App* const cat =
       program.add_subcommand("cat", "Print a recording's messages as lines of JSON");
   cat->add_option("file", o->file, "Recording")->required()->type_name("FILE");
-  cat->add_option("--topics", o->topics, "Only topics that begin so, like swarm/,blackbox/step")
+  cat->add_option("--topics", o->topics,
+                  "Only topics with these prefixes, like swarm/,blackbox/step")
       ->delimiter(',');
+  // Damage is reported on stderr at the end: the readable messages were printed by then.
   return {cat, [o]() -> Result<ExitCode> {
             const auto damage = print_messages(o->file, o->topics, [](const std::string& line) {
               std::fputs(line.c_str(), stdout);
@@ -89,15 +93,16 @@ Command add_replay(CLI::App& program) {
   const auto o = std::make_shared<ReplayOptions>();
   o->stop_requested = stop_requested;
   CLI::App* const replay_command = program.add_subcommand(
-      "replay", "Say a recording again on a bus of its own, for whoever joins its run directory");
+      "replay", "Publish a recording again on a bus of its own; others join its run directory");
   replay_command->add_option("file", o->file, "Recording")->required()->type_name("FILE");
   replay_command->add_option("--rate", o->rate, "Times as fast")->check(CLI::Range(0.01, 1000.0));
   replay_command->add_option("--from", o->from_s, "Begin this many seconds after the first message")
       ->check(CLI::NonNegativeNumber);
   replay_command
-      ->add_option("--topics", o->topics, "Only topics that begin so, like swarm/,blackbox/step")
+      ->add_option("--topics", o->topics,
+                   "Only topics with these prefixes, like swarm/,blackbox/step")
       ->delimiter(',');
-  replay_command->add_option("--wait-s", o->wait_s, "Wait this long for somebody to listen")
+  replay_command->add_option("--wait-s", o->wait_s, "Wait this long for a receiver")
       ->check(CLI::NonNegativeNumber);
   replay_command->add_option("--domain", o->domain, "DDS domain (default: a free one)")
       ->check(CLI::Range(0, 229));

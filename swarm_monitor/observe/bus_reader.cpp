@@ -12,15 +12,20 @@
 namespace swarm::monitor {
 namespace {
 
-/// A robot without a neighbour reports a gap larger than any map.
+/// Gaps from here on mean "no neighbour": the wire has no infinity, so that such a robot reports a
+/// gap larger than any map.
 constexpr double kNoNeighbour_m = 1e8;
 
 }  // namespace
 
+/// Stamps of recorded states are accepted, since the run may be a replay of an old recording;
+/// everything else is checked as in an agent.
 BusReader::BusReader(const Mission& mission, Observer& observer)
     : gate_({.limits = link::wire_limits(mission), .stamps = link::Stamps::kRecorded}),
       observer_(observer) {}
 
+/// Dispatch by topic. The index of states is compared first, because states are most of the
+/// traffic.
 void BusReader::take(const TappedSample& sample) {
   const std::string& topic = recorded_topics()[sample.topic].name;
   if (sample.topic == states_index()) {
@@ -40,6 +45,8 @@ void BusReader::take(const TappedSample& sample) {
   }
 }
 
+/// Messages that are not valid CDR of their type count as refused, like those that the gate
+/// refuses.
 template <class M>
 bool BusReader::decode(const TappedSample& sample, M& out) {
   const bool decoded = link::decode(std::as_bytes(sample.bytes), out);
@@ -47,6 +54,8 @@ bool BusReader::decode(const TappedSample& sample, M& out) {
   return decoded;
 }
 
+/// A batch holds the states of several robots; each is checked on its own, so one bad state does
+/// not hide the others.
 void BusReader::take_states(const TappedSample& sample) {
   if (!decode(sample, states_) || !gate_.batch(states_)) return;
   for (const link::RobotStateMessage& state : states_.states) {
@@ -80,6 +89,7 @@ void BusReader::take_status(const TappedSample& sample) {
   }
 }
 
+/// Observers get a reference to the reader's own copy, valid until the next plan.
 void BusReader::take_plan(const TappedSample& sample) {
   link::PlanMessage message;
   if (!decode(sample, message)) return;
@@ -111,7 +121,8 @@ void BusReader::take_heartbeat(const TappedSample& sample) {
 }
 
 void BusReader::take_command(const TappedSample& sample) {
-  // Nothing of a command is reported but that it was refused; what it does, heartbeats report.
+  // Commands are not reported to observers: their effect is visible in heartbeats. They pass the
+  // gate so that refused ones are counted.
   link::CommandMessage message;
   if (decode(sample, message)) (void)gate_.command(message, sample.received);
 }

@@ -11,13 +11,15 @@
 
 namespace swarm::monitor {
 
-/// Decodes samples of the bus, passes them through the gate and reports what passed. Only the age
-/// of states is not judged, for the flight may be a replay. Pure: gets samples and the time.
+/// Decodes samples of the bus, passes them through the gate and reports the accepted ones to an
+/// observer. The age of states is not checked, since the run may be a replay. Pure: samples and
+/// time are arguments.
 class BusReader {
  public:
   /// The observer outlives it.
   BusReader(const Mission& mission, Observer& observer);
 
+  /// Decodes and checks one sample; what is refused is counted and goes no further.
   void take(const TappedSample& sample);
 
   const link::RefusalCounters& refused() const { return gate_.refused(); }

@@ -10,13 +10,16 @@
 namespace swarm::monitor {
 namespace {
 
-/// The index of a robot's point, or of an event after all robots.
+/// The index of a point of a robot, or of an event; events have the robot number after the last
+/// robot.
 struct Item {
   double time_s = 0.0;
   std::size_t robot = 0;
   std::size_t index = 0;
 };
 
+/// All points and events in order of time. The sort is stable, so that points of equal time keep
+/// the order of robots and each robot's points their own.
 std::vector<Item> in_order_of_time(const RecordedRun& run) {
   std::vector<Item> items;
   for (std::size_t robot = 0; robot < run.tracks.size(); ++robot) {
@@ -31,7 +34,7 @@ std::vector<Item> in_order_of_time(const RecordedRun& run) {
   return items;
 }
 
-/// Between two points a robot moves in a straight line.
+/// Velocity over the piece after point i: between two points a robot moves in a straight line.
 Vec2 velocity_after(const std::vector<TrackPoint>& points, std::size_t i) {
   if (i + 1 >= points.size()) return Vec2::Zero();
   const double lasts_s = points[i + 1].time_s - points[i].time_s;
@@ -40,6 +43,8 @@ Vec2 velocity_after(const std::vector<TrackPoint>& points, std::size_t i) {
 
 }  // namespace
 
+/// Plans and scenes come first; states and
+/// events follow in order of time.
 Result<void> observe_recording(const std::filesystem::path& from, Observer& observer) {
   const auto run = read_run(from);
   if (!run) return tl::unexpected(run.error());

@@ -11,10 +11,12 @@
 namespace swarm::monitor {
 namespace {
 
+/// Period of the polls: shorter than a control period, so an observer's delay is below one tick.
 constexpr Duration kPoll = std::chrono::milliseconds(20);
 
 }  // namespace
 
+/// The observer gets the mission before any message. `go_on` is asked once per poll.
 Result<void> observe_run(const std::filesystem::path& run_dir, Observer& observer,
                          const std::function<bool()>& go_on) {
   const auto mission = load_mission(run_dir / shell::kMissionFile, open_catalogue());

@@ -18,12 +18,16 @@
 namespace swarm::monitor {
 namespace {
 
+/// Number of cell topics at most (each is a reader to be discovered), and the least depth of a
+/// reader's history.
 constexpr std::int64_t kMostCells = 400;
 constexpr int kLeastDepth = 256;
-/// A writer's clock that is this far off is not believed.
+/// A sample's stamp of sending counts if it is at most this old and not in the future; otherwise
+/// the writer's clock is wrong and the time of reception takes its place.
 constexpr Duration kMostDelay = std::chrono::seconds(2);
 
-/// Appends the structs of idl/swarm.idl that a T is made of, itself last.
+/// Appends the IDL structs that a message type T consists of, innermost first, T itself last: the
+/// order in which IDL must declare them.
 template <class T>
 void add_structs(std::vector<std::string_view>& structs) {
   if constexpr (link::kIsSequence<T>) {
@@ -37,6 +41,7 @@ void add_structs(std::vector<std::string_view>& structs) {
   }
 }
 
+/// The structs of the message with this type name, found by trying every message of the list.
 template <class... M>
 std::vector<std::string_view> structs_of(link::MessageList<M...>, const std::string& type) {
   std::vector<std::string_view> structs;
@@ -44,6 +49,8 @@ std::vector<std::string_view> structs_of(link::MessageList<M...>, const std::str
   return structs;
 }
 
+/// The schema of a recorded topic: its IDL, cut to the structs that it needs, so that a recording
+/// can be read without this repository.
 mcap::Schema schema_of(const std::string& type) {
   for (const robot_log::Kind& kind : robot_log::kinds()) {
     if (kind.type == type) {
@@ -54,6 +61,7 @@ mcap::Schema schema_of(const std::string& type) {
   return {.name = type, .encoding = "omgidl", .data = mcap::wire_idl(structs)};
 }
 
+/// Reads all monitor topics, and states from the cells' topics or from the multicast groups.
 class RunTap final : public BusTap {
  public:
   explicit RunTap(std::unique_ptr<link::Participant> participant)
@@ -69,6 +77,7 @@ class RunTap final : public BusTap {
   }
   void listen(std::unique_ptr<link::GroupTap> groups) { groups_ = std::move(groups); }
 
+  // Group samples first: only their sockets are waited for.
   void take(Duration timeout, const Sink& sink) override {
     if (groups_) {
       groups_->take_raw(timeout, [&](std::span<const std::byte> bytes) {
@@ -84,7 +93,7 @@ class RunTap final : public BusTap {
     for (const auto& [topic, reader] : readers_) {
       messages_.clear();
       reader->take(messages_);
-      // A reader hands over one instance after the other.
+      // A reader returns its samples instance by instance; recordings need the order of time.
       std::stable_sort(messages_.begin(), messages_.end(),
                        [](const auto& a, const auto& b) { return a.sent_utc_ns < b.sent_utc_ns; });
       for (const link::RawMessage& message : messages_) {
@@ -115,7 +124,8 @@ class RunTap final : public BusTap {
   std::vector<std::byte> padded_;
 };
 
-/// Every cell of the map, and those around it.
+/// Reads the state topic of every cell of the map and of the ring of cells around it, for robots
+/// that leave the bounds.
 Result<void> listen_to_cells(RunTap& tap, const Mission& mission) {
   const double size = mission.link.cell_size_m;
   const link::Cell first = link::cell_of(mission.world.bounds_m().min_m - Vec2(size, size), size);
@@ -142,6 +152,7 @@ Result<void> listen_to_cells(RunTap& tap, const Mission& mission) {
 
 }  // namespace
 
+/// Built once; its order is that of TappedSample::topic.
 const std::vector<RecordedTopic>& recorded_topics() {
   static const std::vector<RecordedTopic> kTopics = [] {
     std::vector<RecordedTopic> topics;
@@ -156,6 +167,8 @@ const std::vector<RecordedTopic>& recorded_topics() {
 
 std::uint32_t states_index() { return static_cast<std::uint32_t>(recorded_topics().size() - 1); }
 
+/// Joins as a monitor, which agents do not discover: a recorder must not change the load that it
+/// measures.
 Result<std::unique_ptr<BusTap>> tap_bus(const std::filesystem::path& run_dir,
                                         std::uint32_t number) {
   const auto mission = load_mission(run_dir / shell::kMissionFile, open_catalogue());

@@ -22,31 +22,34 @@ struct RecordedTopic {
   mcap::Schema schema{};
 };
 
-/// All that a recording of the bus can hold; the last is states. Their order is that of
-/// TappedSample::topic.
+/// All topics that a recording of the bus can hold; the last one is the robots' states.
+/// TappedSample::topic is an index into this list.
 const std::vector<RecordedTopic>& recorded_topics();
 std::uint32_t states_index();
 
+/// One sample as it was on the wire. `bytes` are valid during the sink's call alone.
 struct TappedSample {
   std::uint32_t topic = 0;
   UtcTime received{};
-  UtcTime sent{};  ///< by its writer's clock, where that tells; else as heard
+  UtcTime sent{};  ///< by its writer's clock if plausible, else as received
   std::span<const unsigned char> bytes{};
 };
 
-/// Hears everything of a run that flies, as it is on the bus, without being heard.
+/// Receives everything of a run in progress as it is on the bus, without being discovered by
+/// agents.
 class BusTap {
  public:
   using Sink = std::function<void(const TappedSample&)>;
   virtual ~BusTap() = default;
 
-  /// Hands over what came; waits up to `timeout` for states.
+  /// Hands over the samples that arrived; waits up to `timeout` for states.
   virtual void take(Duration timeout, const Sink& sink) = 0;
 
-  /// Whether launcher or planner are there.
+  /// Whether a reader is matched with a writer of the launcher or planner.
   virtual bool receives_anything() const = 0;
 };
 
+/// Joins the run of a directory. `number` distinguishes the monitors of one run.
 Result<std::unique_ptr<BusTap>> tap_bus(const std::filesystem::path& run_dir,
                                         std::uint32_t number = 0);
 

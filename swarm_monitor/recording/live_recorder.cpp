@@ -14,9 +14,10 @@
 namespace swarm::monitor {
 namespace {
 
+/// Wait for states per step, and the period in which chunks are written to the disk.
 constexpr Duration kTimeout = std::chrono::milliseconds(5);
 constexpr Duration kFlushEvery = std::chrono::seconds(1);
-/// A run whose launcher was killed writes no summary: its recording ends when all is silent.
+/// A run whose launcher was killed writes no summary: its recording ends after this silence.
 constexpr Duration kSilence = std::chrono::seconds(20);
 constexpr std::size_t kMaxMissionBytes = 16U << 20U;
 
@@ -24,6 +25,8 @@ std::int64_t ns(UtcTime time) { return time.time_since_epoch().count(); }
 
 }  // namespace
 
+/// The loop takes samples as they are and decodes states only to count losses. It ends at a stop
+/// signal, after the duration, with the run's summary, or after a long silence.
 Result<RecordResult> record_bus(const RecordOptions& options) {
   const auto mission_yaml =
       shell::read_file(options.run_dir / shell::kMissionFile, kMaxMissionBytes);

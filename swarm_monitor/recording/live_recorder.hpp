@@ -22,6 +22,7 @@ struct RecordOptions {
   std::function<bool()> stop_requested{};  ///< asked every few milliseconds
 };
 
+/// Counters of a recording.
 struct RecordResult {
   std::filesystem::path file{};
   std::uint64_t messages = 0;
@@ -30,8 +31,8 @@ struct RecordResult {
   std::vector<std::uint64_t> by_topic;  ///< as recorded_topics()
 };
 
-/// Records the bus of a run as it is. What was received is on the disk a second later. `mission.yaml`
-/// of the run is attached.
+/// Records the bus of a run. Messages are on the disk at most a second after their reception.
+/// `mission.yaml` of the run is attached, so that the recording can be replayed by itself.
 Result<RecordResult> record_bus(const RecordOptions& options);
 
 std::string to_json(const RecordResult& result);

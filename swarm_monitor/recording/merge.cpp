@@ -16,9 +16,10 @@
 namespace swarm::monitor {
 namespace {
 
+/// Limit of an attached text file.
 constexpr std::size_t kMaxTextBytes = 256U << 20U;
 
-/// All messages of several files, in memory, to be put in order.
+/// All messages of several files in memory, sorted by time when they are written.
 class Pile {
  public:
   Result<mcap::Damage> add(const std::filesystem::path& file) {
@@ -35,7 +36,7 @@ class Pile {
   }
 
   void write(mcap::Writer& writer, const std::function<void(double)>& progress) {
-    // Files come one after the other, and in each its order is kept where stamps are equal.
+    // The stable sort keeps the order of files, and of messages within a file, at equal stamps.
     std::stable_sort(entries_.begin(), entries_.end(),
                      [](const Entry& a, const Entry& b) { return a.log_time_ns < b.log_time_ns; });
     std::vector<std::uint16_t> numbers;
@@ -52,6 +53,7 @@ class Pile {
     }
   }
 
+  // Earliest log time of all messages; 0 without any.
   std::int64_t begin_ns() const {
     std::int64_t begin = 0;
     for (const Entry& entry : entries_) {
@@ -68,6 +70,7 @@ class Pile {
     std::uint32_t channel = 0;
   };
 
+  // The number of a channel in the output: the same topic and type in several files is one channel.
   std::uint32_t number_of(const mcap::Channel& channel, const mcap::Schema& schema) {
     const auto [it, added] = numbers_.try_emplace({channel.topic, schema.name},
                                                   static_cast<std::uint32_t>(channels_.size()));
@@ -81,6 +84,8 @@ class Pile {
   std::vector<std::pair<mcap::Channel, mcap::Schema>> channels_;
 };
 
+/// The wanted files of a folder by name, so that the result does not depend on the file system's
+/// order.
 std::vector<std::filesystem::path> files_in(const std::filesystem::path& folder,
                                             const std::function<bool(const std::string&)>& wanted) {
   std::vector<std::filesystem::path> files;
@@ -94,6 +99,8 @@ std::vector<std::filesystem::path> files_in(const std::filesystem::path& folder,
   return files;
 }
 
+/// Files of a run that the audit needs beside the robot logs: with them a recording alone can be
+/// audited.
 bool is_attached(const std::string& name) {
   return name == shell::kMissionFile || name == shell::kSceneFile || name == shell::kEventsFile ||
          name == shell::kSummaryFile || name == shell::kRunFile || name == shell::kPlanStatsFile ||
@@ -108,6 +115,8 @@ std::string media_type_of(const std::string& name) {
 
 }  // namespace
 
+/// A file that cannot be read counts as damaged and does not stop the merge: after a crash most of
+/// the logs are intact.
 Result<MergeResult> merge_run(const std::filesystem::path& run_dir,
                               const std::filesystem::path& out,
                               const std::function<void(double)>& progress) {

@@ -18,11 +18,13 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+/// 64-bit integers become texts: JSON readers that use doubles lose integers beyond 2⁵³.
 std::string text(std::int64_t value) { return fmt::format("{}", value); }
 std::string text(std::uint64_t value) { return fmt::format("{}", value); }
 std::string text(UtcTime time) { return text(time.time_since_epoch().count()); }
 
-/// A field of a message by its type: its name and place do not matter.
+/// JSON of a field, chosen by its type alone: messages list their fields, so a new message needs no
+/// code here.
 template <class T>
 Json json_of(const T& value) {
   if constexpr (link::Message<T>) {
@@ -43,6 +45,8 @@ Json json_of(const T& value) {
   }
 }
 
+/// Records of robot logs have structs of their own, hence a function for each; the names are those
+/// of the IDL.
 Json json_of(RobotId robot, const robot_log::Header& r) {
   return {{"stamp_utc_ns", text(r.stamp)},
           {"robot_id", robot.value()},
@@ -111,6 +115,7 @@ Json fields_of(link::MessageList<M...>, const std::string& type,
   return fields;
 }
 
+/// Robot log records first, then messages of the bus by type name.
 Json data_of(const mcap::Message& message, const mcap::Channel& channel, const std::string& type) {
   if (const auto record = robot_log::decode(message, channel)) {
     return std::visit([&](const auto& r) { return json_of(record->robot, r); }, record->record);

@@ -11,10 +11,10 @@
 
 namespace swarm::monitor {
 
-/// Hands over every message of a recording as a line of JSON: topic, type, times, sequence and, as
-/// "data", its fields by their names in the IDL. 64-bit integers are texts, since JSON's numbers
-/// are too short for them; what does not decode has "data": null. `topics`: those that begin with
-/// one of these; empty: all.
+/// Hands over every message of a recording as a line of JSON: topic, type, times, sequence number
+/// and, as "data", its fields by their names in the IDL. 64-bit integers are texts, since many
+/// readers take JSON numbers for doubles; a message that cannot be decoded has "data": null.
+/// `topics` are prefixes; empty: all.
 Result<mcap::Damage> print_messages(const std::filesystem::path& file,
                                     const std::vector<std::string>& topics,
                                     const std::function<void(const std::string&)>& print);

@@ -20,14 +20,16 @@ namespace swarm::monitor {
 namespace {
 
 constexpr Duration kStep = std::chrono::milliseconds(20);
-/// For who hears last what was published last.
+/// Time after the last message in which its receivers can still request it again.
 constexpr Duration kLinger = std::chrono::seconds(1);
 
-/// What a writer keeps to say it again. With ten thousand messages every acknowledgement took 10
-/// ms.
+/// History depth of a replay's writer at most. With ten thousand messages every acknowledgement
+/// took 10 ms.
 constexpr int kKept = 500;
 
-/// A writer for every topic, at the place of who said it.
+/// One writer per topic, at the participant of the program that published it: plan and heartbeat
+/// from the planner's, all others from the launcher's. So discovery and ownership are those of a
+/// run.
 class Cast {
  public:
   static Result<Cast> join(const shell::RunInfo& run) {
@@ -40,7 +42,8 @@ class Cast {
     for (link::MonitorTopic& topic : topics) {
       topic.wire.qos.depth = std::min(topic.wire.qos.depth, kKept);
       const bool planner = topic.recorded == "swarm/plan" || topic.recorded == "swarm/heartbeat";
-      auto writer = (planner ? cast.participants_.planner : cast.participants_.launcher)->make_writer(topic.wire);
+      auto writer = (planner ? cast.participants_.planner : cast.participants_.launcher)
+                        ->make_writer(topic.wire);
       if (!writer) return tl::unexpected(writer.error());
       cast.writers_.push_back(std::move(*writer));
     }
@@ -70,17 +73,19 @@ Result<void> write_attachments(const Score& score, const std::filesystem::path& 
   bool has_mission = false;
   for (const mcap::Attachment& attachment : score.attachments) {
     const std::filesystem::path name(attachment.name);
-    // The run directory has its own, and a recording must not write where it likes.
+    // The replay has its own run information, and its summary marks the end. Names with folders are
+    // skipped: a recording must not write outside the run directory.
     if (name != name.filename() || name == shell::kRunFile || name == shell::kSummaryFile) continue;
     if (auto written = shell::write_file(dir / name, attachment.data); !written) return written;
     has_mission = has_mission || attachment.name == shell::kMissionFile;
   }
   if (has_mission) return {};
-  return fail(
-      ErrorCode::kBadInput,
-      fmt::format("the recording holds no {}: nobody could join its replay", shell::kMissionFile));
+  return fail(ErrorCode::kBadInput,
+              fmt::format("the recording holds no {}: a replay of it could not be joined",
+                          shell::kMissionFile));
 }
 
+/// The recorded summary, so that an audit of the replay's directory finds it.
 std::string summary_of(const Score& score) {
   for (const mcap::Attachment& attachment : score.attachments) {
     if (attachment.name == shell::kSummaryFile) return attachment.data;
@@ -90,6 +95,8 @@ std::string summary_of(const Score& score) {
 
 }  // namespace
 
+/// Makes a run directory like a launcher's, waits for receivers, publishes every message at its
+/// time, and writes the summary, by which recorders and views of the replay end.
 Result<void> replay(const ReplayOptions& options) {
   const auto score = read_score(options.file, options.from_s, options.topics);
   if (!score) return tl::unexpected(score.error());
@@ -116,6 +123,8 @@ Result<void> replay(const ReplayOptions& options) {
   }
   const auto begin = std::chrono::steady_clock::now();
   std::uint64_t refused = 0;
+  // Messages are due at begin + at/rate on the steady clock; while it waits, the loop serves DDS
+  // every 20 ms.
   for (const ReplayMessage& message : score->messages) {
     const auto at = begin + std::chrono::duration_cast<Duration>(message.at / options.rate);
     while (!stopped() && std::chrono::steady_clock::now() < at) {

@@ -14,7 +14,7 @@
 
 namespace swarm::monitor {
 
-/// A message of a recording, to be said again `at` after its begin.
+/// A message of a recording, to be published `at` after the begin of the replay.
 struct ReplayMessage {
   Duration at{};
   std::uint32_t topic = 0;  ///< as recorded_topics()
@@ -22,35 +22,36 @@ struct ReplayMessage {
   std::size_t begin = 0;  ///< in Score::bytes
 };
 
-/// What a replay says and when: in every topic in the order of the file, at the times its writer
-/// had said it; a writer's clock that steps back stands still instead.
+/// The messages of a replay and their times: each topic in the order of the file, at the times when
+/// its writer sent it. Where a writer's clock steps back, the later messages get the latest time so
+/// far.
 struct Score {
   std::vector<ReplayMessage> messages{};  ///< in the order of `at`
   mcap::Bytes bytes{};
   std::vector<mcap::Attachment> attachments{};
-  std::uint64_t foreign = 0;  ///< messages of topics that are not ours: left out
+  std::uint64_t foreign = 0;  ///< messages of unknown or unwanted topics, left out
   std::uint64_t damaged = 0;
 };
 
-/// `topics`: those that begin with one of these; empty: all. Messages before `from_s` are left out,
-/// but for the last of each latched topic (plan, scene, command), which comes first.
+/// `topics` are prefixes; empty: all. Messages before `from_s` are left out, except for the last
+/// one of each latched topic (plan, scene, command), which comes first.
 Result<Score> read_score(const std::filesystem::path& file, double from_s,
                          const std::vector<std::string>& topics);
 
 struct ReplayOptions {
   std::filesystem::path file;
-  std::filesystem::path out{};  ///< its run directory; empty: runs/replay-<time>
+  std::filesystem::path out{};  ///< run directory of the replay; empty: runs/replay-<time>
   double rate = 1.0;
   double from_s = 0.0;
   std::vector<std::string> topics{};
   int domain = -1;      ///< negative: a free one
-  double wait_s = 5.0;  ///< for somebody to listen
+  double wait_s = 5.0;  ///< for receivers of all topics
   std::function<bool()> stop_requested{};
 };
 
-/// Says a recording again on a bus of its own, from the places of launcher and planner, with a run
-/// directory by which others join as they join a run: record, view, or an agent. Their clocks tell
-/// the time of the replay; stamps inside messages stay as they were.
+/// Publishes a recording on a bus of its own, as launcher and planner did, with a run directory by
+/// which others join as they join a run: record, view, or an agent. The time of sending is that of
+/// the replay; stamps inside messages stay as they were.
 Result<void> replay(const ReplayOptions& options);
 
 }  // namespace swarm::monitor

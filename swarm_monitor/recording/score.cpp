@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-// Reads a recording as what a replay says.
+/// Reads a recording into what a replay publishes and when.
 #include <algorithm>
 #include <limits>
 #include <map>
@@ -14,18 +14,22 @@
 namespace swarm::monitor {
 namespace {
 
+/// A topic is wanted if it begins with one of the prefixes; without prefixes all are.
 bool is_wanted(const std::string& topic, const std::vector<std::string>& wanted) {
   return wanted.empty() || std::any_of(wanted.begin(), wanted.end(), [&](const std::string& begin) {
            return topic.starts_with(begin);
          });
 }
 
+/// Topics whose last message stays valid: a replay that begins in the middle needs it.
 bool is_latched(const std::string& topic) {
   return topic == "swarm/plan" || topic == "swarm/scene" || topic == "swarm/command";
 }
 
 }  // namespace
 
+/// Messages in the order of their sending. A sending time that goes back (a clock that was set) is
+/// raised to the latest one of its topic, so that each topic keeps the order of the file.
 Result<Score> read_score(const std::filesystem::path& file, double from_s,
                          const std::vector<std::string>& topics) {
   std::map<std::string, std::uint32_t> numbers;
@@ -64,6 +68,7 @@ Result<Score> read_score(const std::filesystem::path& file, double from_s,
   std::stable_sort(messages.begin(), messages.end(),
                    [](const auto& a, const auto& b) { return a.at < b.at; });
   const Duration begin = messages.front().at + from_seconds(from_s);
+  // The last message of each latched topic before the begin moves to the begin.
   std::map<std::uint32_t, ReplayMessage> latched;
   auto first = messages.begin();
   for (; first != messages.end() && first->at < begin; ++first) {

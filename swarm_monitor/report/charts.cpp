@@ -14,17 +14,19 @@
 namespace swarm::monitor {
 namespace {
 
+/// Size of a chart and its margins for labels [px].
 constexpr double kWidth = 640.0, kHeight = 240.0;
 constexpr double kLeft = 46.0, kRight = 14.0, kTop = 14.0, kBottom = 34.0;
 constexpr double kInnerWidth = kWidth - kLeft - kRight;
 constexpr double kInnerHeight = kHeight - kTop - kBottom;
 
-/// An axis that maps [low, high] to pixels.
+/// A linear map from [low, high] to pixels; a negative length runs upwards.
 struct Axis {
   double low, high, begin_px, length_px;
   double at(double value) const { return begin_px + (value - low) / (high - low) * length_px; }
 };
 
+/// The SVG element around a chart. It scales with the page by its view box.
 std::string document(const std::string& body) {
   return fmt::format("<svg class=\"chart\" viewBox=\"0 0 {} {}\" role=\"img\">\n{}</svg>\n", kWidth,
                      kHeight, body);
@@ -52,6 +54,8 @@ void add_title_x(std::string& out, std::string_view title) {
 
 }  // namespace
 
+/// Polylines of step curves. Values above `cap` are drawn at it, which its tick marks with ≥, so
+/// that one outlier does not flatten the curves.
 std::string line_chart(std::span<const Curve> curves, double step_s, double cap,
                        std::string_view title) {
   double low = 0.0;
@@ -96,6 +100,7 @@ std::string line_chart(std::span<const Curve> curves, double step_s, double cap,
   return document(body);
 }
 
+/// Grouped bars: ten equal bins over [0, cap], the last one open upwards.
 std::string bar_chart(std::span<const Curve> curves, double cap, std::string_view title) {
   constexpr std::size_t kBars = 10;
   std::vector<std::array<std::size_t, kBars>> counts(curves.size());
@@ -141,6 +146,8 @@ std::string bar_chart(std::span<const Curve> curves, double cap, std::string_vie
   return document(body);
 }
 
+/// Bars of equal width in log₂ of the age, with marks at the median and
+/// the 99 % quantile.
 std::string histogram_chart(const Histogram& histogram) {
   if (histogram.count() == 0) return {};
   // Two bars per power of two: 16 bins are more than a chart shows.

@@ -12,6 +12,7 @@
 /// Charts as inline SVG, coloured by the page's style sheet.
 namespace swarm::monitor {
 
+/// One curve of a chart, with its legend.
 struct Curve {
   std::string name;
   std::vector<double> values;  ///< one per step of `step_s`, from 0 on

@@ -10,6 +10,8 @@
 
 namespace swarm::monitor {
 
+/// The height follows from the aspect ratio of the SVG's view box. White is painted first, because
+/// the map's ground is transparent at its margin.
 Result<void> write_png(const std::filesystem::path& file, const std::string& svg, int width_px) {
   const auto failed = [&](const char* what) {
     return fail(ErrorCode::kEnvironment, fmt::format("{}: {}", file.string(), what));
@@ -17,7 +19,7 @@ Result<void> write_png(const std::filesystem::path& file, const std::string& svg
   const std::unique_ptr<RsvgHandle, void (*)(void*)> handle(
       ::rsvg_handle_new_from_data(reinterpret_cast<const guint8*>(svg.data()), svg.size(), nullptr),
       ::g_object_unref);
-  if (!handle) return failed("the picture is no SVG that can be drawn");
+  if (!handle) return failed("the image is not an SVG that can be drawn");
   gboolean has_width = FALSE, has_height = FALSE, has_box = FALSE;
   RsvgLength width{}, height{};
   RsvgRectangle box{};
@@ -34,7 +36,7 @@ Result<void> write_png(const std::filesystem::path& file, const std::string& svg
   ::cairo_paint(cairo.get());
   const RsvgRectangle all{0.0, 0.0, static_cast<double>(width_px), static_cast<double>(height_px)};
   if (::rsvg_handle_render_document(handle.get(), cairo.get(), &all, nullptr) == FALSE) {
-    return failed("the picture cannot be drawn");
+    return failed("the image cannot be drawn");
   }
   const cairo_status_t status = ::cairo_surface_write_to_png(surface.get(), file.c_str());
   return status == CAIRO_STATUS_SUCCESS ? Result<void>{} : failed(::cairo_status_to_string(status));

@@ -20,6 +20,7 @@
 namespace swarm::monitor {
 namespace {
 
+/// Rows of the event table at most: a page of tens of thousands of rows is slow to open.
 constexpr std::size_t kMaxEventRows = 500;
 
 /// Collects text; `add` takes fmt's format strings.
@@ -39,16 +40,19 @@ enum class Tone { kPlain, kGood, kBad };
 
 Tone tone_if(bool good) { return good ? Tone::kGood : Tone::kBad; }
 
+/// One number of the overview with its label; the tone colours it as good or bad.
 void add_figure(Page& page, std::string_view value, std::string_view label,
                 Tone tone = Tone::kPlain) {
   const char* css_class = tone == Tone::kGood ? " good" : tone == Tone::kBad ? " bad" : "";
   page.add("<div class=\"figure{}\"><b>{}</b><span>{}</span></div>\n", css_class, value, label);
 }
 
+/// A number with its unit, or a dash where it was not measured.
 std::string number(const std::optional<double>& value, int digits, std::string_view unit) {
   return value ? fmt::format("{:.{}f} {}", *value, digits, unit) : "–";
 }
 
+/// Name, verdict, time and size of the run, and the reasons if it failed.
 void add_header(Page& page, const AuditedRun& audited) {
   const Audit& audit = audited.audit;
   const auto begin = std::chrono::floor<std::chrono::seconds>(audited.run.begin);
@@ -64,6 +68,7 @@ void add_header(Page& page, const AuditedRun& audited) {
   page.add("</ul>\n");
 }
 
+/// The headline numbers of the tracking; its charts follow below.
 void add_tracking(Page& page, const Tracking& tracking) {
   if (tracking.w2) {
     add_figure(page, number(tracking.w2->ratio(), 2, "×"), "W2 to the plan / floor of sampling");
@@ -111,7 +116,7 @@ void add_figures(Page& page, const Audit& audit) {
     return audit.estimate ? std::optional(*audit.estimate.*p) : std::nullopt;
   };
   add_figure(page, number(estimate(&EstimateError::p99_cm), 1, "cm"),
-             "neighbours wrongly believed by, 99 %");
+             "error of estimated neighbours, 99 %");
   add_figure(page, fmt::format("{:.3f} %", 100.0 * audit.deadline_miss_ratio),
              "control steps over 20 ms late");
   add_figure(page, fmt::format("{}", audit.refused_messages), "messages refused");
@@ -132,6 +137,7 @@ void add_figures(Page& page, const Audit& audit) {
   page.add("</div>\n");
 }
 
+/// Gaps over time and per robot, the tracking figures, and the ages of states.
 void add_charts(Page& page, const AuditedRun& audited) {
   const std::array<Curve, 2> curves{{{"between robots", audited.robots.by_window_m},
                                      {"to obstacles", audited.obstacles.by_window_m}}};
@@ -157,14 +163,14 @@ void add_charts(Page& page, const AuditedRun& audited) {
   page.add("</div>\n");
 }
 
-/// Who did not come home, or wrote no readable box, and what is known of why.
+/// Table of the robots that were lost or whose log is damaged, with what is known of the cause.
 void add_losses(Page& page, const AuditedRun& audited) {
   std::vector<std::string> rows;
   for (std::size_t i = 0; i < audited.run.tracks.size(); ++i) {
     const Track& track = audited.run.tracks[i];
     if (!audited.audit.by_robot[i].lost && track.damaged == 0) continue;
     std::string why = !track.unreadable.empty() ? escape_xml(track.unreadable)
-                      : !track.ended_gracefully ? "its process ended without a word"
+                      : !track.ended_gracefully ? "its process ended without logging its exit"
                                                 : "";
     if (track.damaged > 0) {
       why += fmt::format("{}{} damaged places in its robot log", why.empty() ? "" : "; ",
@@ -191,6 +197,7 @@ void add_losses(Page& page, const AuditedRun& audited) {
   page.add("</tbody></table></div>\n");
 }
 
+/// A gap in the table of robots; capped gaps sort by the cap.
 std::string gap_cell(double gap_m) {
   if (gap_m >= Clearance::kCap_m) {
     return fmt::format("<td data-key=\"{0}\">≥ {0:.0f}</td>", Clearance::kCap_m);
@@ -198,6 +205,7 @@ std::string gap_cell(double gap_m) {
   return fmt::format("<td{}>{:.3f}</td>", gap_m <= 0.0 ? " class=\"bad-text\"" : "", gap_m);
 }
 
+/// One row per robot. Columns sort in the browser by `data-key` where the text is not a number.
 void add_robots(Page& page, const AuditedRun& audited) {
   page.add(
       "<h2>Robots</h2>\n<div class=\"scroll\"><table class=\"sortable\"><thead><tr><th>robot</th>"
@@ -227,7 +235,8 @@ void add_robots(Page& page, const AuditedRun& audited) {
   page.add("</tbody></table></div>\n");
 }
 
-/// What happened, from the event log and from the robots' own notes; routine notes are left out.
+/// The events of the run from the event log and the robots' notes. Routine notes (mode, plan, exit)
+/// are left out.
 std::vector<RunEvent> events_of(const RecordedRun& run) {
   std::vector<RunEvent> events = run.events;
   for (const Track& track : run.tracks) {
@@ -278,7 +287,7 @@ void add_events(Page& page, const RecordedRun& run) {
 
 std::string paths_svg(const AuditedRun& audited) {
   const RecordedRun& run = audited.run;
-  // As it stood in the end.
+  // Obstacles as they stood at the end of the run.
   MapSvg map(world_phases(run.mission.world, run.scenes).back().world);
   map.add_start(run.mission.start);
   map.add_goal(run.goal());
@@ -306,6 +315,7 @@ std::string paths_svg(const AuditedRun& audited) {
   return map.finish();
 }
 
+/// One self-contained page: style, script and SVG are inline.
 std::string report_html(const AuditedRun& audited) {
   Page page;
   add_header(page, audited);

@@ -13,12 +13,12 @@ namespace swarm::monitor {
 /// contacts.
 std::string paths_svg(const AuditedRun& audited);
 
-/// A run on one page that needs nothing else: no network, no other file.
+/// The report of a run as one HTML page that loads nothing: no network, no other file.
 std::string report_html(const AuditedRun& audited);
 
 /// Audits a run and writes report.html, paths.svg and paths.png into its directory.
 Result<AuditedRun> write_report(const std::filesystem::path& run_dir);
-/// The same of a run that was audited already.
+/// The same for a run that was audited already.
 Result<void> write_report(const std::filesystem::path& run_dir, const AuditedRun& audited);
 
 }  // namespace swarm::monitor

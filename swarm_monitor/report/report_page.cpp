@@ -9,6 +9,8 @@
 namespace swarm::monitor {
 namespace {
 
+/// Colours are variables, so that the dark theme replaces them in one place; print uses the light
+/// ones.
 constexpr std::string_view kPageStyle = R"(
 :root{--page:#fff;--ink:#1d232b;--soft:#5b6470;--line:#dfe3e8;--card:#f6f7f9;
 --good:#12805c;--bad:#c5221f;--s0:#1f77c9;--s1:#d9661f;--s2:#7a5cc0;color-scheme:light}
@@ -60,6 +62,8 @@ border:0}h2{break-after:avoid}.figure,figure,tr{break-inside:avoid}th{position:s
 .badge,.figure,.dot{-webkit-print-color-adjust:exact;print-color-adjust:exact}}
 )";
 
+/// Sorts by number where both cells are numbers, else by text; `data-key` replaces the text of a
+/// cell.
 constexpr std::string_view kScript = R"(
 for (const table of document.querySelectorAll('table.sortable')) {
   const heads = [...table.tHead.rows[0].cells];

@@ -13,11 +13,12 @@
 namespace swarm::monitor {
 namespace {
 
+/// Largest size of a map [px]; the world's aspect ratio decides which one it reaches.
 constexpr double kWidth_px = 1000.0;
 constexpr double kMostHeight_px = 1000.0;
 
-/// Rules of a map: plain properties, no variables, so that every viewer of SVG shows them. Dark
-/// colours only on screens: prints are light.
+/// Style of a map: plain properties without variables, because not every SVG viewer supports those.
+/// Dark colours apply to screens alone, since prints are light.
 constexpr std::string_view kSvgStyle = R"(
 .map text{font:11px system-ui,sans-serif;fill:#5b6470}
 .map .ground{fill:#fbfaf7;stroke:#9aa3ad}
@@ -55,7 +56,8 @@ stroke-linejoin:round;paint-order:stroke}
 }
 )";
 
-/// Length of a byte sequence that is one UTF-8 character at the front of `text`; 0 if it is none.
+/// Length of the UTF-8 character at the front of `text`; 0 if there is no valid one. The lead byte
+/// gives the length, continuation bytes are 10xxxxxx.
 std::size_t utf8_length(std::string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const unsigned char lead = byte(0);
@@ -68,12 +70,13 @@ std::size_t utf8_length(std::string_view text) {
   for (std::size_t i = 1; i < n; ++i) {
     if ((byte(i) & 0xC0U) != 0x80U) return 0;
   }
-  // Overlong forms and surrogates.
+  // Overlong forms and surrogates are no valid UTF-8.
   if (n == 3 && ((lead == 0xE0 && byte(1) < 0xA0) || (lead == 0xED && byte(1) >= 0xA0))) return 0;
   if (n == 4 && ((lead == 0xF0 && byte(1) < 0x90) || (lead == 0xF4 && byte(1) >= 0x90))) return 0;
   return n;
 }
 
+/// Distance from p to the segment a–b: the projection clamped to the segment.
 double distance_to_segment(const Vec2& p, const Vec2& a, const Vec2& b) {
   const Vec2 d = b - a;
   const double squared = d.squaredNorm();
@@ -83,6 +86,7 @@ double distance_to_segment(const Vec2& p, const Vec2& a, const Vec2& b) {
 
 }  // namespace
 
+/// The smallest of 1, 2, 5, 10 times a power of ten that is not below span/steps.
 double round_step(double span, double steps) {
   const double raw = span / steps;
   const double power = std::pow(10.0, std::floor(std::log10(raw)));
@@ -92,6 +96,8 @@ double round_step(double span, double steps) {
   return 10.0 * power;
 }
 
+/// Robot notes and event texts come from other programs: whatever bytes they hold, the page stays
+/// valid and runs no script of theirs.
 std::string escape_xml(std::string_view text) {
   std::string out;
   out.reserve(text.size());
@@ -119,6 +125,9 @@ std::string escape_xml(std::string_view text) {
   return out;
 }
 
+/// Douglas–Peucker with a stack instead of recursion, since a track has thousands of points: keeps
+/// the point farthest from the chord if it is off by more than the tolerance, and splits there. O(n
+/// log n) typically, O(n²) at worst.
 std::vector<Vec2> simplify(std::span<const Vec2> points_m, double tolerance_m) {
   if (points_m.size() < 3) return {points_m.begin(), points_m.end()};
   std::vector<bool> keep(points_m.size(), false);
@@ -158,6 +167,7 @@ MapSvg::MapSvg(const World& world) : bounds_m_(world.bounds_m()) {
 
 std::string MapSvg::point(const Vec2& p) const { return fmt::format("{:.1f},{:.1f}", x(p), y(p)); }
 
+/// Ground, grid lines at round coordinates, and their labels.
 void MapSvg::add_scale() {
   const Vec2& low = bounds_m_.min_m;
   const Vec2& high = bounds_m_.max_m;
@@ -202,7 +212,8 @@ void MapSvg::add_obstacle(const Obstacle& obstacle) {
 
 void MapSvg::add_ellipse(const Gaussian& gaussian, double sigmas, std::string_view css_class) {
   const Mat2& c = gaussian.covariance_m2();
-  // Principal axes of a symmetric 2×2 matrix, closed form.
+  // Principal axes of a symmetric 2×2 matrix in closed form: eigenvalues m ± √(((a − d)/2)² + b²)
+  // with m = (a + d)/2, angle ½ atan2(2b, a − d).
   const double middle = 0.5 * (c(0, 0) + c(1, 1));
   const double spread = std::hypot(0.5 * (c(0, 0) - c(1, 1)), c(0, 1));
   const double angle = 0.5 * std::atan2(2.0 * c(0, 1), c(0, 0) - c(1, 1));
@@ -215,6 +226,7 @@ void MapSvg::add_ellipse(const Gaussian& gaussian, double sigmas, std::string_vi
                  -angle * 180.0 / std::numbers::pi);
 }
 
+/// The 99 % ellipse of a 2-D Gaussian has the radius √χ²₂(0.99) = 3.03 σ.
 void MapSvg::add_mixture(const Mixture& mixture, bool is_goal) {
   const double sigmas_99 = std::sqrt(kChiSquared2Dof99);
   for (std::size_t i = 0; i < mixture.components().size(); ++i) {
@@ -257,6 +269,7 @@ void MapSvg::add_edges(std::span<const std::pair<Vec2, Vec2>> edges_m) {
 void MapSvg::add_track(std::span<const Vec2> points_m, std::optional<std::size_t> colour,
                        bool lost) {
   if (points_m.empty()) return;
+  // Points closer to the line than 0.4 px are invisible; leaving them out keeps the file small.
   constexpr double kTolerance_px = 0.4;
   const std::string c = colour ? fmt::format("{}", *colour % kColours) : "n";
   auto out = std::back_inserter(body_);

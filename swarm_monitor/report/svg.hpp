@@ -47,7 +47,7 @@ class MapSvg {
   /// Many thin lines, such as a roadmap's edges.
   void add_edges(std::span<const std::pair<Vec2, Vec2>> edges_m);
 
-  /// One robot's way with its begin and end; grey without a colour. Ends in a cross if `lost`.
+  /// One robot's path with its begin and end; grey without a colour. Ends in a cross if `lost`.
   void add_track(std::span<const Vec2> points_m, std::optional<std::size_t> colour, bool lost);
 
   /// A ring where something touched, with a tooltip.

@@ -11,12 +11,15 @@
 namespace swarm::monitor {
 namespace {
 
+/// Channels of Foxglove's own schemas; the raw channels of the source follow them. Frames are made
+/// ten times a second.
 constexpr std::uint32_t kRobots = 0;
 constexpr std::uint32_t kObstacles = 1;
 constexpr std::uint32_t kMixture = 2;
 constexpr std::uint32_t kOwnChannels = 3;
 constexpr Duration kViewFramePeriod = std::chrono::milliseconds(100);
 
+/// Whether any client subscribed to the channel: other messages are not built.
 bool wanted(std::span<FoxgloveSession* const> sessions, std::uint32_t channel) {
   return std::any_of(sessions.begin(), sessions.end(),
                      [&](const FoxgloveSession* s) { return s->subscribed(channel); });
@@ -38,9 +41,11 @@ FoxgloveSample FoxgloveFeed::newest(std::uint32_t channel) const {
   return channel < newest_.size() ? newest_[channel] : FoxgloveSample{};
 }
 
+/// Builds robots and mixture at most every 100 ms and only if subscribed, then offers every new
+/// sample to all sessions.
 void FoxgloveFeed::step(UtcTime now, std::span<FoxgloveSession* const> sessions) {
   take_channels();
-  // A recording is shown at its own time.
+  // A recording is shown at the time of its own samples.
   const UtcTime shown = source_.live() ? now : raw_time_.value_or(now);
   take_obstacles(shown);
   if (!sessions.empty() && (now >= next_view_frame_ || now + kViewFramePeriod < next_view_frame_)) {
@@ -62,6 +67,7 @@ void FoxgloveFeed::take_raw(const RawSample& sample) {
   set(kOwnChannels + sample.channel, sample.stamp, {sample.bytes.begin(), sample.bytes.end()});
 }
 
+/// Adopts channels that the source added since the last call.
 void FoxgloveFeed::take_channels() {
   const auto& raw = source_.raw_channels();
   for (; raw_known_ < raw.size(); ++raw_known_) {
@@ -71,6 +77,7 @@ void FoxgloveFeed::take_channels() {
   fresh_.resize(channels_.size());
 }
 
+/// Obstacles change rarely, so they are sent when the source has a new scene.
 void FoxgloveFeed::take_obstacles(UtcTime now) {
   const auto& scenes = source_.scenes();
   if (scenes.size() <= scenes_seen_) return;

@@ -14,9 +14,9 @@
 
 namespace swarm::monitor {
 
-/// What Foxglove clients see of a source: three channels of Foxglove's own schemas, then the raw
-/// ones as they are. Of every channel the newest sample is kept for who subscribes later: a plan
-/// may come once in a run.
+/// The channels that Foxglove clients see of a source: three with Foxglove's own schemas, then the
+/// raw ones as they are. The newest sample of every channel is kept for later subscribers, since a
+/// plan may come once in a run.
 class FoxgloveFeed {
  public:
   explicit FoxgloveFeed(ViewSource& source);
@@ -25,12 +25,14 @@ class FoxgloveFeed {
   FoxgloveFeed& operator=(const FoxgloveFeed&) = delete;
 
   const std::vector<FoxgloveChannel>& channels() const { return channels_; }
+  /// The newest sample of a channel; no bytes if there was none yet.
   FoxgloveSample newest(std::uint32_t channel) const;
 
-  /// To be called after the source's poll(): hands what is new to the sessions.
+  /// Called after the source's poll(): hands new samples to the sessions.
   void step(UtcTime now, std::span<FoxgloveSession* const> sessions);
 
  private:
+  // Keeps a raw sample and marks its channel as fresh.
   void take_raw(const RawSample& sample);
   void take_channels();
   void take_obstacles(UtcTime now);
@@ -40,11 +42,11 @@ class FoxgloveFeed {
   ViewSource& source_;
   std::vector<FoxgloveChannel> channels_;
   std::vector<FoxgloveSample> newest_;
-  std::vector<bool> fresh_;
-  std::size_t raw_known_ = 0;
+  std::vector<bool> fresh_;    // channels with a sample that was not offered yet
+  std::size_t raw_known_ = 0;  // raw channels of the source that have a channel here
   std::size_t scenes_seen_ = 0;
   std::optional<UtcTime> raw_time_;  // of the newest raw sample
-  UtcTime next_view_frame_{};
+  UtcTime next_view_frame_{};        // due time
   std::vector<std::byte> view_frame_;
 };
 

@@ -36,6 +36,7 @@ struct Outline {
   std::vector<std::pair<double, double>> points_m;
 };
 
+/// Seconds and nanoseconds since 1970; times before that count as 0.
 void put_time(CdrWriter& cdr, UtcTime time) {
   const auto ns =
       static_cast<std::uint64_t>(std::max<std::int64_t>(time.time_since_epoch().count(), 0));
@@ -49,6 +50,7 @@ void put_vector(CdrWriter& cdr, double x, double y, double z) {
   cdr.put(z);
 }
 
+/// A rotation by `heading` about the vertical axis as the quaternion (0, 0, sin ½h, cos ½h).
 void put_pose(CdrWriter& cdr, double x_m, double y_m, double z_m, double heading) {
   put_vector(cdr, x_m, y_m, z_m);
   put_vector(cdr, 0.0, 0.0, std::sin(heading / 2.0));
@@ -80,7 +82,8 @@ void put_outline(CdrWriter& cdr, const Outline& outline) {
   cdr.put_length(0);  // indices
 }
 
-/// One entity, which replaces the one of the same name.
+/// A scene update with one entity, which replaces the entity of the same id. The order of the
+/// fields is that of the schema.
 Bytes scene_update(UtcTime now, std::string_view id, const std::vector<Cylinder>& cylinders,
                    const std::vector<Outline>& outlines) {
   CdrWriter cdr;
@@ -106,7 +109,8 @@ Bytes scene_update(UtcTime now, std::string_view id, const std::vector<Cylinder>
   return cdr.take();
 }
 
-/// Two standard deviations along the covariance's main axes.
+/// The ellipse of two standard deviations: eigenvalues mean ± spread of the covariance are the
+/// variances along its main axes. The opacity grows with the component's weight.
 Cylinder ellipse(const ViewFrame::Component& c) {
   const double mean = (static_cast<double>(c.xx) + static_cast<double>(c.yy)) / 2.0;
   const double half = (static_cast<double>(c.xx) - static_cast<double>(c.yy)) / 2.0;
@@ -153,6 +157,8 @@ Bytes mixture_scene(UtcTime now, const ViewFrame& view_frame) {
   return scene_update(now, "mixture", ellipses, {});
 }
 
+/// Reads the page's own scene message, so that the page and Foxglove show the same obstacles.
+/// Malformed obstacles are skipped.
 Bytes obstacles_scene(UtcTime now, std::string_view scene_json) {
   std::vector<Cylinder> circles;
   std::vector<Outline> polygons;

@@ -14,7 +14,7 @@ namespace swarm::monitor::foxglove {
 
 using Bytes = std::vector<std::byte>;
 
-/// foxglove::PosesInFrame: who was received.
+/// foxglove::PosesInFrame: position and heading of every robot that was received.
 Bytes poses_in_frame(UtcTime now, const ViewFrame& view_frame);
 
 /// foxglove::SceneUpdate: an ellipse of two standard deviations for every component.

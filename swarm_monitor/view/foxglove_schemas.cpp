@@ -4,6 +4,7 @@
 
 namespace swarm::monitor::foxglove {
 
+/// Written by hand after Foxglove's published schemas: field order and types must match them.
 const std::string_view kPosesInFrameIdl = R"(module foxglove {
 struct Time { uint32 sec; uint32 nsec; };
 struct Vector3 { double x; double y; double z; };
@@ -17,6 +18,7 @@ struct PosesInFrame {
 };
 )";
 
+/// SceneUpdate needs every primitive declared, although only cylinders and lines are used.
 const std::string_view kSceneUpdateIdl = R"(module foxglove {
 struct Time { uint32 sec; uint32 nsec; };
 struct Duration { int32 sec; uint32 nsec; };

@@ -16,12 +16,16 @@ namespace {
 
 using Json = nlohmann::json;
 
+/// Opcodes and status levels of Foxglove's protocol; number of status texts that a slow client
+/// keeps waiting.
 constexpr std::uint8_t kMessageData = 0x01;
 constexpr std::uint8_t kTime = 0x02;
 constexpr int kWarning = 1;
 constexpr int kError = 2;
 constexpr std::size_t kMaxStatuses = 16;
 
+/// Requests of the protocol for capabilities that this server does not announce: answered by a
+/// warning, not counted as malformed.
 constexpr std::array<std::string_view, 10> kUnsupported = {"advertise",
                                                            "unadvertise",
                                                            "getParameters",
@@ -37,10 +41,12 @@ tl::unexpected<Error> bad(std::string message) {
   return fail(ErrorCode::kBadInput, std::move(message));
 }
 
+/// Invalid UTF-8 in texts is replaced, so that dump() cannot throw.
 std::string dump(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
+/// A 32-bit identifier; empty for anything else, negative numbers and fractions included.
 std::optional<std::uint32_t> id_of(const Json& json) {
   if (!json.is_number_unsigned() || json.get<std::uint64_t>() > 0xFFFFFFFFU) return std::nullopt;
   return json.get<std::uint32_t>();
@@ -94,6 +100,8 @@ Result<FoxgloveRequest> parse_foxglove_request(std::string_view text) {
   return bad("unknown op");
 }
 
+/// Requests come from any web page that connects: every malformed one is counted, and the server
+/// closes the connection after too many.
 void FoxgloveSession::take(std::string_view frame, bool binary) {
   if (binary) return refuse("this server takes no messages and has no services");
   const auto request = parse_foxglove_request(frame);
@@ -112,6 +120,8 @@ void FoxgloveSession::refuse(const std::string& why) {
   status(kError, why);
 }
 
+/// Refuses ids and channels that are taken: a client that subscribes twice would get every sample
+/// twice.
 void FoxgloveSession::subscribe(const SubscribeRequest& request) {
   for (const auto& one : request.subscriptions) {
     if (one.channel >= advertised_) return refuse("there is no such channel");
@@ -133,7 +143,7 @@ void FoxgloveSession::unsubscribe(const UnsubscribeRequest& request) {
 }
 
 void FoxgloveSession::status(int level, const std::string& message) {
-  // The client that does not read them does not need all of them.
+  // A client that does not read its statuses loses the later ones: the queue is bounded.
   if (statuses_.size() >= kMaxStatuses) return;
   statuses_.push_back(dump({{"op", "status"}, {"level", level}, {"message", message}}));
 }
@@ -143,6 +153,8 @@ bool FoxgloveSession::subscribed(std::uint32_t channel) const {
                      [&](const Subscription& s) { return s.channel == channel; });
 }
 
+/// The newest sample replaces one that the client has not taken yet: a slow client skips samples
+/// instead of queueing them.
 void FoxgloveSession::offer(std::uint32_t channel, const FoxgloveSample& sample) {
   for (Subscription& subscription : subscriptions_) {
     if (subscription.channel != channel) continue;
@@ -157,6 +169,8 @@ bool FoxgloveSession::has_something() const {
                      [](const Subscription& s) { return s.pending.bytes != nullptr; });
 }
 
+/// In order: server information, channels, statuses, time, then samples. Clients need channels
+/// before samples of them.
 bool FoxgloveSession::next(Outgoing& out) {
   if (!std::exchange(greeted_, true)) {
     out.set_text(dump({{"op", "serverInfo"},
@@ -199,6 +213,8 @@ void FoxgloveSession::advertise(Outgoing& out) {
   out.set_text(dump({{"op", "advertise"}, {"channels", std::move(channels)}}));
 }
 
+/// Round robin over the subscriptions, so that a fast channel does not starve the others. Binary
+/// frame: opcode, subscription id, time in ns, CDR bytes.
 bool FoxgloveSession::next_sample(Outgoing& out) {
   for (std::size_t i = 0; i < subscriptions_.size(); ++i) {
     turn_ = (turn_ + 1) % subscriptions_.size();

@@ -25,12 +25,13 @@ struct FoxgloveChannel {
   std::string schema{};  ///< OMG IDL; the encoding is CDR
 };
 
-/// A message that any number of clients have yet to get.
+/// A message shared by all clients that have yet to get it.
 struct FoxgloveSample {
   UtcTime stamp{};
   std::shared_ptr<const std::vector<std::byte>> bytes{};  ///< null: none
 };
 
+/// `id` is chosen by the client and names the subscription in every message to it.
 struct SubscribeRequest {
   struct One {
     std::uint32_t id = 0;
@@ -39,24 +40,25 @@ struct SubscribeRequest {
   std::vector<One> subscriptions{};
 };
 
+/// Ids of the client's own subscriptions.
 struct UnsubscribeRequest {
   std::vector<std::uint32_t> ids{};
 };
 
-/// Part of the protocol, but of no capability that was announced.
+/// A request of the protocol for a capability that was not announced.
 struct UnsupportedRequest {
   std::string op{};
 };
 
 using FoxgloveRequest = std::variant<SubscribeRequest, UnsubscribeRequest, UnsupportedRequest>;
 
-/// What a text frame of a Foxglove client asks for. Any bytes may come.
+/// Parses a text frame of a Foxglove client; any bytes are allowed as input.
 Result<FoxgloveRequest> parse_foxglove_request(std::string_view text);
 
-/// A client that speaks Foxglove's WebSocket protocol. It sees, and can do nothing.
+/// A client of Foxglove's WebSocket protocol. It can subscribe and do nothing else.
 class FoxgloveSession final : public Session {
  public:
-  /// What a new subscriber gets at once; called with the channel.
+  /// Returns the newest sample of a channel, which a new subscriber gets at once.
   using Newest = std::function<FoxgloveSample(std::uint32_t)>;
 
   FoxgloveSession(const std::vector<FoxgloveChannel>& channels, std::string session_id,
@@ -72,12 +74,15 @@ class FoxgloveSession final : public Session {
   bool has_something() const override;
   bool next(Outgoing& out) override;
 
+  /// Whether the client subscribed to this channel.
   bool subscribed(std::uint32_t channel) const;
-  /// Takes the place of what this client has not got yet of the channel.
+  /// Replaces what this client has not yet got of the channel.
   void offer(std::uint32_t channel, const FoxgloveSample& sample);
+  /// The client gets the time before its next sample; only the newest time waits.
   void send_time(UtcTime now) { time_ = now; }
 
  private:
+  // A subscription with the newest sample that the client has not got yet.
   struct Subscription {
     std::uint32_t id = 0;
     std::uint32_t channel = 0;
@@ -93,10 +98,10 @@ class FoxgloveSession final : public Session {
   const std::vector<FoxgloveChannel>& channels_;
   std::string session_id_;
   Newest newest_;
-  bool greeted_ = false;
-  std::size_t advertised_ = 0;
-  std::deque<std::string> statuses_;
-  std::optional<UtcTime> time_;
+  bool greeted_ = false;              // serverInfo was sent
+  std::size_t advertised_ = 0;        // channels so far
+  std::deque<std::string> statuses_;  // bounded
+  std::optional<UtcTime> time_;       // to be sent
   std::vector<Subscription> subscriptions_;
   std::size_t turn_ = 0;  // no channel waits for ever behind another
 };

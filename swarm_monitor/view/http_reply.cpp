@@ -14,6 +14,7 @@
 namespace swarm::monitor {
 namespace {
 
+/// Bytes per write, and how long the client may take to accept them.
 constexpr std::size_t kPart = 16 * 1024;
 constexpr int kTimeout_s = 20;  // for a part
 
@@ -34,6 +35,7 @@ HttpReply HttpReply::file(std::string_view mime, std::span<const unsigned char> 
   return reply;
 }
 
+/// Headers only; the body follows in go_on() whenever the socket is writable.
 bool HttpReply::begin(lws* socket) const {
   std::array<unsigned char, LWS_PRE + 2048> buffer{};
   unsigned char* const begin = buffer.data() + LWS_PRE;
@@ -55,6 +57,8 @@ bool HttpReply::begin(lws* socket) const {
   return true;
 }
 
+/// Sends the next part. The buffer has LWS_PRE bytes in front, which libwebsockets needs for its
+/// own framing.
 bool HttpReply::go_on(lws* socket) {
   std::array<unsigned char, LWS_PRE + kPart> buffer;
   const std::size_t size = std::min(kPart, body().size() - sent_);
@@ -70,7 +74,8 @@ bool HttpReply::go_on(lws* socket) {
     lws_callback_on_writable(socket);
     return true;
   }
-  // What comes after a request that was not understood is not understood either.
+  // After a malformed request the connection is closed: what follows on it cannot be parsed
+  // reliably.
   return status_ == HTTP_STATUS_OK && lws_http_transaction_completed(socket) == 0;
 }
 

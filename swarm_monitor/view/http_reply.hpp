@@ -11,7 +11,7 @@ struct lws;
 
 namespace swarm::monitor {
 
-/// The answer to one HTTP request, under way out in parts.
+/// The answer to one HTTP request, sent in parts.
 class HttpReply {
  public:
   static HttpReply text(int status, std::string body);
@@ -19,8 +19,9 @@ class HttpReply {
   static HttpReply file(std::string_view mime, std::span<const unsigned char> bytes);
 
   int status() const { return status_; }
-  /// False: the connection is to be closed.
+  /// Sends status and headers. False: the connection must be closed.
   bool begin(lws* socket) const;
+  /// Sends the next part of the body, or ends the answer. False: the connection must be closed.
   bool go_on(lws* socket);
 
  private:
@@ -33,8 +34,8 @@ class HttpReply {
   std::size_t sent_ = 0;
 };
 
-/// What "GET /name" of the embedded files answers; only exact names of files are known, so that no
-/// path leads anywhere else.
+/// The answer to "GET /name". Only exact names of embedded files are known, so that no path leads
+/// anywhere else.
 HttpReply page_reply(std::string_view path);
 
 }  // namespace swarm::monitor

@@ -12,6 +12,8 @@
 
 namespace swarm::monitor {
 
+/// Binds and listens once, then closes: the error code of bind() is what the message reports.
+/// SO_REUSEADDR keeps a port usable whose last connections are in TIME_WAIT.
 Result<void> can_bind(const std::string& address, std::uint16_t port) {
   addrinfo hints = {};
   hints.ai_flags = AI_NUMERICHOST | AI_NUMERICSERV | AI_PASSIVE;

@@ -9,7 +9,8 @@
 
 namespace swarm::monitor {
 
-/// Whether one can listen there. libwebsockets, which is to do it then, does not say why it cannot.
+/// Whether a server can listen at this address and port. libwebsockets, which does so afterwards,
+/// does not report the reason of a failure.
 Result<void> can_bind(const std::string& address, std::uint16_t port);
 
 }  // namespace swarm::monitor

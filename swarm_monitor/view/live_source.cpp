@@ -17,8 +17,10 @@
 namespace swarm::monitor {
 namespace {
 
+/// Period of the rows of the series.
 constexpr Duration kRowEvery = std::chrono::seconds(1);
 
+/// Metrics in Prometheus' text format: help, type and value of each.
 class Metrics {
  public:
   template <class T>
@@ -57,13 +59,16 @@ LiveSource::LiveSource(Mission mission, Channel channel, std::unique_ptr<BusTap>
   add_scene();
 }
 
+/// Drains the tap without waiting. Scene, events and series are brought up to date afterwards, once
+/// per poll.
 void LiveSource::poll(UtcTime now) {
   now_ = now;
   tap_->take(Duration(0), [this](const TappedSample& sample) {
     state_.take(sample);
     if (raw_sink_) {
-      raw_sink_(
-          {.channel = sample.topic, .stamp = sample.received, .bytes = std::as_bytes(sample.bytes)});
+      raw_sink_({.channel = sample.topic,
+                 .stamp = sample.received,
+                 .bytes = std::as_bytes(sample.bytes)});
     }
   });
   if (state_.version() != scene_version_ || state_.scene().moves(now)) add_scene();
@@ -74,7 +79,7 @@ void LiveSource::poll(UtcTime now) {
 }
 
 void LiveSource::add_scene() {
-  // An obstacle under way is shown where it is, a few times a second.
+  // While an obstacle moves, the scene is sent again five times a second.
   constexpr Duration kMotion = std::chrono::milliseconds(200);
   const bool changed = scenes_.empty() || state_.version() != scene_version_;
   if (!changed && now_ - moved_at_ < kMotion) return;
@@ -92,7 +97,8 @@ void LiveSource::add_scene() {
                   .control = control_,
                   .channel = channel_});
   scenes_.push_back(std::move(scene));
-  // Only the newest is ever shown of what flies; texts of those before are given up.
+  // Viewers of a live run get the newest scene alone; earlier texts are cleared to bound the
+  // memory.
   if (scenes_.size() > 1) scenes_[scenes_.size() - 2].clear();
 }
 
@@ -100,6 +106,8 @@ const Mixture& LiveSource::goal() const {
   return state_.scene().goal ? *state_.scene().goal : mission_.goal;
 }
 
+/// One row per second: the latency is the 99 % quantile of the states since the last row, the rate
+/// their number per second. The latency is undefined without states, the rate in the first row.
 void LiveSource::add_row() {
   const double passed_s = to_seconds(now_ - row_at_);
   const SwarmState::Counts counts = state_.counts(now_);
@@ -136,7 +144,8 @@ void LiveSource::view_frame(std::optional<double>, std::optional<RobotId> focus,
                .arrived = robot.arrived,
                .lost = state_.is_lost(robot, now_)});
   }
-  // What a robot believes is not on the bus; whom it must hear is those near it.
+  // Robots' estimates are not published; the view shows the robots within the communication radius,
+  // whose states the chosen robot must receive.
   std::vector<FrameEstimate> near;
   const bool known = focus && focus->value() < robots.size() && robots[focus->value()].was_received;
   if (known) {
@@ -144,24 +153,26 @@ void LiveSource::view_frame(std::optional<double>, std::optional<RobotId> focus,
     for (std::uint32_t i = 0; i < robots.size(); ++i) {
       if (i == focus->value() || !robots[i].was_received) continue;
       const Vec2 there = state_.position_of(robots[i], now_);
-      if ((there - here).norm() <= mission_.link.communication_radius_m) near.push_back({RobotId(i), there});
+      if ((there - here).norm() <= mission_.link.communication_radius_m)
+        near.push_back({RobotId(i), there});
     }
   }
   maker.finish(known ? focus : std::nullopt, near);
 }
 
+/// Names are fixed, since dashboards use them; the help texts are for people.
 std::string LiveSource::metrics() const {
   const SwarmState::Counts counts = state_.counts(now_);
   const link::StreamMeter::Counts& states = state_.meter().counts();
   const Histogram& latency = state_.meter().latency();
   Metrics m;
   m.add("swarm_robots", "gauge", "Robots of the mission.", state_.robots().size());
-  m.add("swarm_robots_heard", "gauge", "Robots heard of.", counts.received);
+  m.add("swarm_robots_heard", "gauge", "Robots received at least once.", counts.received);
   m.add("swarm_robots_moving", "gauge", "Robots that move.", counts.moving);
   m.add("swarm_robots_arrived", "gauge", "Robots that have arrived.", counts.arrived);
   m.add("swarm_robots_lost", "gauge", "Robots not received for three seconds.", counts.lost);
   if (std::isfinite(counts.nearest_gap_m)) {
-    m.add("swarm_nearest_gap_meters", "gauge", "Smallest gap that any robot tells of.",
+    m.add("swarm_nearest_gap_meters", "gauge", "Smallest gap that any robot reports.",
           counts.nearest_gap_m);
   }
   m.add("swarm_phase", "gauge", "0 ready, 1 running, 2 paused, 3 stopped.",
@@ -172,15 +183,16 @@ std::string LiveSource::metrics() const {
   m.add("swarm_plan_version", "gauge", "Version of the plan.", state_.plan_version());
   m.add("swarm_plan_excess_metres", "gauge", "Largest constraint violation that a plan reported.",
         state_.plan_excess_m());
-  m.add("swarm_states_received_total", "counter", "States heard, each once.", states.received);
+  m.add("swarm_states_received_total", "counter", "States received, each counted once.",
+        states.received);
   m.add("swarm_states_lost_total", "counter", "States whose numbers were skipped.", states.lost);
-  m.add("swarm_states_duplicate_total", "counter", "States heard again.", states.duplicates);
+  m.add("swarm_states_duplicate_total", "counter", "States received again.", states.duplicates);
   m.add("swarm_messages_refused_total", "counter", "Messages that were refused.",
         state_.refused().total());
-  m.add("swarm_events_total", "counter", "Events heard of.", state_.events().size());
+  m.add("swarm_events_total", "counter", "Events received.", state_.events().size());
   std::string text = m.take();
   text +=
-      "# HELP swarm_state_latency_seconds Written to heard here.\n"
+      "# HELP swarm_state_latency_seconds From writing to reception.\n"
       "# TYPE swarm_state_latency_seconds summary\n";
   for (const double q : {0.5, 0.99, 0.999}) {
     text += fmt::format("swarm_state_latency_seconds{{quantile=\"{}\"}} {}\n", q,

@@ -11,14 +11,16 @@
 
 namespace swarm::monitor {
 
-/// A run that flies, as a viewer sees it.
+/// A run in progress, as a viewer sees it.
 class LiveSource final : public ViewSource {
  public:
-  /// `control`: whether viewers may offer to control it.
+  /// `control`: whether the page offers to control the run.
   LiveSource(Mission mission, Channel channel, std::unique_ptr<BusTap> tap, bool control);
 
+  /// Drains the bus and updates scenes, events and series.
   void poll(UtcTime now) override;
   bool live() const override { return true; }
+  /// Texts of earlier scenes are empty: only the newest is shown of a run in progress.
   const std::vector<std::string>& scenes() const override { return scenes_; }
   const std::vector<std::string>& events() const override { return events_; }
   const std::vector<std::string>& series() const override { return series_; }
@@ -28,12 +30,15 @@ class LiveSource final : public ViewSource {
   void on_raw(std::function<void(const RawSample&)> sink) override { raw_sink_ = std::move(sink); }
   std::string metrics() const override;
 
+  /// For `top`, which shows the same state in a terminal.
   const SwarmState& state() const { return state_; }
   const Mission& mission() const { return mission_; }
   const Mixture& goal() const;  ///< as it is now
 
  private:
+  // Appends the scene if it changed or an obstacle moves.
   void add_scene();
+  // Appends a row of the series: what was received since the last one.
   void add_row();
 
   Mission mission_;
@@ -41,7 +46,7 @@ class LiveSource final : public ViewSource {
   bool control_;
   std::unique_ptr<BusTap> tap_;
   SwarmState state_;
-  UtcTime now_{};
+  UtcTime now_{};  // of the last poll
   std::uint64_t scene_version_ = 0;
   UtcTime moved_at_{};  // when obstacles under way were last shown
   UtcTime row_at_{};
@@ -51,7 +56,7 @@ class LiveSource final : public ViewSource {
   std::function<void(const RawSample&)> raw_sink_;
 };
 
-/// Joins a run. Fails when its directory tells of none, or the bus cannot be received.
+/// Joins a run. Fails if its directory holds no run information, or if the bus cannot be received.
 Result<std::unique_ptr<LiveSource>> look_at_run(const std::filesystem::path& run_dir,
                                                 std::uint32_t number, bool control = false);
 

@@ -11,12 +11,14 @@
 namespace swarm::monitor {
 namespace {
 
+/// Host names compare without regard to case.
 bool same_name(std::string_view a, std::string_view b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](unsigned char x, unsigned char y) {
     return std::tolower(x) == std::tolower(y);
   });
 }
 
+/// "host:8080" and "[::1]:8080" without their ports.
 std::string_view without_port(std::string_view host) {
   if (host.starts_with('[')) return host.substr(1, host.find(']') - 1);
   return host.substr(0, host.find(':'));
@@ -38,6 +40,8 @@ bool same_origin(std::string_view origin, std::string_view host) {
   return false;  // "null": a local file, or somebody who hides
 }
 
+/// Protects against DNS rebinding: a foreign name that resolves to this machine is refused,
+/// although origin and host agree.
 bool trusted_host(std::string_view host, std::span<const std::string> names) {
   const std::string name(without_port(host));
   return is_address(name) || same_name(name, "localhost") ||
@@ -45,6 +49,8 @@ bool trusted_host(std::string_view host, std::span<const std::string> names) {
                      [&](const std::string& known) { return same_name(name, known); });
 }
 
+/// Constant time in the position of the first difference, so that answers do not leak how much of a
+/// guess was right. An empty token matches nothing.
 bool same_token(std::string_view given, std::string_view token) {
   volatile unsigned char differ = given.size() == token.size() ? 0 : 1;
   for (std::size_t i = 0; i < given.size() && !token.empty(); ++i) {

@@ -6,19 +6,19 @@
 #include <string>
 #include <string_view>
 
-/// Who may open the page's WebSocket: browsers let any site connect anywhere, and leave it to the
-/// server to look where a request comes from.
+/// Checks of who may open the page's WebSocket: browsers let any site connect anywhere, and leave
+/// it to the server to check the origin of a request.
 namespace swarm::monitor {
 
-/// The page that asks ("http://127.0.0.1:8080") was served by the host it asks ("127.0.0.1:8080").
-/// No origin at all: not a browser.
+/// Whether the page that connects ("http://127.0.0.1:8080") was served by the host that it connects
+/// to ("127.0.0.1:8080"). A request without origin does not come from a browser and passes.
 bool same_origin(std::string_view origin, std::string_view host);
 
-/// An address, localhost or one of `names`. Any other name may have been pointed here by a site
-/// that wants its own scripts to pass for ours.
+/// Whether a host is an address, localhost or one of `names`. Any other name may have been pointed
+/// to this machine by a site whose scripts are to pass for ours.
 bool trusted_host(std::string_view host, std::span<const std::string> names);
 
-/// Takes the same time wherever the two differ.
+/// Whether the tokens agree, in a time that does not depend on where they differ.
 bool same_token(std::string_view given, std::string_view token);
 
 }  // namespace swarm::monitor

@@ -14,9 +14,11 @@ namespace {
 
 using Json = nlohmann::json;
 
-// A long recording's events go out in parts: between them the page gets its pictures.
+/// Size of a text message at most: a long recording's events are sent in parts, and frames pass
+/// between them.
 constexpr std::size_t kMaxText = 256 * 1024;
-// Who commands without ever reading what came of it is not a page.
+/// Answers that wait at most: a page reads the answers to its commands, so a client that does not
+/// is refused.
 constexpr std::size_t kMaxAnswers = 16;
 
 constexpr std::array<std::pair<std::string_view, ControlAction>, 5> kActions = {
@@ -30,6 +32,7 @@ tl::unexpected<Error> bad(std::string message) {
   return fail(ErrorCode::kBadInput, std::move(message));
 }
 
+/// A finite number under a key, or the error that names the key.
 Result<double> number(const Json& json, const char* key) {
   const auto at = json.find(key);
   if (at == json.end() || !at->is_number()) return bad(fmt::format("{} must be a number", key));
@@ -55,13 +58,14 @@ Result<PageRequest> parse_focus(const Json& json) {
   const auto robot = json.find("robot");
   if (robot == json.end()) return bad("focus needs a robot, or null");
   if (robot->is_null()) return FocusRequest{};
-  // 0xFFFFFFFF stands for none in a picture.
+  // 0xFFFFFFFF stands for "no robot" in a frame.
   if (!robot->is_number_unsigned() || robot->get<std::uint64_t>() >= 0xFFFFFFFFU) {
     return bad("robot must be a robot's number");
   }
   return FocusRequest{RobotId(robot->get<std::uint32_t>())};
 }
 
+/// The token is checked by the server, not here: parsing depends on the text alone.
 Result<PageRequest> parse_control(const Json& json) {
   ControlRequest request;
   const auto action = text_of(json, "action");
@@ -92,7 +96,7 @@ Result<PageRequest> parse_control(const Json& json) {
   return request;
 }
 
-/// Appends elements from `from` on, as many as one message takes; returns how many.
+/// Appends as many elements from `from` on as fit one message, at least one; returns their number.
 std::size_t append_some(std::string& text, const std::vector<std::string>& elements,
                         std::size_t from) {
   std::size_t count = 0;
@@ -126,7 +130,7 @@ Result<PageRequest> parse_page_request(std::string_view text) {
 }
 
 void PageSession::take(std::string_view frame, bool binary) {
-  if (binary) return refuse("the page speaks text");
+  if (binary) return refuse("the page sends text only");
   const auto request = parse_page_request(frame);
   if (!request) return refuse(request.error().message);
   if (const auto* wanted = std::get_if<FrameRequest>(&*request)) {
@@ -140,6 +144,8 @@ void PageSession::take(std::string_view frame, bool binary) {
 
 void PageSession::refuse(const std::string&) { count_refused(); }
 
+/// Every refused action counts, so that a client cannot try many tokens: after 20 refusals the
+/// server closes the connection.
 void PageSession::apply(const ControlRequest& request) {
   if (answers_.size() >= kMaxAnswers) return refuse("does not read its answers");
   const auto done = control_(request);
@@ -155,6 +161,8 @@ bool PageSession::has_something() const {
          events_sent_ < source_.events().size() || rows_sent_ < source_.series().size();
 }
 
+/// Answers first, then scenes, events and rows, and a frame only if the page requested one: text
+/// that explains a frame arrives before it.
 bool PageSession::next(Outgoing& out) {
   if (!answers_.empty()) {
     out.set_text(answers_.front());
@@ -173,7 +181,7 @@ bool PageSession::next(Outgoing& out) {
 bool PageSession::next_scene(Outgoing& out) {
   const auto& scenes = source_.scenes();
   if (scenes_sent_ >= scenes.size()) return false;
-  // One looks back in a recording only.
+  // Only a recording needs its earlier scenes, since one can move back in it.
   if (source_.live()) scenes_sent_ = scenes.size() - 1;
   out.set_text(scenes[scenes_sent_++]);
   return true;

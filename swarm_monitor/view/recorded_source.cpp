@@ -16,9 +16,9 @@
 namespace swarm::monitor {
 namespace {
 
-/// A robot whose box ends this long before, and not gracefully, is lost.
+/// A robot that did not end gracefully is shown as lost this long after its last step.
 constexpr double kLostAfter_s = 1.0;
-/// A belief is shown this long.
+/// An estimate is shown this long after it was logged; robots log them every half second.
 constexpr double kEstimate_s = 2.0;
 
 /// Index of the last point at or before a time; size() if there is none.
@@ -30,6 +30,8 @@ std::size_t index_at(const std::vector<TrackPoint>& points, double time_s) {
                                  : static_cast<std::size_t>(after - points.begin()) - 1;
 }
 
+/// A robot at a time: position interpolated between its steps, heading along the line from the step
+/// before to the step after, mode and neighbours of the last step.
 FrameRobot robot_at(const Track& track, double time_s) {
   FrameRobot robot;
   const auto& points = track.points;
@@ -54,6 +56,7 @@ FrameRobot robot_at(const Track& track, double time_s) {
   return robot;
 }
 
+/// The newest estimate of each neighbour, from the latest backwards until they are too old.
 std::vector<FrameEstimate> estimates_at(const Track& track, double time_s) {
   std::vector<FrameEstimate> estimates;
   for (auto it = track.estimates.rbegin(); it != track.estimates.rend(); ++it) {
@@ -69,6 +72,7 @@ std::vector<FrameEstimate> estimates_at(const Track& track, double time_s) {
 
 }  // namespace
 
+/// Scenes, events and series of the whole run are computed at once: a recording does not change.
 RecordedSource::RecordedSource(RecordedRun run) : run_(std::move(run)) {
   moving_from_s_ = std::numeric_limits<double>::infinity();
   for (const Track& track : run_.tracks) {
@@ -86,7 +90,7 @@ RecordedSource::RecordedSource(RecordedRun run) : run_(std::move(run)) {
 
 void RecordedSource::make_scenes() {
   for (const WorldPhase& phase : world_phases(run_.mission.world, run_.scenes)) {
-    // Of the scenes so far the newest with a goal of its own.
+    // The goal of the newest scene made by then that has one; else the mission's.
     const Mixture* goal = &run_.mission.goal;
     for (const Scene& scene : run_.scenes) {
       const UtcTime made{Duration(static_cast<std::int64_t>(scene.version))};
@@ -107,6 +111,7 @@ void RecordedSource::make_events() {
   for (const RunEvent& event : run_.events) events_.push_back(event_json(event));
 }
 
+/// One row per second with the smallest gap in that second; latency and rate are not in the logs.
 void RecordedSource::make_series() {
   const Clearance clearance = robot_clearance(run_.tracks);
   const auto seconds = static_cast<std::size_t>(std::ceil(end_s_)) + 1;
@@ -126,6 +131,7 @@ void RecordedSource::make_series() {
   }
 }
 
+/// Frames of any time: the page can move in a recording. The mixture follows the published clock.
 void RecordedSource::view_frame(std::optional<double> time_s, std::optional<RobotId> focus,
                              std::vector<std::byte>& out) {
   const double t = std::clamp(time_s.value_or(end_s_), 0.0, end_s_);
@@ -133,7 +139,7 @@ void RecordedSource::view_frame(std::optional<double> time_s, std::optional<Robo
   if (const auto moment = PlanTimeline(run_).at(t)) {
     mixture = moment->mixture();
   } else if (run_.clock.empty() && run_.first_plan() != nullptr) {
-    // Recorded before there was a clock: as if it had begun with the motion.
+    // Runs recorded before there was a plan clock: plan time is taken to begin with the motion.
     mixture = run_.first_plan()->mixture_at(MissionTime(std::max(0.0, t - moving_from_s_)));
   }
   ViewFrameEncoder maker(out, static_cast<std::uint32_t>(run_.tracks.size()), t,

@@ -15,6 +15,8 @@
 
 namespace swarm::monitor {
 
+/// A new goal keeps weights and covariances of the present one; all means move by the same vector,
+/// so that the mixture's mean is at the clicked point.
 std::string command_line_of(const ControlRequest& request, const Mixture& goal) {
   switch (request.action) {
     case ControlAction::kPause:
@@ -43,6 +45,8 @@ std::string command_line_of(const ControlRequest& request, const Mixture& goal) 
   return fmt::format("goto goal: [{}]", list);
 }
 
+/// A thread with a bounded queue of command lines. The launcher answers a command when it is done,
+/// which may take seconds, and the view must keep serving.
 class RemoteControl::Worker {
  public:
   explicit Worker(std::filesystem::path run_dir)
@@ -57,6 +61,7 @@ class RemoteControl::Worker {
     thread_.join();
   }
 
+  // False if 16 commands wait: the launcher does not answer.
   bool post(std::string line) {
     constexpr std::size_t kMost = 16;
     {
@@ -108,6 +113,7 @@ Result<std::string> RemoteControl::ask(const ControlRequest& request) {
   return "asked the launcher: " + line.substr(0, line.find(' '));
 }
 
+/// 128 random bits of std::random_device in hexadecimal.
 std::string make_token() {
   std::random_device device;
   std::string token;

@@ -11,18 +11,18 @@
 
 namespace swarm::monitor {
 
-/// The launcher's line for what a viewer wants, as `swarm_launcher command` sends it. The goal
-/// moves as a whole: its mean to the point.
+/// The launcher's command line for a control request, as `swarm_launcher command` sends it. A goal
+/// request moves the present goal as a whole: its mean goes to the given point.
 std::string command_line_of(const ControlRequest& request, const Mixture& goal);
 
-/// Hands viewers' wishes to the launcher of a run, in a thread of its own, since a launcher answers
-/// when it is done. How that went is given by the run's events.
+/// Sends viewers' requests to the launcher of a run, in a thread of its own, since a launcher
+/// answers when a command is done. The outcome appears in the run's events.
 class RemoteControl {
  public:
   RemoteControl(std::filesystem::path run_dir, const LiveSource& source);
   ~RemoteControl();
 
-  /// Says that it has been asked for, or why not.
+  /// Returns that the launcher was asked, or why not.
   Result<std::string> ask(const ControlRequest& request);
 
  private:

@@ -9,8 +9,10 @@
 namespace swarm::monitor {
 namespace {
 
+/// Building blocks of the page's messages; keys and shapes are defined in PROTOCOL.md.
 nlohmann::json point(const Vec2& p) { return {p.x(), p.y()}; }
 
+/// The three different entries of the symmetric 2×2 covariance: xx, xy, yy.
 nlohmann::json covariance(const Gaussian& g) {
   const Mat2& c = g.covariance_m2();
   return {c(0, 0), c(0, 1), c(1, 1)};
@@ -44,6 +46,7 @@ nlohmann::json obstacles(const World& world) {
   return list;
 }
 
+/// The plan as nodes and legs (from, to, mass); null while there is none.
 nlohmann::json plan_of(const FlowPlan* plan) {
   if (plan == nullptr) return nullptr;
   auto nodes = nlohmann::json::array();
@@ -58,12 +61,14 @@ nlohmann::json plan_of(const FlowPlan* plan) {
   return {{"nodes", std::move(nodes)}, {"legs", std::move(legs)}};
 }
 
+/// JSON has no NaN and no infinity.
 nlohmann::json finite(double value) {
   return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json(nullptr);
 }
 
 }  // namespace
 
+/// A whole scene in one message, so that a page that joins late needs no earlier one.
 std::string scene_json(const SceneFacts& facts) {
   const Mission& m = facts.mission;
   const Box& bounds = facts.world.bounds_m();
@@ -88,6 +93,7 @@ std::string scene_json(const SceneFacts& facts) {
       .dump();
 }
 
+/// Event texts may hold any bytes; invalid UTF-8 is replaced.
 std::string event_json(const RunEvent& event) {
   return nlohmann::json{{"t", event.time_s},
                         {"source", event.source},

@@ -11,20 +11,21 @@
 #include "swarmflow/core/world.hpp"
 #include "swarm_monitor/audit/recorded_run.hpp"
 
-/// Texts of PROTOCOL.md.
+/// Text messages of PROTOCOL.md.
 namespace swarm::monitor {
 
+/// Input of a scene message.
 struct SceneFacts {
   const Mission& mission;
-  const World& world;  ///< as it stands
+  const World& world;  ///< with obstacles where they are at the scene's time
   const Mixture& goal;
   const FlowPlan* plan = nullptr;
   double plan_excess_m = 0.0;  ///< largest constraint violation of the plans so far
-  double from_s = 0.0;
-  double end_s = 0.0;
+  double from_s = 0.0;         ///< time from which the scene holds, since the begin
+  double end_s = 0.0;          ///< length of a recording; 0 while the run is in progress
   bool live = false;
-  bool control = false;
-  Channel channel = Channel::kGroups;
+  bool control = false;                ///< the page offers to control the run
+  Channel channel = Channel::kGroups;  ///< chooses the size of the cells to draw
 };
 std::string scene_json(const SceneFacts& facts);
 

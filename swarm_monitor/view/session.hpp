@@ -12,16 +12,16 @@
 
 namespace swarm::monitor {
 
-/// What the server counts; part of /metrics.
+/// Counters of the server, part of /metrics.
 struct ViewCounters {
   std::uint64_t view_frames_sent = 0;
   std::uint64_t frames_received = 0;
   std::uint64_t frames_refused = 0;   ///< malformed, too long, or not allowed
-  std::uint64_t samples_skipped = 0;  ///< a newer one came before a slow client took it
+  std::uint64_t samples_skipped = 0;  ///< replaced by newer ones before a slow client took them
   std::uint64_t connections_refused = 0;
 };
 
-/// A message under way out.
+/// A message to be sent.
 struct Outgoing {
   bool binary = false;
   std::vector<std::byte> bytes{};
@@ -33,8 +33,8 @@ struct Outgoing {
   }
 };
 
-/// One WebSocket client without its socket. It holds what the client may want next, never a queue
-/// of messages: how much memory a client takes does not depend on how slowly it reads.
+/// One WebSocket client without its socket. It keeps what the client may want next and no queue of
+/// samples: its memory does not depend on how slowly the client reads.
 class Session {
  public:
   explicit Session(ViewCounters& counters) : counters_(counters) {}
@@ -42,17 +42,18 @@ class Session {
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
+  /// Longest frame that is accepted, in bytes.
   virtual std::size_t max_frame() const = 0;
   /// Takes a whole frame, at most max_frame() long.
   virtual void take(std::string_view frame, bool binary) = 0;
-  /// For frames that cannot be taken at all.
+  /// Refuses a frame that cannot be taken, and counts it.
   virtual void refuse(const std::string& why) = 0;
 
   virtual bool has_something() const = 0;
   /// Replaces `out` by the next message; false: there is none.
   virtual bool next(Outgoing& out) = 0;
 
-  /// Nothing good comes from this client: it is to be closed.
+  /// Whether the client sent too many refused frames and must be disconnected.
   bool hopeless() const { return refused_ >= kMaxRefused; }
   std::uint64_t refused() const { return refused_; }
 

@@ -9,9 +9,9 @@
 namespace swarm::monitor {
 namespace {
 
-/// Robots say something twice a second; after this they are taken for lost.
+/// A robot not received for this long counts as lost: each one publishes at least twice a second.
 constexpr Duration kLostAfter = std::chrono::seconds(3);
-/// A state is carried on this long at most.
+/// Longest extrapolation of a state; after that the robot is shown where it stopped being received.
 constexpr double kCarryOn_s = 0.8;
 constexpr std::size_t kMostEvents = 100'000;
 
@@ -23,6 +23,7 @@ SwarmState::SwarmState(const Mission& mission)
       scene_(first_scene(mission.world.obstacles().size())),
       meter_(mission.robots.count) {}
 
+/// States carry motion: they update position and velocity and count in the stream's statistics.
 void SwarmState::on_state(const ObservedState& state) {
   if (!begin_) begin_ = state.received;
   meter_.receive({.robot_id = state.robot.value(),
@@ -40,7 +41,7 @@ void SwarmState::on_state(const ObservedState& state) {
 
 void SwarmState::on_status(const ObservedStatus& status) {
   Robot& robot = robots_[status.robot.value()];
-  // Its states have its position more often, if there are any.
+  // States update the position more often; a status sets it only before the first state.
   if (!robot.was_received) robot.position_m = status.position_m;
   robot.was_received = true;
   robot.received = status.received;
@@ -64,6 +65,8 @@ void SwarmState::on_scene(const Scene& scene) {
   ++version_;
 }
 
+/// The values at the last heartbeat; between heartbeats plan_time_s() and mission_time_s()
+/// extrapolate.
 void SwarmState::on_clock(const ObservedClock& clock) {
   phase_ = clock.phase;
   mission_time_s_ = clock.mission_time_s;
@@ -81,6 +84,7 @@ void SwarmState::on_event(const ObservedEvent& event) {
                      .text = event.text});
 }
 
+/// Linear extrapolation from the last state, as the robot's neighbours do it.
 Vec2 SwarmState::position_of(const Robot& robot, UtcTime now) const {
   const double age_s = std::clamp(to_seconds(now - robot.moved), 0.0, kCarryOn_s);
   return robot.position_m + age_s * robot.velocity_mps;
@@ -103,10 +107,13 @@ SwarmState::Counts SwarmState::counts(UtcTime now) const {
   return counts;
 }
 
+/// τ at the last heartbeat plus rate · age, for at most one second: a silent planner's clock is not
+/// continued for ever.
 double SwarmState::plan_time_s(UtcTime now) const {
   return plan_time_s_ + plan_rate_ * std::clamp(to_seconds(now - beat_at_), 0.0, 1.0);
 }
 
+/// Mission time advances only while the mission runs.
 double SwarmState::mission_time_s(UtcTime now) const {
   if (phase_ != MissionPhase::kRunning) return mission_time_s_;
   return mission_time_s_ + std::clamp(to_seconds(now - beat_at_), 0.0, 1.0);

@@ -19,15 +19,17 @@
 
 namespace swarm::monitor {
 
-/// What is known of a swarm in flight, from its bus alone. Pure: gets samples and the time.
+/// State of a swarm in progress, from its bus alone. Pure: samples and time are arguments.
 class SwarmState final : private Observer {
  public:
   explicit SwarmState(const Mission& mission);
   SwarmState(const SwarmState&) = delete;
   SwarmState& operator=(const SwarmState&) = delete;
 
+  /// Decodes and checks a sample and updates the state by it.
   void take(const TappedSample& sample) { reader_.take(sample); }
 
+  /// The newest state and status of one robot.
   struct Robot {
     bool was_received = false;
     bool arrived = false;
@@ -42,20 +44,24 @@ class SwarmState final : private Observer {
   };
   const std::vector<Robot>& robots() const { return robots_; }
 
-  /// Where a robot is by now: on from its last state, as its neighbours believe.
+  /// Position of a robot at `now`: extrapolated from its last state, as its neighbours do.
   Vec2 position_of(const Robot& robot, UtcTime now) const;
+  /// Whether a robot that was received before has been silent for three seconds.
   bool is_lost(const Robot& robot, UtcTime now) const;
 
+  /// Numbers of robots, and the smallest gap that any of them reported [m].
   struct Counts {
     std::uint32_t received = 0, moving = 0, arrived = 0, lost = 0;
-    double nearest_gap_m = 0.0;  ///< ∞ while no status tells
+    double nearest_gap_m = 0.0;  ///< ∞ without a status
   };
   Counts counts(UtcTime now) const;
 
   MissionPhase phase() const { return phase_; }
+  /// Mission time at `now` [s], extrapolated from the last heartbeat while the mission runs.
   double mission_time_s(UtcTime now) const;
-  /// Of the plan's clock: the mixture that the swarm is to form is mixture_at() of it.
+  /// Plan time τ at `now`; the mixture that the swarm is to form is that of the plan at τ.
   double plan_time_s(UtcTime now) const;
+  /// Seconds of plan time per second; 0 in a pause.
   double plan_rate() const { return plan_rate_; }
   const std::optional<FlowPlan>& plan() const { return plan_; }
   std::uint32_t plan_version() const { return plan_version_; }
@@ -65,7 +71,8 @@ class SwarmState final : private Observer {
   /// Grows with every change of plan or scene.
   std::uint64_t version() const { return version_; }
   const std::vector<RunEvent>& events() const { return events_; }  ///< times since begin()
-  std::optional<UtcTime> begin() const { return begin_; }          ///< first state heard
+  std::optional<UtcTime> begin() const { return begin_; }          ///< first state received
+  /// Statistics of the received states: losses, duplicates, latency.
   const link::StreamMeter& meter() const { return meter_; }
   link::StreamMeter& meter() { return meter_; }
   const link::RefusalCounters& refused() const { return reader_.refused(); }
@@ -89,7 +96,7 @@ class SwarmState final : private Observer {
   double mission_time_s_ = 0.0;
   double plan_time_s_ = 0.0;
   double plan_rate_ = 0.0;
-  UtcTime beat_at_{};
+  UtcTime beat_at_{};  // reception of the last heartbeat
   std::vector<RunEvent> events_;
   std::optional<UtcTime> begin_;
   link::StreamMeter meter_;

@@ -10,6 +10,8 @@
 
 namespace swarm::monitor {
 
+/// Totals, then the robots in the most urgent order (lost ones, then those with the smallest gap),
+/// then the last events. Columns have fixed widths for a terminal.
 std::string top_text(const SwarmState& state, const TopFacts& facts, UtcTime now) {
   const SwarmState::Counts counts = state.counts(now);
   const auto ms = [&](double q) {
@@ -17,7 +19,7 @@ std::string top_text(const SwarmState& state, const TopFacts& facts, UtcTime now
   };
   std::string text = fmt::format(
       "{}  {}  mission {:.1f} s  plan {}\n"
-      "{} of {} robots heard  {} moving  {} arrived  {} lost  nearest gap {}\n"
+      "{} of {} robots received  {} moving  {} arrived  {} lost  nearest gap {}\n"
       "{:.0f} states/s  latency p50 {:.2f} ms  p99 {:.2f} ms  {} lost  {} refused\n\n"
       "{:>6}  {:<8} {:>8} {:>8} {:>7} {:>8} {:>11} {:>7}\n",
       facts.name, to_string(state.phase()), state.mission_time_s(now), state.plan_version(),
@@ -27,6 +29,7 @@ std::string top_text(const SwarmState& state, const TopFacts& facts, UtcTime now
       "robot", "mode", "x m", "y m", "m/s", "gap m", "neighbours", "late %");
   std::vector<std::size_t> order(state.robots().size());
   std::iota(order.begin(), order.end(), std::size_t{0});
+  // Sort key: lost robots first, robots never received last, the others by their gap.
   const auto urgency = [&](std::size_t i) {
     const SwarmState::Robot& robot = state.robots()[i];
     if (!robot.was_received) return 2e9;

@@ -10,13 +10,13 @@ namespace swarm::monitor {
 
 struct TopFacts {
   std::string name{};      ///< of the mission
-  double states_hz = 0.0;  ///< heard lately
+  double states_hz = 0.0;  ///< received in the last second
   Histogram latency{};     ///< of those
   std::size_t rows = 10;   ///< robots, the nearest to another first
   std::size_t events = 5;
 };
 
-/// A swarm in a few lines for a terminal.
+/// The state of a swarm as text for a terminal.
 std::string top_text(const SwarmState& state, const TopFacts& facts, UtcTime now);
 
 }  // namespace swarm::monitor

@@ -8,12 +8,13 @@ namespace swarm::monitor {
 
 template <class T>
 void ViewFrameEncoder::put(T value) {
-  // Little-endian, as every machine we run on.
+  // Memory order is wire order, since all supported machines are little-endian.
   const std::size_t at = out_.size();
   out_.resize(at + sizeof(T));
   std::memcpy(out_.data() + at, &value, sizeof(T));
 }
 
+/// Header: magic, number of robots, time, phase, number of mixture components; 24 bytes.
 ViewFrameEncoder::ViewFrameEncoder(std::vector<std::byte>& out, std::uint32_t robots, double time_s,
                            std::uint32_t phase, const std::optional<Mixture>& mixture)
     : out_(out), mixture_(mixture) {
@@ -25,6 +26,7 @@ ViewFrameEncoder::ViewFrameEncoder(std::vector<std::byte>& out, std::uint32_t ro
   put(static_cast<std::uint32_t>(mixture ? mixture->components().size() : 0));
 }
 
+/// 16 bytes per robot: three floats and four bytes, so that the page reads both as typed arrays.
 void ViewFrameEncoder::add(const FrameRobot& robot) {
   put(static_cast<float>(robot.position_m.x()));
   put(static_cast<float>(robot.position_m.y()));
@@ -36,7 +38,10 @@ void ViewFrameEncoder::add(const FrameRobot& robot) {
   put(robot.neighbours);
 }
 
-void ViewFrameEncoder::finish(std::optional<RobotId> focus, const std::vector<FrameEstimate>& estimates) {
+/// After the robots: six floats per component, then the chosen robot and what it estimates of
+/// others.
+void ViewFrameEncoder::finish(std::optional<RobotId> focus,
+                              const std::vector<FrameEstimate>& estimates) {
   if (mixture_) {
     for (const WeightedGaussian& component : mixture_->components()) {
       const Gaussian& g = component.gaussian;

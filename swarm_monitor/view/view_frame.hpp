@@ -14,30 +14,35 @@
 
 namespace swarm::monitor {
 
-/// A robot as pictures show it.
+/// A robot as frames show it.
 struct FrameRobot {
   Vec2 position_m = Vec2::Zero();
   double heading_rad = 0.0;
   RobotMode mode = RobotMode::kWaiting;
-  std::uint8_t goal = 255;
-  std::uint8_t neighbours = 0;
+  std::uint8_t goal = 255;      ///< index of the component; 255: none
+  std::uint8_t neighbours = 0;  ///< received neighbours, at most 255
   bool was_received = false, arrived = false, lost = false;
 };
 
+/// A neighbour of the chosen robot, at the position that the robot estimates.
 struct FrameEstimate {
   RobotId neighbour{};
   Vec2 position_m = Vec2::Zero();
 };
 
-/// Phase of a picture of what has ended.
+/// Phase in a frame of a run that has ended.
 inline constexpr std::uint32_t kEndedPhase = 4;
 
-/// Puts a picture of PROTOCOL.md together: its robots one by one, then finish().
+/// Encodes a frame of PROTOCOL.md: the constructor writes the header, add() one robot each, in the
+/// order of ids, finish() mixture and estimates.
 class ViewFrameEncoder {
  public:
-  ViewFrameEncoder(std::vector<std::byte>& out, std::uint32_t robots, double time_s,
-               std::uint32_t phase, const std::optional<Mixture>& mixture);
+  ViewFrameEncoder(
+      std::vector<std::byte>& out, std::uint32_t robots, double time_s,
+      /// `out` is replaced and filled until finish(); `mixture` must outlive the encoder.
+      std::uint32_t phase, const std::optional<Mixture>& mixture);
   void add(const FrameRobot& robot);
+  /// `focus` is the chosen robot, `estimates` the positions of its neighbours.
   void finish(std::optional<RobotId> focus, const std::vector<FrameEstimate>& estimates);
 
  private:

@@ -7,6 +7,7 @@
 namespace swarm::monitor {
 namespace {
 
+/// Sizes of header, robot and component in bytes, as ViewFrameEncoder writes them.
 constexpr std::size_t kHead = 24;
 constexpr std::size_t kRobot = 16;
 constexpr std::size_t kComponent = 24;
@@ -21,6 +22,8 @@ T at(std::span<const std::byte> bytes, std::size_t offset) {
 
 }  // namespace
 
+/// Sizes are computed in 64 bits, so that large counts in a damaged header cannot overflow the
+/// check.
 std::optional<ViewFrame> read_view_frame(std::span<const std::byte> bytes) {
   if (bytes.size() < kHead || std::memcmp(bytes.data(), "SWF1", 4) != 0) return std::nullopt;
   const std::uint64_t robots = at<std::uint32_t>(bytes, 4);

@@ -10,14 +10,17 @@
 
 namespace swarm::monitor {
 
-/// What Foxglove gets out of a picture (PROTOCOL.md).
+/// The part of a frame (PROTOCOL.md) that Foxglove's messages need.
 struct ViewFrame {
+  /// Position [m] and heading [rad] in the frame of the map; a robot never received has none.
   struct Robot {
     float x_m = 0.0F;
     float y_m = 0.0F;
     float heading = 0.0F;
     bool was_received = false;
   };
+  /// Mean [m] and covariance [m²] of a component of the planned mixture, and its share of the
+  /// swarm.
   struct Component {
     float x_m = 0.0F;
     float y_m = 0.0F;
@@ -30,7 +33,7 @@ struct ViewFrame {
   std::vector<Component> mixture{};
 };
 
-/// None if the bytes are no picture.
+/// Empty if the bytes are not a frame.
 std::optional<ViewFrame> read_view_frame(std::span<const std::byte> bytes);
 
 }  // namespace swarm::monitor

@@ -27,6 +27,8 @@
 namespace swarm::monitor {
 namespace {
 
+/// Protocol name and path of the page's WebSocket; sizes of buffers; periods of pings and of giving
+/// up a silent client [s].
 constexpr const char* kPageProtocol = "swarmflow.view.v1";
 constexpr std::string_view kPagePath = "/ws";
 constexpr std::size_t kReceive = 4096;
@@ -37,19 +39,22 @@ constexpr std::uint16_t kHangUp_s = 40;
 
 enum ProtocolId : unsigned { kHttp, kPage, kFoxglove };
 
-/// What lws knows of a header; empty if there is none, or one longer than any that we accept.
+/// A header of the request; empty if it is missing or longer than 511 characters, which no accepted
+/// header is.
 std::string header(lws* socket, lws_token_indexes which) {
   std::array<char, 512> text{};
   const int size = lws_hdr_copy(socket, text.data(), static_cast<int>(text.size()), which);
   return size > 0 ? std::string(text.data(), static_cast<std::size_t>(size)) : std::string();
 }
 
+/// This machine's host name: the page may be opened under it.
 std::string own_name() {
   std::array<char, 256> name{};
   return ::gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "";
 }
 
-/// Whoever connects can cause them: they are not to fill a disk.
+/// Prints the first ten errors of libwebsockets alone: any client can cause them, and they must not
+/// fill a disk.
 void log_error(int, const char* line) {
   static int left = 10;
   if (left == 0) return;
@@ -57,7 +62,7 @@ void log_error(int, const char* line) {
   std::fputs(line, stderr);
 }
 
-// Goes with every answer. Scripts come from here alone, and nobody frames the page.
+/// Headers of every answer: scripts load from this server alone, and no page may frame this one.
 struct Headers {
   lws_protocol_vhost_options referrer{nullptr, nullptr, "referrer-policy:", "no-referrer"};
   lws_protocol_vhost_options cache{&referrer, nullptr, "cache-control:", "no-store"};
@@ -135,9 +140,9 @@ Result<void> ViewServer::Impl::listen() {
       {"foxglove.websocket.v1", on_event, 0, kReceive, kFoxglove, nullptr, kSend},
       {nullptr, nullptr, 0, 0, 0, nullptr, 0},
   }};
-  // Clients that are gone without a word are found out.
+  // Pings find clients that disappeared without closing.
   static const lws_retry_bo_t kLiveness = {nullptr, 0, 0, kPing_s, kHangUp_s, 0};
-  lws_set_log_level(0, nullptr);  // what goes wrong here, we say
+  lws_set_log_level(0, nullptr);  // failures here are reported below
 
   lws_context_creation_info info = {};
   const bool everywhere = options_.address == "0.0.0.0" || options_.address == "::";
@@ -169,6 +174,8 @@ Result<void> ViewServer::Impl::listen() {
   return {};
 }
 
+/// One step of the only thread: poll the source, feed Foxglove, mark writable sockets, and let
+/// libwebsockets serve them.
 void ViewServer::Impl::serve(Duration timeout) {
   const UtcTime now = utc_now();
   source_.poll(now);
@@ -182,13 +189,15 @@ void ViewServer::Impl::serve(Duration timeout) {
   for (const auto& [socket, client] : clients_) {
     if (client.session->has_something()) lws_callback_on_writable(socket);
   }
-  // lws waits for as long as it likes, and no longer than to the next thing that is due.
+  // libwebsockets waits for its next timer at most: a timer at `timeout` bounds the wait.
   const auto timeout_us = std::chrono::duration_cast<std::chrono::microseconds>(timeout).count();
   lws_sul_schedule(
       context_, 0, &wake_, [](lws_sorted_usec_list_t*) {}, std::max<lws_usec_t>(timeout_us, 1));
   lws_service(context_, timeout_us <= 0 ? -1 : 0);
 }
 
+/// All callbacks of libwebsockets. Connections are limited here, before anything of a request is
+/// read.
 int ViewServer::Impl::on_event(lws* socket, lws_callback_reasons reason, void*, void* in,
                                std::size_t size) {
   auto& self = *static_cast<Impl*>(lws_context_user(lws_get_context(socket)));
@@ -218,6 +227,7 @@ int ViewServer::Impl::on_event(lws* socket, lws_callback_reasons reason, void*, 
                                : self.on_websocket(socket, reason, text);
 }
 
+/// HTTP serves the page's files and /metrics; a reply is sent in parts, see HttpReply.
 int ViewServer::Impl::on_http(lws* socket, lws_callback_reasons reason, std::string_view in) {
   switch (reason) {
     case LWS_CALLBACK_HTTP: {
@@ -243,6 +253,7 @@ HttpReply ViewServer::Impl::reply_to(lws* socket, std::string_view path) const {
   return path == "/metrics" ? HttpReply::text(HTTP_STATUS_OK, metrics()) : page_reply(path);
 }
 
+/// Access is decided before the upgrade; afterwards a client is a session with an input buffer.
 int ViewServer::Impl::on_websocket(lws* socket, lws_callback_reasons reason, std::string_view in) {
   if (reason == LWS_CALLBACK_FILTER_PROTOCOL_CONNECTION) {
     if (may_open(socket)) return 0;
@@ -253,7 +264,8 @@ int ViewServer::Impl::on_websocket(lws* socket, lws_callback_reasons reason, std
   if (reason == LWS_CALLBACK_ESTABLISHED) {
     Client& client = clients_[socket];
     client.session = make_session(socket);
-    // What the kernel holds for a slow client is old when it gets it; left alone that is megabytes.
+    // A small kernel buffer: frames that wait in the kernel are old when a slow client reads them,
+    // and by default megabytes would.
     constexpr int kHeldBytes = 256 << 10;
     ::setsockopt(lws_get_socket_fd(socket), SOL_SOCKET, SO_SNDBUF, &kHeldBytes, sizeof kHeldBytes);
     if (client.session->has_something()) lws_callback_on_writable(socket);
@@ -275,7 +287,7 @@ int ViewServer::Impl::on_websocket(lws* socket, lws_callback_reasons reason, std
 }
 
 bool ViewServer::Impl::may_open(lws* socket) const {
-  // Any page may watch through Foxglove's protocol, which can do nothing but show.
+  // Any web page may connect by Foxglove's protocol, which only shows.
   if (lws_get_protocol(socket)->id == kFoxglove) return true;
   const std::string host = header(socket, WSI_TOKEN_HOST);
   const bool with_origin = lws_hdr_total_length(socket, WSI_TOKEN_ORIGIN) > 0;
@@ -294,6 +306,8 @@ std::unique_ptr<Session> ViewServer::Impl::make_session(lws* socket) {
       [this](std::uint32_t channel) { return feed_.newest(channel); }, counters_);
 }
 
+/// Collects the fragments of a frame up to the session's limit; a longer frame is dropped as a
+/// whole and counts as refused.
 int ViewServer::Impl::receive(lws* socket, Client& client, std::string_view part) {
   Session& session = *client.session;
   client.too_long = client.too_long || client.input.size() + part.size() > session.max_frame();
@@ -319,7 +333,8 @@ int ViewServer::Impl::receive(lws* socket, Client& client, std::string_view part
 }
 
 int ViewServer::Impl::send(lws* socket, Client& client) {
-  // Called when the socket has taken all of the message before: one is under way, never more.
+  // Called when the socket has accepted the previous message: at most one message is in flight per
+  // client.
   if (!client.session->next(outgoing_)) return 0;
   const std::size_t size = outgoing_.bytes.size();
   send_buffer_.resize(LWS_PRE + size);
@@ -332,6 +347,7 @@ int ViewServer::Impl::send(lws* socket, Client& client) {
   return 0;
 }
 
+/// Controlling needs the option at the start and the token of the printed address.
 Result<std::string> ViewServer::Impl::control(const ControlRequest& request) const {
   if (!options_.allow_control || !options_.control) {
     return fail(ErrorCode::kBadInput, "this view only shows: it was started without control");

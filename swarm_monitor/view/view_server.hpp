@@ -22,7 +22,7 @@ struct ViewServerOptions {
   /// Names, beside addresses, localhost and this machine's own, under which the page may be opened.
   std::vector<std::string> host_names{};
   bool allow_control = false;
-  std::string token{};  ///< who controls has to know it
+  std::string token{};  ///< required in every control request
   Control control{};    ///< called in serve()
 };
 
@@ -36,7 +36,7 @@ class ViewServer {
   static Result<std::unique_ptr<ViewServer>> make(ViewServerOptions options, ViewSource& source);
   ~ViewServer();
 
-  /// One step: takes in what the source has, and what sockets have; waits at most `timeout`.
+  /// One step: polls the source and serves the sockets; waits at most `timeout`.
   void serve(Duration timeout);
 
   std::uint16_t port() const;

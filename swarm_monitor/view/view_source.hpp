@@ -15,7 +15,7 @@
 
 namespace swarm::monitor {
 
-/// A topic as it was on the bus or in a recording: its samples are handed on as they are.
+/// A topic of the bus or of a recording, whose samples are passed on unchanged.
 struct RawChannel {
   std::string topic{};   ///< "swarm/plan"
   std::string type{};    ///< "swarm::wire::FlowPlan"
@@ -29,8 +29,8 @@ struct RawSample {
   std::span<const std::byte> bytes{};
 };
 
-/// What a viewer can see of a swarm: one that flies, or a recording. Texts and pictures are those
-/// of PROTOCOL.md. Used by one thread.
+/// What a viewer can see of a swarm, in progress or recorded. Texts and frames are those of
+/// PROTOCOL.md. Used by one thread.
 class ViewSource {
  public:
   virtual ~ViewSource() = default;
@@ -47,13 +47,13 @@ class ViewSource {
   /// Rows of the series so far, one JSON array each.
   virtual const std::vector<std::string>& series() const = 0;
 
-  /// Replaces `out` by a picture: of a time since the begin, or the newest.
+  /// Replaces `out` by a frame: of a time since the begin [s], or the newest.
   virtual void view_frame(std::optional<double> time_s, std::optional<RobotId> focus,
                        std::vector<std::byte>& out) = 0;
 
-  /// What goes to Foxglove as it is. The list only grows.
+  /// The topics that are passed on to Foxglove unchanged. The list only grows.
   virtual const std::vector<RawChannel>& raw_channels() const = 0;
-  /// From now on every sample that poll() takes in goes there; nullptr: nowhere.
+  /// Sets the receiver of every sample that poll() takes in; nullptr: none.
   virtual void on_raw(std::function<void(const RawSample&)> sink) = 0;
 
   /// Prometheus text.

@@ -38,7 +38,7 @@ export class Peer {
     });
   }
 
-  /** Connected, and told what there is. */
+  /** Connected, with server information and channels. */
   static async open(url, subprotocol = 'foxglove.sdk.v1') {
     const peer = new Peer(url, subprotocol);
     await peer.until(() => peer.info && peer.channels.size > 0, 'server info and channels');

@@ -23,7 +23,7 @@ const RAW = {
 
 let peer, scene;
 
-/** What the page is given of the map: the first frame that it gets. */
+/** What the page receives of the map: the first frame that it gets. */
 async function pageScene() {
   const socket = new WebSocket(`${SERVER}ws`, 'swarmflow.view.v1', { origin });
   const [frame] = await once(socket, 'message');
@@ -42,7 +42,7 @@ before(async () => {
 after(() => peer?.close());
 
 for (const subprotocol of ['foxglove.sdk.v1', 'foxglove.websocket.v1']) {
-  test(`says who it is and what there is, by ${subprotocol}`, async () => {
+  test(`sends server information and channels, by ${subprotocol}`, async () => {
     const other = await Peer.open(SERVER, subprotocol);
     assert.equal(other.socket.protocol, subprotocol);
     assert.equal(other.info.name, 'Swarmflow');
@@ -185,7 +185,7 @@ test('lets go of who sends nothing else, or no WebSocket at all', async () => {
 });
 
 // A server lets go of who is silent for 40 s: then nothing would be skipped any more, and this would go on for ever.
-test('who does not read holds up nobody', { timeout: 60_000 }, async () => {
+test('a client that does not read delays no other', { timeout: 60_000 }, async () => {
   const skipped = async () => {
     const text = await (await fetch(`${origin}/metrics`)).text();
     return Number(/^swarm_view_samples_skipped_total (\d+)$/m.exec(text)[1]);

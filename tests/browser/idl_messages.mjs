@@ -30,7 +30,7 @@ const isList = (value) => Array.isArray(value) || (ArrayBuffer.isView(value) && 
 
 function same(said, read) {
   if (typeof read === 'bigint') return said === String(read);
-  // JSON has no word for what is not finite.
+  // JSON has no value for numbers that are not finite.
   if (typeof read === 'number' && !Number.isFinite(read)) return said === null;
   return Object.is(said, read);
 }

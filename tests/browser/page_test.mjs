@@ -68,7 +68,7 @@ test('loads and connects', async () => {
   assert.equal(await page.$eval('#notice', (notice) => notice.hidden), true);
 });
 
-test('says how many robots there are', async () => {
+test('shows the number of robots', async () => {
   const { robots } = await state();
   if (live) {
     assert.match(await text('heard'), new RegExp(`^\\d+ / ${robots}$`));
@@ -311,7 +311,7 @@ test('connects again by itself', async () => {
   await other.close();
 });
 
-test('says so where there is no WebGL2', async () => {
+test('reports that WebGL2 is missing', async () => {
   const bare = await open({ prepare: () => { HTMLCanvasElement.prototype.getContext = ((original) => function get(kind, ...rest) {
     return kind === 'webgl2' ? null : original.call(this, kind, ...rest);
   })(HTMLCanvasElement.prototype.getContext); } });

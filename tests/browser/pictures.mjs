@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-// A page without a browser: asks for pictures at a rate for a while and says how many came.
+// A page without a browser: requests frames at a rate and prints how many arrived.
 //   node pictures.mjs URL SECONDS RATE
 import WebSocket from 'ws';
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
 
-// Recordings read by the format's own library and decoded by their own IDL say what `swarm_monitor cat` says.
+// Recordings, read by the format's own library and decoded by their own IDL, hold what `swarm_monitor cat` prints.
 // SWARM_RECORDING: the file. SWARM_RUN_DIR: its run, whose robot logs (and bus.mcap, if there is one) are read too.
 // SWARM_BIN: the programs.
 import assert from 'node:assert/strict';
@@ -42,7 +42,7 @@ async function assertSameAsCat(file, messages) {
       data: readerOf(message.schema.name, new TextDecoder().decode(message.schema.data)).readMessage(message.data),
     };
     for (const { path, said, read: value } of differences(JSON.parse(line), read)) {
-      wrong.push(`message ${lines - 1} of ${read.topic}: ${path}: cat says ${shown(said)}, the IDL reads ${shown(value)}`);
+      wrong.push(`message ${lines - 1} of ${read.topic}: ${path}: cat prints ${shown(said)}, the IDL reads ${shown(value)}`);
     }
   }
   const [code] = await exit;
@@ -71,7 +71,7 @@ test('its stream ends well, and everything is CDR described by IDL', () => {
   }
 });
 
-test('its summary tells what it holds', async () => {
+test('its summary lists its contents', async () => {
   const { statistics, chunkIndexes, channelsById, schemasById } = await openIndexed(bytes);
   assert.equal(statistics.messageCount, BigInt(whole.messages.length));
   assert.equal(statistics.chunkCount, whole.chunks.length);
@@ -130,11 +130,11 @@ test('it carries its mission', async () => {
   assert.match(new TextDecoder().decode(mission.data), /^robots:/m);
 });
 
-test('every message says by its IDL what it says by cat', () => assertSameAsCat(SWARM_RECORDING, whole.messages));
+test('every message decodes by its IDL to what cat prints', () => assertSameAsCat(SWARM_RECORDING, whole.messages));
 
 test('the IDL accounts for every byte', () => {
   for (const { channel, schema, data } of whole.messages) {
-    // DDS pads to a multiple of four, and what bytes there are between fields nobody says: sizes only.
+    // DDS pads to a multiple of four, and the padding between fields is undefined: only sizes are compared.
     const padding = data.length - sizeByIdl(schema.name, new TextDecoder().decode(schema.data), data);
     assert.ok(padding >= 0 && padding < 4, `${channel.topic}: ${padding} bytes that no field has`);
   }

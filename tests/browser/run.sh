@@ -66,7 +66,7 @@ fi
 "$SWARM_BIN/swarm_launcher" run "$root/deploy/missions/small.yaml" --channel groups --record --out "$run" >"$tmp/run.log" 2>&1 &
 launcher=$!
 started=$launcher
-# New obstacles where nobody flies: scenes and plans with everything that they can hold are on the bus then.
+# New obstacles away from the robots, so that scenes and plans with all their fields are on the bus.
 await "$launcher" grep -qs '"text":"start"' "$run/events.jsonl"
 "$SWARM_BIN/swarm_launcher" command "$run" add_obstacle 'circle_m: {center: [38, 2], radius: 0.5}'
 "$SWARM_BIN/swarm_launcher" command "$run" add_obstacle 'polygon_m: [[1, 27.5], [2.5, 27.5], [1.5, 29]]'

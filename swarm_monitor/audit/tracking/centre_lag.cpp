@@ -11,13 +11,16 @@
 namespace swarm::monitor {
 namespace {
 
+/// Resolution of the lag, spacing of the table of means, and its largest size [s, s, entries].
 constexpr double kStep_s = 0.05;
 constexpr double kTable_s = 0.25;
 constexpr double kMostEntries = 20'000;  // a plan of more than 5000 s has a coarser table
-/// Sums of squares nearer than this share are the same.
+/// Sums of squares closer than this share count as equal, so that a plan at rest, for which every
+/// shift is as good, gives the smallest shift and not one chosen by rounding.
 constexpr double kSame = 1e-9;
 
-/// The plan's mean over plan time, straight between entries.
+/// The plan's mean over plan time, tabulated once per plan and linear between entries: the search
+/// evaluates it for 2400 shifts at every moment, and a plan may have hundreds of legs.
 class MeanTable {
  public:
   explicit MeanTable(const FlowPlan& plan) {
@@ -41,6 +44,7 @@ class MeanTable {
   std::vector<Vec2> means_;
 };
 
+/// The swarm's centre at one moment, with the plan and the plan time that were in force.
 struct Centre {
   const MeanTable* plan;
   double plan_time_s;
@@ -49,6 +53,9 @@ struct Centre {
 
 }  // namespace
 
+/// Mass-weighted mean of the mixture: sources wait at their mean until they start, mass on a leg
+/// moves linearly between the means of its ends (the mean of the W₂ geodesic), and sinks hold
+/// theirs after arrival. The masses add up to 1 except for rounding, hence the division.
 Vec2 plan_mean(const FlowPlan& plan, double plan_time_s) {
   const MissionTime t(plan_time_s);
   const auto& nodes = plan.nodes();
@@ -74,6 +81,8 @@ Vec2 plan_mean(const FlowPlan& plan, double plan_time_s) {
   return sum / mass;
 }
 
+/// Brute force over the shifts in order of their size: the sum of squares has several local minima
+/// where a plan turns back, so a descent would not do.
 std::optional<double> centre_lag_s(const RecordedRun& run, std::span<const PlanMoment> moments) {
   std::map<std::uint32_t, MeanTable> tables;
   std::vector<Centre> centres;
@@ -98,6 +107,7 @@ std::optional<double> centre_lag_s(const RecordedRun& run, std::span<const PlanM
   };
   double best_s = 0.0;
   double least = squares_at(0.0);
+  // From small to large shifts, so that among equally good ones the smallest is kept.
   const auto shifts = static_cast<int>(std::lround(kMostCentreLag_s / kStep_s));
   for (int k = 1; k <= shifts; ++k) {
     for (const double lag_s : {k * kStep_s, -k * kStep_s}) {

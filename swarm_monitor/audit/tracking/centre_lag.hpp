@@ -16,10 +16,10 @@ Vec2 plan_mean(const FlowPlan& plan, double plan_time_s);
 ///
 ///   Σ over the moments ‖c(t) − m(τ(t) − L)‖²,   |L| ≤ kMostCentreLag_s
 ///
-/// of the centre c of the living robots and the mean m of the plan in force at t (before the plan's
-/// begin its first mean, after its end its last). Late is positive. To 0.05 s. Of shifts that are
-/// as good the smallest, so that a plan at rest says 0. Empty without moments. The mean of m is
-/// taken from a table of 0.25 s: O(legs · duration + moments · shifts).
+/// c is the centre of the living robots and m the mean of the plan in force at t (before the plan's
+/// begin its first mean, after its end its last). Late is positive. Resolution 0.05 s. Of equally
+/// good shifts the smallest is taken, so that a plan at rest gives 0. Empty without moments. m is
+/// read from a table with a spacing of 0.25 s: O(legs · duration + moments · shifts).
 std::optional<double> centre_lag_s(const RecordedRun& run, std::span<const PlanMoment> moments);
 
 inline constexpr double kMostCentreLag_s = 60.0;

@@ -12,17 +12,19 @@ namespace {
 
 using Value = std::optional<double>;
 
+/// W2 over its floor; empty if it was not measured.
 Value ratio_of(const std::optional<Distance>& distance) {
   return distance ? Value(distance->ratio()) : std::nullopt;
 }
 
-/// A member of what may not have been measured.
+/// A member of a result that may not have been measured.
 template <class Whole, class Member>
 Value member(const std::optional<Whole>& whole, Member Whole::*of) {
   return whole ? Value((*whole).*of) : std::nullopt;
 }
 
-/// Judges bars one after the other and keeps a line for each that is missed.
+/// Compares values with the bars of the mission and keeps a line for each bar that is missed. A bar
+/// that the mission does not set is skipped.
 class Judge {
  public:
   void at_most(std::string_view key, const Value& bar, const Value& value, std::string_view what,
@@ -36,6 +38,8 @@ class Judge {
   std::vector<std::string> take() { return std::move(reasons_); }
 
  private:
+  // A bar whose value was not measured, or is not finite, is missed: a run must not pass for lack
+  // of evidence.
   void judge(std::string_view key, const Value& bar, const Value& value, std::string_view what,
              std::string_view unit, const std::string& no_evidence, bool most) {
     if (!bar) return;
@@ -54,6 +58,9 @@ class Judge {
 
 }  // namespace
 
+/// One call per key of the mission's criteria. Each names the reason why its quantity could not be
+/// measured: without the published clock nothing of the plan's time can be judged, and without
+/// truthful references nothing of the robots' own ones.
 std::vector<std::string> failed_criteria(const CriteriaSpec& criteria, const Tracking& tracking,
                                          std::optional<double> path_ratio) {
   const CriteriaSpec& c = criteria;
@@ -63,6 +70,8 @@ std::vector<std::string> failed_criteria(const CriteriaSpec& criteria, const Tra
   const std::string no_cap = !no_clock.empty() || (t.density && t.density->cap_per_m2)
                                  ? no_clock
                                  : "the mission has no density cap";
+  // The own-slot criterion additionally needs last references that sample the goal: otherwise
+  // robots could log the positions where they happened to stop.
   const auto& last = t.ending.references_to_goal;
   const std::string no_slots =
       no_references.empty() && last && last->ratio() > Tracking::kTruthfulRatio
@@ -79,6 +88,7 @@ std::vector<std::string> failed_criteria(const CriteriaSpec& criteria, const Tra
                 "W2 to the plan's mixture over its floor while half are under way", "", no_clock);
   judge.at_most("w2_end_ratio_max", c.w2_end_ratio_max, ratio_of(t.ending.to_goal),
                 "W2 of the last positions to the goal over its floor", "", "");
+  // The amount of the lag is judged; the text states its sign.
   const bool early = t.centre_lag_s.value_or(0.0) < 0.0;
   judge.at_most("centre_lag_max_s", c.centre_lag_max_s,
                 t.centre_lag_s ? Value(std::abs(*t.centre_lag_s)) : std::nullopt,

@@ -10,21 +10,26 @@
 namespace swarm::monitor {
 namespace {
 
-constexpr double kDense = 1.2;  // of the cap
+constexpr double kDense = 1.2;  // times the cap: denser moments enter dense_share
 
 }  // namespace
 
+/// Relative excess over the cap: 0 at the cap, −1 for an empty disc.
 std::optional<double> DensityCourse::over_cap(double peak_per_m2) const {
   if (!cap_per_m2) return std::nullopt;
   return peak_per_m2 / *cap_per_m2 - 1.0;
 }
 
+/// The method's own record has precedence: a method may hold its plans to another cap than the
+/// mission file asks for, or to none.
 std::optional<double> density_cap_of(const RecordedRun& run) {
   if (run.planning) return run.planning->density_cap_per_m2;
   const std::optional<double>& asked_for = run.mission.planner.density_cap_per_m2;
   return asked_for && *asked_for > 0.0 ? asked_for : std::nullopt;
 }
 
+/// Flown and planned peaks at the same moments, so that they can be compared. Both use discs of
+/// kDiscRadius_m.
 std::optional<DensityCourse> density_course(const RecordedRun& run,
                                             std::span<const PlanMoment> moments) {
   DensityCourse course{.cap_per_m2 = density_cap_of(run)};

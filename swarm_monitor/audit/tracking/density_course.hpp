@@ -11,6 +11,7 @@
 
 namespace swarm::monitor {
 
+/// Flown and planned peak density at one moment.
 struct DensityMoment {
   double time_s = 0.0;
   double flown_per_m2 = 0.0;    ///< most living robots in any disc over its area

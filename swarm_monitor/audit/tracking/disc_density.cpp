@@ -15,13 +15,17 @@
 namespace swarm::monitor {
 namespace {
 
+/// Area of a disc; width at which a Gaussian is cut off (4σ hold 99.97 % of a 2-D Gaussian); limits
+/// on the spacing of the grid.
 constexpr double kDiscArea_m2 = std::numbers::pi * kDiscRadius_m * kDiscRadius_m;
 constexpr double kCutSigmas = 4.0;
 constexpr double kCoarsest_m = 1.0, kFinest_m = 0.25;
-/// Cells of one grid: a mixture spread wider than this is looked at more coarsely.
+/// Number of cells of one grid. A mixture that spreads wider than this at the wanted spacing gets a
+/// coarser grid, which bounds time and memory (32 MB).
 constexpr double kMostCells = 4e6;
 
-/// Points by cell, so that those near a point are found without looking at all.
+/// A hash grid of points: the neighbours of a point lie in its cell and the eight around it, so a
+/// search does not look at all points.
 class Buckets {
  public:
   Buckets(std::span<const Vec2> points, double size_m) : points_(points), size_m_(size_m) {
@@ -29,7 +33,7 @@ class Buckets {
       buckets_[key(cell(points[i].x()), cell(points[i].y()))].push_back(i);
     }
   }
-  /// Calls look(j) for all points within one cell's size of a point, and some farther ones.
+  /// Calls look(j) for all points within one cell size of a point, and for some that are farther.
   template <class Look>
   void near(const Vec2& p, Look look) const {
     const std::int32_t x = cell(p.x()), y = cell(p.y());
@@ -47,6 +51,7 @@ class Buckets {
     const double c = std::floor(x / size_m_);
     return c > -1e9 && c < 1e9 ? static_cast<std::int32_t>(c) : 0;  // a log may be damaged
   }
+  // Both coordinates in one 64-bit key.
   static std::uint64_t key(std::int32_t x, std::int32_t y) {
     return (static_cast<std::uint64_t>(static_cast<std::uint32_t>(x)) << 32U) |
            static_cast<std::uint32_t>(y);
@@ -57,7 +62,7 @@ class Buckets {
   std::unordered_map<std::uint64_t, std::vector<std::size_t>> buckets_;
 };
 
-/// Densities at the points of a grid.
+/// Densities at the points of a regular grid, row by row.
 struct Grid {
   Box box;
   double spacing_m;
@@ -69,11 +74,14 @@ struct Grid {
   }
 };
 
+/// Standard deviations along x and y. They bound the ellipse of a rotated Gaussian, too.
 Vec2 sigmas_m(const Gaussian& gaussian) {
   const Mat2& c = gaussian.covariance_m2();
   return {std::sqrt(c(0, 0)), std::sqrt(c(1, 1))};
 }
 
+/// A grid around all components with a margin of one disc, so that every disc around a grid point
+/// with density lies inside. The spacing follows the smallest σ, which the grid must resolve.
 Grid grid_for(const Mixture& mixture) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   Box box{Vec2::Constant(kInfinity), Vec2::Constant(-kInfinity)};
@@ -94,6 +102,7 @@ Grid grid_for(const Mixture& mixture) {
   return grid;
 }
 
+/// Adds the weighted density of one component at the grid points within 4σ of its mean.
 void add_component(const WeightedGaussian& component, Grid& grid) {
   const auto& [weight, gaussian] = component;
   const Vec2 reach = kCutSigmas * sigmas_m(gaussian);
@@ -114,12 +123,14 @@ void add_component(const WeightedGaussian& component, Grid& grid) {
   }
 }
 
-/// A cell of the disc: its offset in the grid, and which part of it lies in the disc.
+/// A cell of the disc: its offset in the grid, and the share of its area that lies in the disc.
 struct Part {
   std::int64_t x, y;
   double share;
 };
 
+/// The cells that a disc around a grid point covers, each with its covered share by 20 × 20 sample
+/// points: weighting the cells at the rim is what makes a coarse grid accurate.
 std::vector<Part> disc_of(double spacing_m) {
   constexpr int kFine = 20;
   const auto reach = static_cast<std::int64_t>(std::ceil(kDiscRadius_m / spacing_m + 0.5));
@@ -142,6 +153,9 @@ std::vector<Part> disc_of(double spacing_m) {
 
 }  // namespace
 
+/// Angular sweep. For each point i, the centres of discs with i on the rim lie on a circle around
+/// i; each other point j within two radii is inside for an arc of that circle. The largest number
+/// of arcs over one angle, plus the points at i itself, is the answer for i.
 std::size_t most_in_a_disc(std::span<const Vec2> points, double radius_m) {
   if (points.empty()) return 0;
   const Buckets buckets(points, 2.0 * radius_m);
@@ -149,7 +163,7 @@ std::size_t most_in_a_disc(std::span<const Vec2> points, double radius_m) {
   std::vector<std::pair<double, int>> turns;  // angle of the centre, +1 in, −1 out
   for (std::size_t i = 0; i < points.size(); ++i) {
     turns.clear();
-    std::size_t always = 1;  // point i itself and those at its place
+    std::size_t always = 1;  // point i itself and those at its position
     std::size_t at_begin = 0;
     buckets.near(points[i], [&](std::size_t j) {
       if (j == i) return;
@@ -160,7 +174,8 @@ std::size_t most_in_a_disc(std::span<const Vec2> points, double radius_m) {
         ++always;
         return;
       }
-      // Centres at radius_m from point i whose disc holds point j: an arc around its direction.
+      // Centres at distance r from point i whose disc holds point j: the arc of half-angle
+      // acos(d/2r) around the direction of j.
       const double half = std::acos(std::min(1.0, distance_m / (2.0 * radius_m)));
       const double middle = std::atan2(d.y(), d.x());
       double in = middle - half, out = middle + half;
@@ -170,12 +185,15 @@ std::size_t most_in_a_disc(std::span<const Vec2> points, double radius_m) {
       };
       in = wrapped(in);
       out = wrapped(out);
+      // An arc that crosses ±π is open at the begin of the sweep.
       if (in > out) ++at_begin;
       turns.emplace_back(in, 1);
       turns.emplace_back(out, -1);
     });
+    // Even if all arcs overlapped, this point could not improve on the best so far.
     if (always + turns.size() / 2 <= most) continue;
-    // Where one enters as another leaves, both lie on the rim: in first.
+    // At equal angles both points lie on the rim of the same disc, so the entering one is counted
+    // before the leaving one.
     std::sort(turns.begin(), turns.end(), [](const auto& a, const auto& b) {
       return a.first != b.first ? a.first < b.first : a.second > b.second;
     });
@@ -189,10 +207,13 @@ std::size_t most_in_a_disc(std::span<const Vec2> points, double radius_m) {
   return most;
 }
 
+/// Points per area of the fullest disc.
 double peak_density_per_m2(std::span<const Vec2> points) {
   return static_cast<double>(most_in_a_disc(points, kDiscRadius_m)) / kDiscArea_m2;
 }
 
+/// Sum over a disc = Σ cells share · density · cell area, for the discs around all grid points; the
+/// mean over the disc's area, times the number of robots.
 double planned_peak_density_per_m2(const Mixture& mixture, std::size_t robots) {
   Grid grid = grid_for(mixture);
   for (const WeightedGaussian& component : mixture.components()) add_component(component, grid);

@@ -7,8 +7,8 @@
 
 #include "swarmflow/core/mixture.hpp"
 
-/// Peak densities of a swarm and of its plan, both as means over discs of the same radius: what a
-/// disc of 2 m holds is a density of many robots, not of one.
+/// Peak densities of a swarm and of its plan, both as means over discs of the same radius: a disc
+/// of 2 m averages over many robots instead of resolving single ones.
 namespace swarm::monitor {
 
 inline constexpr double kDiscRadius_m = 2.0;

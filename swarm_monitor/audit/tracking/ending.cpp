@@ -7,6 +7,8 @@
 namespace swarm::monitor {
 namespace {
 
+/// A fixed seed, so that the same run gives the same numbers, and four samples of the goal per
+/// distance to reduce the scatter of the floor.
 constexpr std::uint64_t kEndingSeed = 7;
 constexpr std::size_t kDraws = 4;
 
@@ -17,6 +19,7 @@ const TrackPoint* last_reference(const Track& track) {
   return it == track.points.rend() ? nullptr : &*it;
 }
 
+/// Every n-th point, at most `most`: an assignment is O(n³).
 std::vector<Vec2> thinned(const std::vector<Vec2>& points, std::size_t most) {
   if (points.size() <= most) return points;
   const std::size_t every = (points.size() + most - 1) / most;
@@ -27,6 +30,8 @@ std::vector<Vec2> thinned(const std::vector<Vec2>& points, std::size_t most) {
 
 }  // namespace
 
+/// Robots that were lost are left out: they did not end anywhere on purpose, and the audit reports
+/// them elsewhere.
 Ending ending_of(const RecordedRun& run, std::size_t most_robots) {
   Ending ending;
   std::vector<Vec2> positions, references;
@@ -39,6 +44,7 @@ Ending ending_of(const RecordedRun& run, std::size_t most_robots) {
     const TrackPoint* const last = last_reference(track);
     if (last == nullptr) continue;
     references.push_back(last->reference_m());
+    // Distance of the end to the slot that the robot's own last reference gave it.
     const double off_m = (at - references.back()).norm();
     near += off_m <= Ending::kNear_m ? 1 : 0;
     wide += off_m <= Ending::kWide_m ? 1 : 0;

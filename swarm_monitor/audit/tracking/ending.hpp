@@ -9,14 +9,15 @@
 
 namespace swarm::monitor {
 
-/// Where the robots that were not lost ended.
+/// Final positions of the robots that were not lost, against the goal and against their own slots.
 struct Ending {
   static constexpr double kNear_m = 0.7, kWide_m = 1.0;
 
-  /// Of their last positions to the goal mixture: by assignment, not by the goals that robots name.
+  /// W2 of the last positions to the goal mixture, by assignment, whichever goals robots name.
   std::optional<Distance> to_goal{};
-  /// Of the last references that they logged to the goal mixture: a robot cannot make its own place
-  /// be where it happened to end. Empty unless every one of them logged one.
+  /// W2 of the last logged references to the goal mixture. It guards the shares below: a robot
+  /// cannot count its final position as its slot by logging it as its reference. Empty unless every
+  /// robot logged a reference.
   std::optional<Distance> references_to_goal{};
   /// Shares within kNear_m and kWide_m of their own last reference; a robot that logged none is
   /// not there. Empty if none logged one.

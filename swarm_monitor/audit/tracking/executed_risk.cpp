@@ -16,14 +16,18 @@ namespace swarm::monitor {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-/// Farther from an obstacle than this, how much farther is of no interest.
+/// Risk [m] below which the comparison with the plan is skipped: beyond 5 m from an obstacle the
+/// exact distance does not matter.
 constexpr double kNear_m = -5.0;
 
-/// The map of a run over time, made anew only when it changed. Without bodies: those are robots.
+/// The map of a run over time, rebuilt only when it changed. Bodies of dead robots are left out: as
+/// obstacles they would count robots twice.
 class WorldOverTime {
  public:
   explicit WorldOverTime(const RecordedRun& run) : run_(run), world_(&run.mission.world) {}
 
+  // The newest scene made by `time_s`; while its obstacles move, the map is rebuilt for every call.
+  // O(scenes).
   const World& at(double time_s) {
     const UtcTime now = run_.begin + from_seconds(time_s);
     const Scene* newest = nullptr;
@@ -50,6 +54,8 @@ class WorldOverTime {
 
 }  // namespace
 
+/// nth_element separates the ⌊αn⌋ largest values from the next one, which enters with the fraction
+/// that is left: no sort, O(n).
 double empirical_cvar(std::span<double> values, double alpha) {
   SWARM_ASSERT(!values.empty() && alpha > 0.0 && alpha < 1.0);
   const double tail = alpha * static_cast<double>(values.size());
@@ -62,6 +68,8 @@ double empirical_cvar(std::span<double> values, double alpha) {
   return sum / tail;
 }
 
+/// At each moment, for each obstacle: the empirical CVaR of −sd over the robots against the CVaR of
+/// the planned mixture. Risk is in metres; a value ≤ δ keeps the mission's bound.
 std::optional<ExecutedRisk> executed_risk(const RecordedRun& run,
                                           std::span<const PlanMoment> moments) {
   const PlannerSpec& planner = run.mission.planner;
@@ -79,6 +87,8 @@ std::optional<ExecutedRisk> executed_risk(const RecordedRun& run,
     if (living.empty() || world.convex_obstacles().empty()) continue;
     const Mixture mixture = moment.mixture();
     RiskMoment now{.time_s = moment.time_s, .executed_m = -kInfinity, .planned_m = -kInfinity};
+    // Per obstacle, since the plan's constraint holds for each obstacle separately; the moment is
+    // judged by the worst one.
     for (const ConvexObstacle& obstacle : world.convex_obstacles()) {
       negated_m.clear();
       for (const RobotNow& robot : living) {

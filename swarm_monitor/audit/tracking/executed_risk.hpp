@@ -18,6 +18,7 @@ namespace swarm::monitor {
 /// The largest value for αn ≤ 1. O(n), reorders them. \pre not empty, 0 < α < 1; asserted
 double empirical_cvar(std::span<double> values, double alpha);
 
+/// The risk at one moment [m]; a positive value is a depth inside an obstacle.
 struct RiskMoment {
   double time_s = 0.0;
   double executed_m = 0.0;  ///< largest over the obstacles
@@ -32,8 +33,8 @@ struct ExecutedRisk {
   double kept_share = 0.0;  ///< of moments with executed ≤ planner.risk_delta_m at every obstacle
   /// Largest executed minus planned, over obstacles and moments at which either is above −5 m.
   std::optional<double> most_over_plan_m{};
-  /// What the safety filter alone makes sure of, whatever the plan: −(radius + margin). A bar that
-  /// is not below it cannot fail.
+  /// The risk that the safety filter keeps by itself, whatever the plan: −(radius + margin). A
+  /// mission's δ above it cannot be missed.
   double filter_m = 0.0;
   std::vector<RiskMoment> moments{};
 };

@@ -12,13 +12,15 @@
 namespace swarm::monitor {
 namespace {
 
-/// The curves of one robot by plan version.
+/// The reference curves of one robot, one per plan version that it followed.
 using Curves = std::map<std::uint32_t, ReferenceCurve>;
 
 Curves curves_of(const Track& track) {
   Curves curves;
   ReferenceCurve* curve = nullptr;
   std::uint32_t version = 0;
+  // Points of one version are usually contiguous, so the map is searched only when the version
+  // changes.
   for (const TrackPoint& point : track.points) {
     if (point.plan_version == 0) continue;
     if (point.plan_version != version) {
@@ -30,7 +32,8 @@ Curves curves_of(const Track& track) {
   return curves;
 }
 
-/// Largest difference of the logged plan times of one robot to the published ones.
+/// Largest difference between the plan time that one robot logged and the published plan time at
+/// the same moment [s]; empty if the robot followed no published plan.
 std::optional<double> clock_error_s(const Track& track, const PlanTimeline& timeline,
                                     const MotionSpan& motion) {
   std::optional<double> worst;
@@ -44,6 +47,8 @@ std::optional<double> clock_error_s(const Track& track, const PlanTimeline& time
   return worst;
 }
 
+/// Quantiles of the signed lags, and of their amounts: early robots break the density cap as late
+/// ones do.
 LagQuantiles quantiles_of(std::vector<double> lags) {
   LagQuantiles q{.p1_s = quantile(lags, 0.01),
                  .p10_s = quantile(lags, 0.1),
@@ -56,6 +61,7 @@ LagQuantiles quantiles_of(std::vector<double> lags) {
   return q;
 }
 
+/// Median, 95 % and root mean square of distances.
 ReferenceError error_of(std::vector<double> distances) {
   double squares = 0.0;
   for (const double d : distances) squares += d * d / static_cast<double>(distances.size());
@@ -66,6 +72,9 @@ ReferenceError error_of(std::vector<double> distances) {
 
 }  // namespace
 
+/// Two measures per robot and moment: the lag on its own curve, for all robots of the plan in
+/// force, and the distance to the reference, for robots in motion only (a robot at rest in its slot
+/// would dilute it).
 OwnReference own_reference(const RecordedRun& run, std::span<const PlanMoment> moments) {
   OwnReference result;
   std::vector<Curves> curves;

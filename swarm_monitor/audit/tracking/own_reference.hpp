@@ -28,6 +28,7 @@ struct LagMoment {
   double p10_s = 0.0, p50_s = 0.0, p90_s = 0.0;
 };
 
+/// The robots against their own logged references.
 struct OwnReference {
   std::optional<LagQuantiles> lag{};
   std::optional<ReferenceError> error{};
@@ -38,12 +39,12 @@ struct OwnReference {
   std::vector<LagMoment> moments{};
 };
 
-/// Positions against the reference curves that the robots themselves logged, at the *published* τ:
-/// a robot that keeps a clock of its own is late, not right. That the curves are those of the plan
-/// is another check: swarm_distances(). Moments ascend in time. O(robots · moments · entries of
-/// a curve within the window): 1.3 s for 500 robots and 269 moments.
-/// With a new plan every second, each begins where its robots are: then lags and distances stay
-/// small whatever the robots do, and the duration and the CVaR are what can still fail.
+/// Compares positions with the reference curves that the robots themselves logged, at the
+/// *published* τ: a robot that follows a clock of its own counts as late. Whether the curves are
+/// those of the plan is another check: swarm_distances(). Moments ascend in time. O(robots ·
+/// moments · entries of a curve within the window): 1.3 s for 500 robots and 269 moments.
+/// With a new plan every second, each plan begins where its robots are: lags and distances then
+/// stay small whatever the robots do, and only the duration and the CVaR can still fail.
 OwnReference own_reference(const RecordedRun& run, std::span<const PlanMoment> moments);
 
 }  // namespace swarm::monitor

@@ -9,6 +9,8 @@ namespace swarm::monitor {
 PlanTimeline::PlanTimeline(const RecordedRun& run)
     : plans_(run.plans), clock_(run.clock), begin_(run.begin) {}
 
+/// Binary search in the clock's records, then in the plans by version. Plan time before the plan's
+/// begin counts as 0.
 std::optional<PlanMoment> PlanTimeline::at(double time_s) const {
   const UtcTime now = begin_ + from_seconds(time_s);
   const PlanClock* const clock = clock_at(clock_, now);
@@ -22,6 +24,7 @@ std::optional<PlanMoment> PlanTimeline::at(double time_s) const {
                     .plan_time_s = std::max(0.0, clock->plan_time_at_s(now))};
 }
 
+/// Multiples of the step, not a running sum: rounding errors do not accumulate over long runs.
 std::vector<PlanMoment> PlanTimeline::moments(double begin_s, double end_s, double step_s) const {
   std::vector<PlanMoment> moments;
   for (std::size_t k = 0;; ++k) {
@@ -34,6 +37,8 @@ std::vector<PlanMoment> PlanTimeline::moments(double begin_s, double end_s, doub
   }
 }
 
+/// Integer arithmetic picks the last moment of each of `most` equal parts, so the very last one is
+/// always kept.
 std::vector<PlanMoment> thinned(std::span<const PlanMoment> moments, std::size_t most) {
   if (moments.size() <= most) return {moments.begin(), moments.end()};
   std::vector<PlanMoment> kept;

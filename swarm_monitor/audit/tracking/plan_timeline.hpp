@@ -16,11 +16,12 @@ struct PlanMoment {
   double time_s = 0.0;       ///< since RecordedRun::begin
   double plan_time_s = 0.0;  ///< τ ≥ 0
 
+  /// The planned mixture χ(τ) at this moment.
   Mixture mixture() const { return published->plan.mixture_at(MissionTime(plan_time_s)); }
 };
 
-/// Which plan is in force when, by the published clock alone. A pure function of
-/// plans and clock; both must outlive it.
+/// Which plan is in force at a time, by the published clock alone. A pure function of plans and
+/// clock; both must outlive it.
 class PlanTimeline {
  public:
   explicit PlanTimeline(const RecordedRun& run);

@@ -11,15 +11,18 @@
 namespace swarm::monitor {
 namespace {
 
-/// Two distances nearer than this are the same: references are logged as floats.
+/// Distances closer than this are equal: references are logged as floats, which resolve about 1e-5
+/// m on maps of 100 m.
 constexpr double kSame_m = 1e-4;
-/// The speed at an end of the curve is that over this time.
+/// The speed at an end of the curve is the mean over this time.
 constexpr double kEndSpeedOver_s = 1.0;
-/// Whether a reference waits is looked at this far around τ.
+/// Whether a reference waits is judged by its motion this far before and after τ.
 constexpr double kAround_s = 0.5;
 
 }  // namespace
 
+/// Keeps entries at least kSpacing_s apart in τ: a paused plan clock repeats its time, and a curve
+/// needs ascending times.
 void ReferenceCurve::add(double plan_time_s, const Vec2& reference_m) {
   if (!entries_.empty() && plan_time_s < entries_.back().plan_time_s + kSpacing_s) return;
   entries_.push_back({plan_time_s, reference_m});
@@ -50,6 +53,7 @@ std::pair<ReferenceCurve::Entry, ReferenceCurve::Entry> ReferenceCurve::piece(st
   return front ? std::pair(far, end) : std::pair(end, far);
 }
 
+/// Linear in the piece that holds τ; clamped beyond the extrapolated ends.
 Vec2 ReferenceCurve::at(double plan_time_s) const {
   SWARM_ASSERT(!empty());
   const auto after = std::upper_bound(entries_.begin(), entries_.end(), plan_time_s,
@@ -59,11 +63,15 @@ Vec2 ReferenceCurve::at(double plan_time_s) const {
   return a.at_m + std::clamp(share, 0.0, 1.0) * (b.at_m - a.at_m);
 }
 
+/// Mean speed over one second around τ below kRest_mps.
 bool ReferenceCurve::waits_at(double plan_time_s) const {
   return (at(plan_time_s + kAround_s) - at(plan_time_s - kAround_s)).norm() <=
          2.0 * kAround_s * kRest_mps;
 }
 
+/// Projects the position onto each piece within the window and keeps the nearest projection, at
+/// equal distances the one with the smallest lag. A robot close to a waiting reference is in time
+/// by definition (see the header).
 double ReferenceCurve::lag_s(const Vec2& position_m, double plan_time_s) const {
   SWARM_ASSERT(!empty());
   if ((position_m - at(plan_time_s)).norm() <= kAtRest_m && waits_at(plan_time_s)) return 0.0;

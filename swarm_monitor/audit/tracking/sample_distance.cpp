@@ -11,11 +11,14 @@
 namespace swarm::monitor {
 namespace {
 
-/// The largest cost that an assignment takes: beyond 30 km a robot is as far off as it can be.
+/// Upper bound of a cost that the assignment accepts [m²]: beyond 30 km a robot is as far off as it
+/// can be.
 constexpr double kMostSquared_m2 = 1e9;
 
 }  // namespace
 
+/// A point u in [0, 1) selects the component whose cumulative weight holds it; the points of one
+/// component are then drawn independently, mean + L·z with the Cholesky factor L of its covariance.
 std::vector<Vec2> fair_sample(const Mixture& mixture, std::size_t n, Rng& rng) {
   std::vector<Vec2> points;
   points.reserve(n);
@@ -37,6 +40,8 @@ std::vector<Vec2> fair_sample(const Mixture& mixture, std::size_t n, Rng& rng) {
   return points;
 }
 
+/// Squared distances as costs; the optimal assignment of equally weighted points is the optimal
+/// transport between them.
 double w2_m(std::span<const Vec2> a, std::span<const Vec2> b) {
   SWARM_ASSERT(a.size() == b.size());
   if (a.empty()) return 0.0;
@@ -48,6 +53,8 @@ double w2_m(std::span<const Vec2> a, std::span<const Vec2> b) {
   return std::sqrt(assignment_cost(costs_m2, a.size()) / static_cast<double>(a.size()));
 }
 
+/// The floor is the distance that a perfect swarm would have: two samples of n points differ by
+/// chance. Only W2 above it is an error of the swarm.
 Distance distance_to(const Mixture& mixture, std::span<const Vec2> points, std::size_t draws,
                      Rng& rng) {
   SWARM_ASSERT(draws >= 2);

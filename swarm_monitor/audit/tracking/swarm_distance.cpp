@@ -7,10 +7,12 @@
 namespace swarm::monitor {
 namespace {
 
+/// Seed of the samples, mixed with the moment's number; references are measured at every fourth
+/// moment, since each costs a further assignment.
 constexpr std::uint64_t kDistanceSeed = 19;
 constexpr std::size_t kReferencesEvery = 4;
 
-/// Adds up distances, and says the mean.
+/// Sums of distances and floors, and their means.
 class Mean {
  public:
   void add(const Distance& distance) {
@@ -31,6 +33,8 @@ class Mean {
 
 }  // namespace
 
+/// The same sample serves as the target of the robots and in the floor, so that the scatter of that
+/// sample cancels in their ratio in part.
 std::vector<SwarmDistance> swarm_distances(const RecordedRun& run,
                                            std::span<const PlanMoment> moments,
                                            std::size_t most_robots) {
@@ -40,6 +44,7 @@ std::vector<SwarmDistance> swarm_distances(const RecordedRun& run,
     const PlanMoment& moment = moments[k];
     const std::vector<RobotNow>& living = walk.at(moment.time_s);
     if (living.empty()) continue;
+    // Every n-th robot, so that at most `most_robots` enter the assignment, which is O(n³).
     const std::size_t every = (living.size() + most_robots - 1) / most_robots;
     std::vector<Vec2> positions, references;
     for (std::size_t i = 0; i < living.size(); i += every) {
@@ -82,6 +87,7 @@ std::optional<Distance> mean_reference_distance(std::span<const SwarmDistance> d
   return mean.mean();
 }
 
+/// Consecutive moments of the same plan version form one entry: versions only grow over a run.
 std::vector<PlanDistance> distances_by_plan(std::span<const SwarmDistance> distances) {
   std::vector<PlanDistance> plans;
   for (std::size_t begin = 0; begin < distances.size();) {

@@ -24,10 +24,10 @@ struct SwarmDistance {
 };
 
 /// W2 of the living robots to χ(τ) and its floor, at moments that ascend in time. Of more than
-/// `most_robots` robots, every n-th by id, which keeps the shares of the components since
-/// neighbouring ids go the same way. The samples depend on the moment's number alone: the same run
-/// gives the same numbers. Two and a quarter assignments a moment: 40 moments of 500 robots take
-/// 1.4 s.
+/// `most_robots` robots every n-th by id enters, which keeps the shares of the components, since
+/// neighbouring ids take the same legs. The samples depend on the moment's number alone: the same
+/// run gives the same numbers. Two and a quarter assignments per moment: 40 moments of 500 robots
+/// take 1.4 s.
 std::vector<SwarmDistance> swarm_distances(const RecordedRun& run,
                                            std::span<const PlanMoment> moments,
                                            std::size_t most_robots = 500);

@@ -10,6 +10,8 @@ namespace swarm::monitor {
 
 SwarmWalk::SwarmWalk(std::span<const Track> tracks) : tracks_(tracks), cursors_(tracks.size(), 0) {}
 
+/// Advances each robot's cursor to its last step before `time_s`; moments must ascend. A robot that
+/// was lost disappears after its last step, one that ended gracefully stays at its last position.
 const std::vector<RobotNow>& SwarmWalk::at(double time_s) {
   robots_.clear();
   for (std::uint32_t i = 0; i < tracks_.size(); ++i) {
@@ -29,6 +31,7 @@ const std::vector<RobotNow>& SwarmWalk::at(double time_s) {
   return robots_;
 }
 
+/// Before the first motion the swarm waits for its start, which would count as perfect tracking.
 std::optional<MotionSpan> motion_of(std::span<const Track> tracks) {
   MotionSpan span{.begin_s = std::numeric_limits<double>::infinity()};
   for (const Track& track : tracks) {

@@ -17,8 +17,8 @@ struct RobotNow {
   const TrackPoint* step = nullptr;  ///< its last step by then
 };
 
-/// Walks along all tracks of a run. A robot is present from its first step on, up to its last one
-/// if it was lost; one that ended gracefully is taken to stay where it ended.
+/// Interpolates all tracks of a run at ascending moments. A robot is present from its first step
+/// on, until its last one if it was lost; one that ended gracefully stays where it ended.
 class SwarmWalk {
  public:
   explicit SwarmWalk(std::span<const Track> tracks);

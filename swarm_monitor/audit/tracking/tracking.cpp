@@ -11,10 +11,13 @@
 namespace swarm::monitor {
 namespace {
 
+/// Number of moments that are measured however large the swarm is.
 constexpr std::size_t kFewestMoments = 20;
-/// A stamp far off must not take hours.
+/// Number of steps of a run at most: a damaged stamp far in the future must not take hours.
 constexpr double kMostSteps = 20'000.0;
 
+/// Share of the motion that the published clock covers, and its rate. Sampled every `step_s` over
+/// the motion.
 std::optional<ClockUse> clock_use(const RecordedRun& run, const PlanTimeline& timeline,
                                   const MotionSpan& motion, double step_s) {
   if (run.clock.empty()) return std::nullopt;
@@ -40,6 +43,8 @@ std::optional<ClockUse> clock_use(const RecordedRun& run, const PlanTimeline& ti
 
 }  // namespace
 
+/// An empty text means that the clock is usable. The checks are ordered from the most to the least
+/// fundamental.
 std::string Tracking::no_clock() const {
   if (!clock) return "no plan clock was published";
   if (clock->covered_share < kLeastCovered) {
@@ -50,6 +55,8 @@ std::string Tracking::no_clock() const {
   return {};
 }
 
+/// References are taken from the robots' own logs, so they are checked against the plan before
+/// anything is judged by them: complete enough, and distributed like the plan's mixture.
 std::string Tracking::no_references() const {
   if (std::string why = no_clock(); !why.empty()) return why;
   if (own.followed_share < kLeastFollowed) {
@@ -64,6 +71,9 @@ std::string Tracking::no_references() const {
   return {};
 }
 
+/// The ends are measured for every run; everything else needs motion and a clock. The effort is
+/// bounded by thinning the moments, separately for each measure, since an assignment costs far more
+/// than a lag.
 Tracking measure_tracking(const RecordedRun& run, const TrackingEffort& effort) {
   Tracking tracking;
   tracking.ending = ending_of(run);
@@ -75,6 +85,8 @@ Tracking measure_tracking(const RecordedRun& run, const TrackingEffort& effort) 
   tracking.clock = clock_use(run, timeline, *motion, step_s);
   if (!tracking.clock) return tracking;
   const std::vector<PlanMoment> all = timeline.moments(motion->begin_s, motion->end_s, step_s);
+  // Moments per robot shrink with the size of the swarm, so that robots · moments stay within the
+  // effort.
   const std::size_t fine = std::max(
       kFewestMoments, effort.most_robot_moments / std::max<std::size_t>(1, run.tracks.size()));
   const std::vector<PlanMoment> moments = thinned(all, fine);

@@ -15,7 +15,7 @@
 
 namespace swarm::monitor {
 
-/// The published clock during the motion.
+/// The published plan clock during the motion.
 struct ClockUse {
   double covered_share = 0.0;  ///< of the motion's seconds, with a recorded plan in force
   double rate_mean = 0.0;      ///< over those seconds
@@ -23,11 +23,11 @@ struct ClockUse {
   double slowed_share = 0.0;  ///< of those seconds, at a rate below 1
 };
 
-/// How a swarm flew what was published: from robot logs, plans and the plan's clock alone. What
-/// could not be measured is empty. All of it is measured from the first motion on, while the plan
-/// in force still moves.
+/// How the swarm followed what was published, from robot logs, plans and the plan's clock alone.
+/// What could not be measured is empty. All of it is measured from the first motion on, while the
+/// plan in force still moves.
 struct Tracking {
-  /// Measured where it needs the clock: less of the motion covered is no evidence.
+  /// With less of the motion covered by the clock, nothing that needs the clock is judged.
   static constexpr double kLeastCovered = 0.9;
   /// Robots that log references must have logged them for this share of their motion, …
   static constexpr double kLeastFollowed = 0.9;
@@ -55,9 +55,9 @@ struct Tracking {
   std::string no_references() const;
 };
 
-/// How finely a run is looked at. Defaults are for a verdict within seconds: 500 robots over 270 s
-/// take 3.8 s of a busy core: 1.4 s for 40 moments of assignments, 1.3 s for lags, 0.7 s for
-/// densities, 0.3 s for the ends.
+/// Limits on the cost of measuring. The defaults give a verdict within seconds: 500 robots over 270
+/// s take 3.8 s of a busy core, of which 1.4 s for 40 moments of assignments, 1.3 s for lags, 0.7 s
+/// for densities, 0.3 s for the ends.
 struct TrackingEffort {
   double step_s = 1.0;
   std::size_t most_distances = 40;

@@ -14,15 +14,16 @@
 namespace swarm::monitor {
 namespace {
 
-/// Values of a chart: one a second, of a long run fewer.
+/// Step of a chart's time axis [s]: one second, longer for long runs, so that a curve has at most
+/// 2000 values.
 template <class Moment>
 double step_of(const std::vector<Moment>& moments) {
   constexpr double kMostValues = 2000.0;
   return std::max(1.0, moments.back().time_s / kMostValues);
 }
 
-/// A value for each step from 0 to the last moment: that of the newest moment by then, of the first
-/// one before it.
+/// A value for each step from 0 to the last moment: the value of the newest moment up to that time,
+/// before the first moment that of the first one.
 template <class Moment, class Of>
 std::vector<double> by_step(const std::vector<Moment>& moments, Of of) {
   std::vector<double> values;
@@ -35,6 +36,7 @@ std::vector<double> by_step(const std::vector<Moment>& moments, Of of) {
   return values;
 }
 
+/// Upper end of the value axis; never 0, which would make an empty axis.
 double largest(std::span<const Curve> curves) {
   double most = 1e-3;
   for (const Curve& curve : curves) {

@@ -9,8 +9,10 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+/// What was not measured becomes null, never 0.
 Json number(const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); }
 
+/// W2, its floor and their ratio, the number to judge by.
 Json distance(const std::optional<Distance>& d) {
   if (!d) return nullptr;
   return {{"w2_m", d->w2_m}, {"floor_m", d->floor_m}, {"ratio", d->ratio()}};
@@ -36,6 +38,7 @@ Json clock(const Tracking& tracking) {
           {"error_s", number(tracking.own.clock_error_s)}};
 }
 
+/// Quantiles of the signed lag; `amount_` ones are those of its absolute value.
 Json lag(const std::optional<LagQuantiles>& q) {
   if (!q) return nullptr;
   return {{"p1", q->p1_s},
@@ -73,6 +76,7 @@ Json risk(const std::optional<ExecutedRisk>& r) {
           {"filter_alone", r->filter_m}};
 }
 
+/// `own_place` is the robot's own slot: the last reference that it logged.
 Json ending(const Ending& e) {
   return {{"to_goal", distance(e.to_goal)},
           {"references_to_goal", distance(e.references_to_goal)},
@@ -86,6 +90,7 @@ std::string distance_text(const Distance& d) {
 
 }  // namespace
 
+/// The object `tracking` of the audit; docs/audit.md defines every quantity.
 Json tracking_json(const Tracking& tracking) {
   return {{"swarm", distance(tracking.w2)},
           {"moments", tracking.distances.size()},

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-// What stands still is drawn once and copied under every frame: a goal of hundreds of ellipses costs nothing then.
+// What does not move is drawn once and copied under every frame, so that a goal of hundreds of ellipses costs nothing.
 import { Program } from './draw_gl.js';
 
 // A copy by texture: blitFramebuffer() to a canvas without alpha is refused by some drivers.

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-// The world's floor: bounds, a grid in metres, and the cells by which robots listen.
+// The world's floor: bounds, a grid in metres, and the cells of the state channel.
 import { Program } from './draw_gl.js';
 
 const VERTEX = `

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-// Robots, straight from the bytes of a picture: the 16 of a robot are one texel, so there is no object each and
-// nothing to copy. Two pictures stay on the GPU, which moves robots from the older to the newer.
+// Robots, drawn from the bytes of a frame: the 16 bytes of a robot are one texel, so no objects are made and
+// nothing is copied. Two frames stay on the GPU, which interpolates between them.
 import { Program } from './draw_gl.js';
 import { HEADER_BYTES, ROBOT_BYTES } from './view_frame.js';
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-// The connection: one picture asked for at a time, reconnecting by itself.
+// The connection: requests one frame at a time and reconnects by itself.
 
 const PROTOCOL = 'swarmflow.view.v1';
 const LONGEST_WAIT_S = 10;
@@ -17,7 +17,7 @@ export class Link {
     this.#connect();
   }
 
-  /** True if a picture can be asked for. */
+  /** True if a frame can be requested. */
   get idle() {
     return this.connected && !this.#asked;
   }

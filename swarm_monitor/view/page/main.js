@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-// Puts the page together: pictures in, map and panels out.
+// Puts the page together: frames in, map and panels out.
 import { Camera } from './camera.js';
 import { listenToPointers } from './gestures.js';
 import { listenToKeys } from './keys.js';
@@ -20,7 +20,7 @@ import { Scenes } from './scenes.js';
 import { byId, put } from './text.js';
 import { readTheme } from './theme.js';
 
-const ASK_MS = 32;         // at most about 30 pictures a second
+const ASK_MS = 32;         // at most about 30 frames a second
 const ASK_STILL_MS = 100;  // while a live swarm has nothing new
 const PANELS_MS = 150;
 const GRASP_PX = 14;

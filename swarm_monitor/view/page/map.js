@@ -67,7 +67,7 @@ export class SwarmMap {
     this.backdrop.forget();
   }
 
-  /** `fresh`: shows another moment than the last one, not just more about it. `jumped`: not the one after it. */
+  /** `fresh`: whether the frame is of another time. `jumped`: whether it does not continue the last one. */
   setViewFrame(viewFrame, fresh, jumped) {
     this.viewFrame = viewFrame;
     if (!fresh) return;
@@ -86,7 +86,7 @@ export class SwarmMap {
     this.camera.resize(width, height);
   }
 
-  /** `mix`: 0 shows the picture before, 1 the newest. `chosen`: null or what showChosen() takes. */
+  /** `mix`: 0 shows the frame before, 1 the newest. `chosen`: null or what showChosen() takes. */
   draw(mix, chosen) {
     const { camera, theme, scene, layers } = this;
     const px = this.canvas.width / camera.width;

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-// The last two pictures, and how far between them the map is: movement stays smooth with few pictures a second.
+// The last two frames, and the map's time between them: motion stays smooth at few frames per second.
 
 const LONGEST_MS = 250;
-const SLOW_FRAME_MS = 40;  // a machine that draws slower shows the newest picture at once
+const SLOW_FRAME_MS = 40;  // a machine that draws slower shows the newest frame at once
 
 export class Motion {
   before = null;
@@ -13,7 +13,7 @@ export class Motion {
   #frame_ms = 16;
   #jumped = true;
 
-  /** Returns {fresh, jumped}: whether it shows another moment, and one that does not follow. */
+  /** Returns {fresh, jumped}: whether the frame is of another time, and whether it does not continue the last one. */
   add(viewFrame, sought, at_ms) {
     const step = this.now ? viewFrame.t - this.now.t : NaN;
     const fresh = step !== 0 || viewFrame.n !== this.now.n;
@@ -33,13 +33,13 @@ export class Motion {
     this.#frame_ms += 0.1 * (Math.min(elapsed_ms, 200) - this.#frame_ms);
   }
 
-  /** 0: the picture before; 1: the newest. */
+  /** 0: the frame before; 1: the newest. */
   mix(at_ms) {
     if (this.#jumped || this.#frame_ms > SLOW_FRAME_MS) return 1;
     return Math.min((at_ms - this.#arrived_ms) / Math.max(this.#interval_ms, 1), 1);
   }
 
-  /** Where a robot of the newest picture is drawn. */
+  /** The position at which a robot of the newest frame is drawn. */
   position(robot, mix) {
     const { before } = this;
     if (mix === 1 || !before || robot.id >= before.n || !(before.info[16 * robot.id + 14] & 5)) return [robot.x, robot.y];

@@ -40,7 +40,7 @@ export class Charts {
     this.#stale = true;
   }
 
-  /** Draws what is new, if anybody can see it. */
+  /** Draws new rows if the panel is visible. */
   refresh(range = null) {
     if (range) this.range = range;
     if (!this.#stale || !this.details.open || this.#rows.length === 0) return;
@@ -89,7 +89,7 @@ export class Charts {
     const { spec } = chart;
     const columns = spec.columns.map((name) => this.#names.indexOf(name));
     const rows = this.#rows.map((row) => [row[0], ...columns.map((at) => row[at] ?? null)]);
-    // Recordings do not tell everything: what they do not is not shown.
+    // Recordings lack some columns: those are not shown.
     chart.whole.hidden = rows.every((row) => row.slice(1).every((value) => value === null));
     if (chart.whole.hidden) return;
     const first = this.range?.[0] ?? rows[0][0];

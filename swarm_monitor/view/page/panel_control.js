@@ -34,7 +34,7 @@ export class Control {
     this.toolChanged(tool);
   }
 
-  /** Uses the tool in hand at a place of the map. */
+  /** Uses the tool in hand at a point of the map. */
   useAt(x, y) {
     const order = { action: this.tool, x, y };
     if (this.tool === 'add_obstacle') {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-// The robot under the pointer or chosen, in words.
+// The facts about the robot under the pointer or the chosen one.
 import { byId, clock, put } from './text.js';
 
 const WINDOW_S = 0.6;  // speed is estimated over about this long
@@ -9,7 +9,7 @@ export class RobotPanel {
   #id = null;
   #past = [];  // [t, x, y]
 
-  /** A picture of another moment. */
+  /** A frame of another time. */
   observe(robot, t) {
     if (robot === null) return;
     if (robot.id !== this.#id || t < (this.#past.at(-1)?.[0] ?? t)) this.#past = [];
@@ -43,7 +43,7 @@ export class RobotPanel {
   }
 }
 
-/** How far off the worst belief is from where that neighbour is in the same picture. */
+/** The largest distance between an estimated neighbour and its position in the same frame. */
 function worstEstimate(viewFrame) {
   let worst = -1, who = 0;
   for (let i = 0; i < viewFrame.k; ++i) {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-// The line at the top: what runs, where it stands, how many there are.
+// The line at the top: mission, phase and counts of robots.
 import { byId, put } from './text.js';
 
 export class Status {
@@ -29,6 +29,6 @@ export class Status {
 
   rate(viewFrames, frames) {
     put(byId('rate'), `${viewFrames}/s`);
-    byId('rate').title = `${viewFrames} viewFrames received and ${frames} frames drawn in the last second`;
+    byId('rate').title = `${viewFrames} frames received and ${frames} drawn in the last second`;
   }
 }

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-// The clock of a recording. A live run has none: it shows the newest picture.
+// The clock of a recording. A live run has none: it shows the newest frame.
 
 export class Player {
   live = true;
@@ -9,7 +9,7 @@ export class Player {
   t = 0;
   playing = false;
   rate = 1;
-  sought = false;  // since somebody last looked: the next picture is no continuation
+  sought = false;  // since the last frame: the next one does not continue it
   #started = false;
 
   /** From a scene. The first one of a recording starts it, unless `still`. */

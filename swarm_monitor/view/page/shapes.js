@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-// What is drawn of a scene and a picture: mission words in, lines and ellipses out.
+// The shapes of a scene and of a frame: their JSON and mixtures in, lines and ellipses out.
 
 const SIGMAS_99 = Math.sqrt(-2 * Math.log(0.01));  // 99 % of a Gaussian in the plane lie within
 
@@ -37,7 +37,7 @@ export function showPlan(scene, theme, legs, nodes) {
   nodes.upload();
 }
 
-/** Where the swarm starts and where it goes. */
+/** Start and goal of the swarm. */
 export function showRegions(scene, theme, regions) {
   regions.records.clear();
   const add = (parts, look) => {
@@ -56,7 +56,7 @@ export function showRegions(scene, theme, regions) {
   regions.upload();
 }
 
-/** Where the plan wants the swarm at the picture's time. */
+/** The planned mixture at the frame's time. */
 export function showMixture(viewFrame, theme, mixture) {
   mixture.records.clear();
   let most = 1e-12;
@@ -73,7 +73,7 @@ export function showMixture(viewFrame, theme, mixture) {
   mixture.upload();
 }
 
-/** `chosen`: null or {x, y, held, beliefs}; beliefs as x, y pairs in every three floats after one. */
+/** `chosen`: null or {x, y, held, estimates}; estimates: three floats per neighbour, of which the last two are x and y. */
 export function showChosen(chosen, scene, camera, theme, lines, rings) {
   lines.records.clear();
   rings.records.clear();

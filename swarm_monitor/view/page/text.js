@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-// Small words about numbers, and elements made of text only.
+// Numbers as short texts, and elements that hold text only.
 
 /** 61.34 -> "1:01.3" */
 export function clock(t) {
@@ -16,7 +16,7 @@ export function put(element, text) {
   if (element.textContent !== text) element.textContent = text;
 }
 
-/** make('li', {className: 'event'}, 'text', child): whatever was received ends up as text. */
+/** make('li', {className: 'event'}, 'text', child): received strings become text, never HTML. */
 export function make(tag, properties = {}, ...children) {
   const element = document.createElement(tag);
   for (const [key, value] of Object.entries(properties)) {

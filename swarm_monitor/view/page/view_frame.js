@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-// A picture as PROTOCOL.md has it: views into the bytes received, nothing copied.
+// A frame as PROTOCOL.md defines it: views into the received bytes, nothing is copied.
 
 export const HEADER_BYTES = 24;
 export const ROBOT_BYTES = 16;
@@ -10,24 +10,24 @@ export const RECEIVED = 1, ARRIVED = 2, LOST = 4;
 const NO_ROBOT = 0xFFFFFFFF;
 const MAGIC = 0x31465753;  // "SWF1"
 
-/** Throws if the bytes are no picture. */
+/** Throws if the bytes are not a frame. */
 export function decode(buffer) {
   const view = new DataView(buffer);
-  if (buffer.byteLength < HEADER_BYTES || view.getUint32(0, true) !== MAGIC) throw new Error('not a picture');
+  if (buffer.byteLength < HEADER_BYTES || view.getUint32(0, true) !== MAGIC) throw new Error('not a frame');
   const n = view.getUint32(4, true);
   const m = view.getUint32(20, true);
   const mixtureAt = HEADER_BYTES + ROBOT_BYTES * n;
   const focusAt = mixtureAt + 24 * m;
-  if (buffer.byteLength < focusAt + 8) throw new Error('a picture cut short');
+  if (buffer.byteLength < focusAt + 8) throw new Error('a truncated frame');
   const k = view.getUint32(focusAt + 4, true);
-  if (buffer.byteLength !== focusAt + 8 + 12 * k) throw new Error('a picture of a wrong length');
+  if (buffer.byteLength !== focusAt + 8 + 12 * k) throw new Error('a frame of a wrong length');
   const focus = view.getUint32(focusAt, true);
   return {
     buffer, n, m, k,
     t: view.getFloat64(8, true),
     phase: PHASES[view.getUint32(16, true)] ?? 'unknown',
     robots: new Float32Array(buffer, HEADER_BYTES, 4 * n),  // x, y, heading, -
-    info: new Uint8Array(buffer, HEADER_BYTES, ROBOT_BYTES * n),  // bytes 12 to 15: mode, goal, flags, heard
+    info: new Uint8Array(buffer, HEADER_BYTES, ROBOT_BYTES * n),  // bytes 12 to 15: mode, goal, flags, neighbours
     mixture: new Float32Array(buffer, mixtureAt, 6 * m),
     focus: focus === NO_ROBOT ? null : focus,
     estimates: new Float32Array(buffer, focusAt + 8, 3 * k),  // -, x, y
@@ -47,7 +47,7 @@ export function robotOf(viewFrame, id) {
   };
 }
 
-/** How many there are of each kind; `perGoal` has one entry a goal and a last one for none. */
+/** Counts of robots by kind; `perGoal` has one entry per goal and a last one for no goal. */
 export function countRobots(viewFrame, goals) {
   const counts = { received: 0, moving: 0, arrived: 0, lost: 0, perMode: MODES.map(() => 0), perGoal: new Array(goals + 1).fill(0) };
   for (let at = 12; at < ROBOT_BYTES * viewFrame.n; at += ROBOT_BYTES) {

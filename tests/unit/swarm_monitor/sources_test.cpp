@@ -54,7 +54,7 @@ std::uint32_t topic_named(const std::string& name) {
   return static_cast<std::uint32_t>(it - topics.begin());
 }
 
-/// A bus that says what a test puts on it.
+/// A bus that delivers what a test puts on it.
 class FakeTap final : public BusTap {
  public:
   template <class M>
@@ -195,7 +195,7 @@ TEST_F(Live, IsShownInATerminal) {
 
   const std::string text = top_text(source_.state(), {.name = "small"}, at_ms(1000));
 
-  EXPECT_NE(text.find("1 of 12 robots heard  1 moving"), std::string::npos) << text;
+  EXPECT_NE(text.find("1 of 12 robots received  1 moving"), std::string::npos) << text;
   EXPECT_NE(text.find("     3  moving      10.00    10.00    1.00"), std::string::npos) << text;
 }
 
@@ -214,7 +214,7 @@ TEST(Recorded, IsShownAtAnyTime) {
   EXPECT_NEAR(shown(-3)[0].x_m, 5, 1e-4);
   EXPECT_NEAR(shown(99)[0].x_m, 15, 1e-4);
   EXPECT_EQ(shown(5.0)[1].flags & 4, 0);
-  EXPECT_EQ(shown(9.0)[1].flags & 4, 4);  // its box ended at 5 s without a word
+  EXPECT_EQ(shown(9.0)[1].flags & 4, 4);  // its log ended at 5 s without the note "exit"
   const auto scene = nlohmann::json::parse(source.scenes().front());
   EXPECT_FALSE(scene["live"]);
   EXPECT_NEAR(scene["end"].get<double>(), 10.0, 1e-9);

@@ -11,7 +11,7 @@ namespace swarm::monitor {
 /// complains about numbers that are not finite.
 std::string xml_fault(std::string_view text);
 
-/// How often a word occurs.
+/// Number of occurrences of a text.
 std::size_t count_of(std::string_view text, std::string_view word);
 
 }  // namespace swarm::monitor

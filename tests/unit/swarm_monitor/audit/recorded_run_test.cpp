@@ -78,7 +78,7 @@ TEST(RecordedRun, ReadsEventsAndLeavesOutWhatIsNone) {
   EXPECT_EQ(run->events[0].code, "plan");
 }
 
-/// A plan that ends after so many seconds.
+/// A plan that ends after the given time [s].
 FlowPlan plan_of(double duration_s) {
   const Gaussian gaussian;
   const auto plan = FlowPlan::make(

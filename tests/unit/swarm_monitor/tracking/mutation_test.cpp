@@ -127,7 +127,7 @@ TEST(Mutation, TwentyPerCentLateByAClockOfItsOwn) {
 
 TEST(Mutation, ReferencesThatAreNotThePlans) {
   PlannedRun flight;
-  // Twenty seconds late, and the log says that this is where the plan wants it.
+  // Twenty seconds late, and the log has this as the planned position.
   flight.position_m = [&](std::uint32_t i, double tau) {
     return flight.reference_m(i, std::max(0.0, tau - 20.0));
   };
@@ -158,7 +158,7 @@ TEST(Mutation, ARobotThroughAFallenOne) {
 
 TEST(Mutation, ARobotOutsideTheBounds) {
   PlannedRun flight;
-  std::uint32_t highest = 0;  // nobody is above it
+  std::uint32_t highest = 0;  // no robot is above it
   for (std::uint32_t i = 1; i < flight.robots; ++i) {
     if (flight.reference_m(i, 0.0).y() > flight.reference_m(highest, 0.0).y()) highest = i;
   }
@@ -196,7 +196,7 @@ TEST(Mutation, NoPublishedClock) {
 
 TEST(Mutation, AClockThatStopsBeingPublishedIsNoEvidence) {
   RecordedRun run = PlannedRun{}.make();
-  run.clock.push_back({run.begin + from_seconds(40.0), 2, 0.0, 1.0});  // a plan nobody recorded
+  run.clock.push_back({run.begin + from_seconds(40.0), 2, 0.0, 1.0});  // a plan that was not recorded
 
   const Audit audit = audit_recorded(std::move(run)).audit;
 

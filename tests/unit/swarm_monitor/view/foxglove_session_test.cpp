@@ -236,7 +236,7 @@ TEST_F(FoxgloveClient, GetsTheNewestSampleOfWhatItSubscribed) {
 TEST_F(FoxgloveClient, GetsFramesTenTimesASecondWhileSubscribed) {
   greet();
   step();
-  EXPECT_TRUE(source_.asked.empty()) << "nobody wants them";
+  EXPECT_TRUE(source_.asked.empty()) << "no client subscribed";
   session_.take(
       R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":0},{"id":2,"channelId":2}]})",
       false);

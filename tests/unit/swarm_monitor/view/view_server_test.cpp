@@ -180,7 +180,7 @@ TEST_F(ViewServerTest, ServesFoxgloveUnderBothNamesAtAnyPathToAnyOrigin) {
     EXPECT_EQ(poses.substr(1, 4), std::string("\7\0\0\0", 4));
     EXPECT_EQ(poses.substr(13, 4), std::string("\0\1\0\0", 4));
     EXPECT_EQ(binary(client, '\2').size(), 9U);
-    // Control is a word of the page's protocol; here it means nothing.
+    // Control belongs to the page's protocol; here it has no effect.
     client.send_text(R"({"op":"control","token":"","action":"stop"})");
     EXPECT_NE(text(client, "status"), "");
   }
@@ -220,7 +220,7 @@ TEST_F(ViewServerTest, IsControlledWithTheTokenAlone) {
   std::vector<ControlAction> done;
   const Control control = [&](const ControlRequest& request) -> Result<std::string> {
     done.push_back(request.action);
-    return "as you say";
+    return "as requested";
   };
   const auto answer = [&](const ViewServerOptions& options, const std::string& token) {
     start(options);

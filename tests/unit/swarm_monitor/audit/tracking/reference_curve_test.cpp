@@ -39,7 +39,7 @@ TEST(ReferenceCurve, ReportsHowLateAndHowEarlyARobotIs) {
   EXPECT_NEAR(curve.lag_s(waiting_at(20.0), 20.0), 0.0, 1e-6);
   EXPECT_NEAR(curve.lag_s(waiting_at(14.0), 20.0), 6.0, 1e-6);
   EXPECT_NEAR(curve.lag_s(waiting_at(26.0), 20.0), -6.0, 1e-6);
-  // Beside the way nothing changes.
+  // A position beside the path has the same lag.
   EXPECT_NEAR(curve.lag_s(waiting_at(14.0) + Vec2(0.0, 3.0), 20.0), 6.0, 1e-6);
 }
 
@@ -50,7 +50,7 @@ TEST(ReferenceCurve, CountsAWaitAsOneInterval) {
   for (const double tau : {30.5, 40.0, 49.5}) EXPECT_EQ(curve.lag_s(place, tau), 0.0) << tau;
   EXPECT_NEAR(curve.lag_s(place, 55.0), 5.0, 0.25) << "from the end of the wait";
   EXPECT_NEAR(curve.lag_s(place, 20.0), -10.0, 0.25) << "to its begin";
-  // A little behind a waiting reference is in time; a whole second's way behind is not.
+  // A little behind a waiting reference is in time; the path of a whole second behind is not.
   EXPECT_EQ(curve.lag_s(place - Vec2(0.6, 0.0), 40.0), 0.0);
   EXPECT_GT(curve.lag_s(place - Vec2(1.25, 0.0), 40.0), 10.0);
 }
