@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "swarm_core/gmm/wasserstein.hpp"
-#include "swarmflow/core/cvar.hpp"
 #include "swarm_core/risk/mixture_cvar.hpp"
+#include "swarmflow/core/cvar.hpp"
 
 namespace swarm::planner {
 namespace {

@@ -4,8 +4,8 @@
 
 #include <cstddef>
 
-#include "swarmflow/core/random.hpp"
 #include "swarmflow/core/flow_plan.hpp"
+#include "swarmflow/core/random.hpp"
 #include "swarmflow/core/world.hpp"
 
 /// Checks of a plan against its promises, from the plan alone, independent of the planner's own

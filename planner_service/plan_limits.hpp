@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "swarmflow/mission/body_limits.hpp"
 #include "swarmflow/planning/plan_result.hpp"
 #include "swarmflow/planning/planning_method.hpp"
-#include "swarmflow/mission/body_limits.hpp"
 
 namespace swarm::planner {
 

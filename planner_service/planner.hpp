@@ -4,14 +4,14 @@
 
 #include <memory>
 
+#include "swarmflow/core/cvar.hpp"
+#include "swarmflow/core/result.hpp"
+#include "swarmflow/mission/body_limits.hpp"
+#include "swarmflow/mission/mission.hpp"
 #include "swarmflow/planning/plan_request.hpp"
 #include "swarmflow/planning/plan_result.hpp"
 #include "swarmflow/planning/planning_method.hpp"
 #include "swarmflow/planning/planning_registry.hpp"
-#include "swarmflow/core/result.hpp"
-#include "swarmflow/mission/body_limits.hpp"
-#include "swarmflow/mission/mission.hpp"
-#include "swarmflow/core/cvar.hpp"
 
 namespace swarm::planner {
 

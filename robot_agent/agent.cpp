@@ -50,11 +50,12 @@ void Agent::accept_plan(const FlowPlan& plan, const Vec2& position_m,
                         std::optional<PlanEntry> entry, std::optional<double> plan_time_s) {
   if (has_route_ && plan.digest() == followed_route_.plan_digest) return;
   const RouteOptions& o = options_->route;
-  Route route = entry && is_near_source(plan, entry->source, position_m)
-                    ? route_from_source(plan, entry->source, entry->share, position_m, *world_, o)
-                : moved_ || entry
-                    ? route_from_here(plan, followed_route_.share, position_m, *world_, o, plan_time_s)
-                    : route_from_start(plan, followed_route_.share, position_m, *world_, o);
+  Route route =
+      entry && is_near_source(plan, entry->source, position_m)
+          ? route_from_source(plan, entry->source, entry->share, position_m, *world_, o)
+      : moved_ || entry
+          ? route_from_here(plan, followed_route_.share, position_m, *world_, o, plan_time_s)
+          : route_from_start(plan, followed_route_.share, position_m, *world_, o);
   keep_slot(route, position_m);
   method_.begin(plan, route, *world_);
   followed_route_.goal = route.goal;
@@ -70,12 +71,14 @@ void Agent::accept_plan(const FlowPlan& plan, const Vec2& position_m,
 /// disturb the robots that wait for the last ones. It goes there in the time of the new plan.
 void Agent::keep_slot(Route& route, const Vec2& position_m) const {
   constexpr double kSame_m = 1e-6;
-  const bool same_goal = has_route_ && (route.goal.mean_m() - followed_route_.goal.mean_m()).norm() < kSame_m;
+  const bool same_goal =
+      has_route_ && (route.goal.mean_m() - followed_route_.goal.mean_m()).norm() < kSame_m;
   if (!same_goal || !route.goal.contains_99(position_m)) return;
   if (!world_->segment_is_free(position_m, followed_route_.end_m, options_->route.radius_m)) return;
   // In no more time than it had left; otherwise each new plan would put its arrival off.
   const auto before = method_.tracking();
-  const double left_s = before ? std::max(1.0, followed_route_.end_s - before->plan_time_s) : followed_route_.end_s;
+  const double left_s =
+      before ? std::max(1.0, followed_route_.end_s - before->plan_time_s) : followed_route_.end_s;
   const double end_s = std::min(route.schedule.end_s(), left_s);
   route.path = Polyline({position_m, followed_route_.end_m});
   route.schedule = arrived_ ? Schedule({{0.0, route.path.length_m()}})
@@ -115,7 +118,8 @@ AgentOutput Agent::tick(const AgentInput& input, Rng& rng) {
     // An arrived robot drives, too: it keeps its slot and makes room. Any other holds its position
     // and lets itself be pushed.
     const bool drives = out.mode == RobotMode::kMoving || out.mode == RobotMode::kArrived;
-    const Vec2 desired = drives ? method_.desired_velocity(view, arrived_, rng) : method_.hold(view);
+    const Vec2 desired =
+        drives ? method_.desired_velocity(view, arrived_, rng) : method_.hold(view);
     const bool gives_way = out.mode == RobotMode::kMoving && out.remaining_m > kFinalApproach_m;
     out.velocity_mps = filter_.filter(input.position_m, desired, view.close, gives_way);
   }
@@ -128,11 +132,12 @@ AgentOutput Agent::tick(const AgentInput& input, Rng& rng) {
 
   // Followers rely on the published velocity: a body with a lag publishes the measured one.
   out.reported_mps = input.velocity_mps.value_or(out.velocity_mps);
-  const SendInput state{.now = input.now,
-                      .position_m = input.position_m,
-                      .velocity_mps = out.reported_mps,
-                      .listeners = filter_.listeners(input.position_m, out.reported_mps, view.close),
-                      .link = neighbours_.link()};
+  const SendInput state{
+      .now = input.now,
+      .position_m = input.position_m,
+      .velocity_mps = out.reported_mps,
+      .listeners = filter_.listeners(input.position_m, out.reported_mps, view.close),
+      .link = neighbours_.link()};
   out.nearest_gap_m = state.listeners.nearest_gap_m;
   out.send = send_policy_.must_send(state);
   if (out.send) send_policy_.record_sent(state);

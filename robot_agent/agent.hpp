@@ -7,15 +7,15 @@
 #include <string>
 
 #include "robot_agent/agent_options.hpp"
-#include "robot_agent/safety/guarded_method.hpp"
-#include "swarmflow/robot/route.hpp"
-#include "robot_agent/safety/safety_filter.hpp"
 #include "robot_agent/neighbours/neighbour_table.hpp"
+#include "robot_agent/safety/guarded_method.hpp"
+#include "robot_agent/safety/safety_filter.hpp"
 #include "robot_agent/send_policy.hpp"
-#include "swarmflow/core/random.hpp"
 #include "swarm_core/base/shared.hpp"
+#include "swarmflow/core/random.hpp"
 #include "swarmflow/mission/mission.hpp"
 #include "swarmflow/mission/phase.hpp"
+#include "swarmflow/robot/route.hpp"
 
 namespace swarm::agent {
 
@@ -55,16 +55,16 @@ struct AgentInput {
 /// What a robot decides at a tick.
 struct AgentOutput {
   Vec2 velocity_mps = Vec2::Zero();  ///< to command; valid for two control periods
-  Vec2 reported_mps = Vec2::Zero();      ///< the velocity to publish
+  Vec2 reported_mps = Vec2::Zero();  ///< the velocity to publish
   RobotMode mode = RobotMode::kWaiting;
-  bool send = false;          ///< publish the new state now
+  bool send = false;         ///< publish the new state now
   bool settled = false;      ///< arrived and at rest
   double remaining_m = 0.0;  ///< left of the own path
   double nearest_gap_m =
       0.0;  ///< to the nearest estimated neighbour, surface to surface; +∞ if none
   std::uint16_t neighbours = 0;
   std::optional<TimeTracking>
-      tracking{};                         ///< empty for a robot that does not keep the plan's times
+      tracking{};  ///< empty for a robot that does not keep the plan's times
   std::span<const Neighbour> estimated{};  ///< those within reach; valid until the next tick
 };
 
@@ -86,7 +86,7 @@ class Agent {
 
   /// Takes a neighbour's state that was `late` on receipt.
   NeighbourTable::Outcome receive(const NeighbourReport& report, const Vec2& own_position_m,
-                               Duration late = {}) {
+                                  Duration late = {}) {
     return neighbours_.take(report, own_position_m, late);
   }
 

@@ -59,7 +59,8 @@ Result<Shared<AgentOptions>> agent_options(const Mission& mission, RobotId robot
   const ControlSpec& c = mission.control;
   const LinkSpec& l = mission.link;
   const Duration period = from_seconds(1.0 / c.rate_hz);
-  const double communication_radius_m = body.communication_radius_m > 0.0 ? body.communication_radius_m : l.communication_radius_m;
+  const double communication_radius_m =
+      body.communication_radius_m > 0.0 ? body.communication_radius_m : l.communication_radius_m;
   const ControlEntry* entry = registry.find(c.method);
   if (entry == nullptr) {
     return fail(ErrorCode::kBadInput, fmt::format("control.method is {}; this program has {}",
@@ -98,9 +99,9 @@ Result<Shared<AgentOptions>> agent_options(const Mission& mission, RobotId robot
                      .expected_silence = from_seconds(l.send_interval_max_s) + 2 * period,
                      .forget_after = from_seconds(mission.timing.neighbour_forget_s)},
       .send = {.error_m = l.send_error_m,
-              .interval_max = from_seconds(l.send_interval_max_s),
-              .near_m = l.send_near_m,
-              .period = period},
+               .interval_max = from_seconds(l.send_interval_max_s),
+               .near_m = l.send_near_m,
+               .period = period},
   });
 }
 

@@ -4,8 +4,8 @@
 
 #include <map>
 
-#include "robot_agent/safety/safety_filter.hpp"
 #include "robot_agent/neighbours/neighbour_table.hpp"
+#include "robot_agent/safety/safety_filter.hpp"
 #include "robot_agent/send_policy.hpp"
 #include "swarm_core/base/shared.hpp"
 #include "swarmflow/core/result.hpp"

@@ -5,8 +5,8 @@
 #include <chrono>
 #include <limits>
 
-#include "swarmflow/core/time.hpp"
 #include "swarmflow/core/gaussian.hpp"
+#include "swarmflow/core/time.hpp"
 
 namespace swarm::agent {
 

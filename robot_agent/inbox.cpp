@@ -111,11 +111,11 @@ void Inbox::receive_state(const link::RobotStateMessage& state, SteadyTime stead
   }
   age = std::max(age, Duration::zero());
   received_.push_back({.report = {.robot = RobotId(state.robot_id),
-                               .sequence = state.sequence_number,
-                               .as_of = steady_now - age,
-                               .position_m = {state.x_m, state.y_m},
-                               .velocity_mps = {state.vx_mps, state.vy_mps}},
-                    .age = age});
+                                  .sequence = state.sequence_number,
+                                  .as_of = steady_now - age,
+                                  .position_m = {state.x_m, state.y_m},
+                                  .velocity_mps = {state.vx_mps, state.vy_mps}},
+                       .age = age});
 }
 
 }  // namespace swarm::agent

@@ -9,13 +9,13 @@
 #include <vector>
 
 #include "robot_agent/agent.hpp"
-#include "robot_agent/neighbours/received_cells.hpp"
 #include "robot_agent/mission_watch.hpp"
 #include "robot_agent/neighbours/neighbour_table.hpp"
+#include "robot_agent/neighbours/received_cells.hpp"
 #include "robot_agent/plan_time_watch.hpp"
 #include "swarm_core/metrics/histogram.hpp"
-#include "swarm_link/gate/gate.hpp"
 #include "swarm_link/channels/state_channel.hpp"
+#include "swarm_link/gate/gate.hpp"
 
 namespace swarm::agent {
 

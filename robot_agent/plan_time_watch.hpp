@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <optional>
 
-#include "swarmflow/robot/schedule.hpp"
 #include "swarmflow/core/time.hpp"
+#include "swarmflow/robot/schedule.hpp"
 
 namespace swarm::agent {
 

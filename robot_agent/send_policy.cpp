@@ -24,10 +24,11 @@ bool SendPolicy::must_send(const SendInput& input) const {
   // A follower brakes `timeout_s` after our last state. A state sent now takes `late_s` to arrive,
   // and the next chance to send is a period away: send while one of them still fits in.
   if (silent_s + std::max(period_s, input.link.late_s) > input.listeners.timeout_s) return true;
-  const bool is_stopped =
-      input.velocity_mps == last_->velocity_mps && input.velocity_mps.norm() < kSendsNothingBelow_mps;
+  const bool is_stopped = input.velocity_mps == last_->velocity_mps &&
+                          input.velocity_mps.norm() < kSendsNothingBelow_mps;
   // Messages may be lost: near others every tick carries a state, except where nothing changes.
-  if (input.link.poor && input.listeners.nearest_gap_m < options_->near_m && !is_stopped) return true;
+  if (input.link.poor && input.listeners.nearest_gap_m < options_->near_m && !is_stopped)
+    return true;
   // Also the error of the extrapolation one period ahead: a robot that has just turned is off only
   // by then, and cannot publish in between.
   const Vec2 off_m = last_->position_m + silent_s * last_->velocity_mps - input.position_m;

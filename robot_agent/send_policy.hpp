@@ -5,10 +5,10 @@
 #include <optional>
 #include <utility>
 
-#include "robot_agent/safety/safety_filter.hpp"
 #include "robot_agent/neighbours/neighbour_table.hpp"
-#include "swarmflow/core/linalg.hpp"
+#include "robot_agent/safety/safety_filter.hpp"
 #include "swarm_core/base/shared.hpp"
+#include "swarmflow/core/linalg.hpp"
 #include "swarmflow/core/time.hpp"
 
 namespace swarm::agent {
@@ -39,7 +39,9 @@ class SendPolicy {
 
   bool must_send(const SendInput& input) const;
 
-  void record_sent(const SendInput& input) { last_ = {input.now, input.position_m, input.velocity_mps}; }
+  void record_sent(const SendInput& input) {
+    last_ = {input.now, input.position_m, input.velocity_mps};
+  }
 
  private:
   Shared<SendOptions> options_;

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "swarm_core/app/program.hpp"
 #include "swarm_core/app/stop_signal.hpp"
-#include "swarm_launcher/processes/builtin_catalogue.hpp"
 #include "swarm_launcher/cli/commands.hpp"
+#include "swarm_launcher/processes/builtin_catalogue.hpp"
 
 int main(int argc, char** argv) {
   using namespace swarm;
@@ -24,7 +24,8 @@ int main(int argc, char** argv) {
         add_plan(app),
         add_keys(app),
         add_command(app),
-        add_sibling(app, "simulate", "Fly a mission in lock-step, in one process, as fast as it goes",
+        add_sibling(app, "simulate",
+                    "Fly a mission in lock-step, in one process, as fast as it goes",
                     {"swarm_sim"}),
         add_sibling(app, "table",
                     "Simulate a paper's experiment: its table, its peers and ours side by side",

@@ -5,10 +5,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "swarmflow/core/ids.hpp"
-#include "swarmflow/core/time.hpp"
 #include "swarm_core/metrics/histogram.hpp"
 #include "swarm_link/messages.hpp"
+#include "swarmflow/core/ids.hpp"
+#include "swarmflow/core/time.hpp"
 
 namespace swarm::link {
 

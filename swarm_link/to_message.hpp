@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "swarm_link/messages.hpp"
+#include "swarmflow/core/flow_plan.hpp"
 #include "swarmflow/core/ids.hpp"
 #include "swarmflow/core/time.hpp"
 #include "swarmflow/mission/scene.hpp"
-#include "swarmflow/core/flow_plan.hpp"
-#include "swarm_link/messages.hpp"
 
 /// Converts domain objects to the messages that publish them. The Gate does the opposite.
 namespace swarm::link {

@@ -8,16 +8,16 @@
 #include <string_view>
 #include <vector>
 
+#include "swarmflow/core/box.hpp"
 #include "swarmflow/core/ids.hpp"
 #include "swarmflow/core/linalg.hpp"
 #include "swarmflow/core/result.hpp"
-#include "swarmflow/core/box.hpp"
 
 namespace swarm::launcher {
 
 /// Robots whose processes die at one time of a simulated mission, as by `kill -9`.
 struct Kill {
-  double at_s = 0.0;              ///< mission time
+  double at_s = 0.0;  ///< mission time
   /// Which robots: either those of a list, or a number of them.
   std::vector<RobotId> robots{};  ///< these; if empty:
   std::uint32_t count = 0;        ///< number of robots, drawn by the seed …

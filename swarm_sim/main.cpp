@@ -25,16 +25,14 @@ struct CommandLine {
 void add_options(CLI::App& app, const std::shared_ptr<CommandLine>& line) {
   constexpr int kMostSimulated = 200'000;
   SimulateOptions* const o = &line->options;
-  app.add_option("mission", o->mission_file, "Mission file")
-      ->required()
-      ->type_name("MISSION.yaml");
+  app.add_option("mission", o->mission_file, "Mission file")->required()->type_name("MISSION.yaml");
   app.add_option("--robots", o->robots, "Number of robots, instead of the mission's")
       ->check(CLI::Range(1, kMostSimulated));
   app.add_option("--seed", o->seed, "Seed of placement, plan, robots, faults");
   app.add_option("--fault", line->fault, "A bad network, as for run")->type_name("FAULT");
   app.add_option("--kill", line->kills,
-                   "Robots die and their bodies stay: N@SECONDS drawn by the seed,\n"
-                   "N@SECONDS,in=X0:Y0:X1:Y1 of those in a box, or ids:A,B@SECONDS; repeatable")
+                 "Robots die and their bodies stay: N@SECONDS drawn by the seed,\n"
+                 "N@SECONDS,in=X0:Y0:X1:Y1 of those in a box, or ids:A,B@SECONDS; repeatable")
       ->allow_extra_args(false)
       ->type_name("KILL");
   app.add_flag_callback(

@@ -39,10 +39,10 @@ std::vector<robot_log::Step> Recording::last_steps(RobotId robot) const {
 template <class Take>
 void Recording::replay(std::uint32_t robot, Take take) const {
   take(robot_log::Header{.robot = RobotId(robot),
-                        .robots = mission_.robots.count,
-                        .process_id = 0,
-                        .radius_m = body_of(mission_.robots, RobotId(robot)).radius_m,
-                        .stamp = begin_});
+                         .robots = mission_.robots.count,
+                         .process_id = 0,
+                         .radius_m = body_of(mission_.robots, RobotId(robot)).radius_m,
+                         .stamp = begin_});
   // Merges three sequences by their stamps: notes, steps of the periods, and estimates.
   auto note = notes_[robot].begin();
   const auto last_note = notes_[robot].end();
@@ -62,10 +62,10 @@ void Recording::replay(std::uint32_t robot, Take take) const {
   // The link's counters belong to all robots: the first log has them, before the last notes.
   if (robot == 0) {
     take(robot_log::LinkStats{.stamp = periods_.empty() ? begin_ : periods_.back()[robot].stamp,
-                             .states_sent = static_cast<std::uint32_t>(link_.states_sent),
-                             .states_received = static_cast<std::uint32_t>(link_.states_received),
-                             .refused = link_.refused,
-                             .state_age = link_.state_age});
+                              .states_sent = static_cast<std::uint32_t>(link_.states_sent),
+                              .states_received = static_cast<std::uint32_t>(link_.states_received),
+                              .refused = link_.refused,
+                              .state_age = link_.state_age});
   }
   for (; note != last_note; ++note) take(note->note);
 }

@@ -11,8 +11,8 @@
 
 #include "robot_agent/loop/robot_log.hpp"
 #include "swarm_core/robot_log/record.hpp"
-#include "swarmflow/mission/mission.hpp"
 #include "swarm_monitor/audit/recorded_run.hpp"
+#include "swarmflow/mission/mission.hpp"
 
 namespace swarm::launcher {
 
@@ -73,7 +73,7 @@ class Recording {
     robot_log::Note note;
     bool follows_step;
   };
-  std::vector<std::vector<PlacedNote>> notes_;            // of each robot
+  std::vector<std::vector<PlacedNote>> notes_;               // of each robot
   std::vector<std::vector<robot_log::Estimate>> estimates_;  // of each robot
   Link link_;
 };
@@ -83,7 +83,9 @@ class RobotRecording final : public agent::RobotLog {
  public:
   RobotRecording(Recording& recording, RobotId robot) : recording_(recording), robot_(robot) {}
   void append(const robot_log::Step& step) override { recording_.step(robot_, step); }
-  void append(const robot_log::Estimate& estimate) override { recording_.estimate(robot_, estimate); }
+  void append(const robot_log::Estimate& estimate) override {
+    recording_.estimate(robot_, estimate);
+  }
   void append(robot_log::Note note) override { recording_.note(robot_, std::move(note)); }
 
  private:

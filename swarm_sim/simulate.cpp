@@ -9,17 +9,17 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "swarm_core/mission_file/scene_log.hpp"
-#include "swarm_core/plan/plan_json.hpp"
-#include "swarm_core/plan/planning_record.hpp"
 #include "swarm_core/app/run_dir.hpp"
 #include "swarm_core/app/run_directory.hpp"
 #include "swarm_core/app/stop_signal.hpp"
+#include "swarm_core/mission_file/scene_log.hpp"
+#include "swarm_core/plan/plan_json.hpp"
+#include "swarm_core/plan/planning_record.hpp"
 #include "swarm_launcher/processes/builtin_catalogue.hpp"
 #include "swarm_launcher/supervision/event_log.hpp"
 #include "swarm_launcher/supervision/progress.hpp"
-#include "swarm_sim/simulation.hpp"
 #include "swarm_launcher/supervision/summary.hpp"
+#include "swarm_sim/simulation.hpp"
 #include "swarmflow/mission/mission_file.hpp"
 
 namespace swarm::launcher {

@@ -7,10 +7,10 @@
 #include <optional>
 #include <vector>
 
-#include "swarmflow/core/result.hpp"
 #include "swarm_core/mission/link_faults.hpp"
-#include "swarm_sim/simulated_network.hpp"
 #include "swarm_sim/kills.hpp"
+#include "swarm_sim/simulated_network.hpp"
+#include "swarmflow/core/result.hpp"
 
 namespace swarm::launcher {
 

@@ -15,13 +15,14 @@ constexpr double kMaxCells = 1e6;
 /// Cells as wide as the largest communication radius, so that nine of them hold all that a robot
 /// receives; wider where that would make more than a million cells.
 double cell_size_m(const Vec2& extent_m, double largest_communication_radius_m) {
-  return std::max(largest_communication_radius_m, std::sqrt(extent_m.x() * extent_m.y() / kMaxCells));
+  return std::max(largest_communication_radius_m,
+                  std::sqrt(extent_m.x() * extent_m.y() / kMaxCells));
 }
 
 }  // namespace
 
-SimulatedNetwork::SimulatedNetwork(const Box& bounds_m, double largest_communication_radius_m, const LinkFaults& faults, std::uint64_t seed,
-         SteadyTime begin)
+SimulatedNetwork::SimulatedNetwork(const Box& bounds_m, double largest_communication_radius_m,
+                                   const LinkFaults& faults, std::uint64_t seed, SteadyTime begin)
     : faults_(faults),
       begin_(begin),
       seed_(seed),
@@ -66,8 +67,8 @@ void SimulatedNetwork::forget(SteadyTime time) {
 
 /// The fate of a message (lost, or its delay) is drawn from a hash of seed, sender, number and
 /// receiver, not from a generator with a state: threads and order do not matter.
-bool SimulatedNetwork::arrives(const agent::NeighbourReport& report, RobotId receiver, SteadyTime sent_at,
-                  SteadyTime from, SteadyTime until) const {
+bool SimulatedNetwork::arrives(const agent::NeighbourReport& report, RobotId receiver,
+                               SteadyTime sent_at, SteadyTime from, SteadyTime until) const {
   const std::uint64_t message =
       static_cast<std::uint64_t>(report.robot.value()) << 32U | report.sequence;
   const auto delay = fate(faults_, mix_seed(seed_, message), receiver.value());

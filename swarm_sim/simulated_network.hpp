@@ -23,8 +23,8 @@ class SimulatedNetwork {
  public:
   /// `largest_communication_radius_m` is that of all robots, `begin` the time that faults count
   /// from.
-  SimulatedNetwork(const Box& bounds_m, double largest_communication_radius_m, const LinkFaults& faults, std::uint64_t seed,
-      SteadyTime begin);
+  SimulatedNetwork(const Box& bounds_m, double largest_communication_radius_m,
+                   const LinkFaults& faults, std::uint64_t seed, SteadyTime begin);
 
   /// Sends the states that robots published at a moment; moments ascend.
   void post(SteadyTime at, std::span<const agent::NeighbourReport> sent);
@@ -36,10 +36,12 @@ class SimulatedNetwork {
   /// `communication_radius_m` in [from, until), except its own states. O(states published in up to
   /// nine cells).
   template <class Take>
-  void receive(RobotId receiver, const Vec2& position_m, double communication_radius_m, SteadyTime from,
-            SteadyTime until, Take take) const {
-    const int x0 = column_of(position_m.x() - communication_radius_m), x1 = column_of(position_m.x() + communication_radius_m);
-    const int y0 = row_of(position_m.y() - communication_radius_m), y1 = row_of(position_m.y() + communication_radius_m);
+  void receive(RobotId receiver, const Vec2& position_m, double communication_radius_m,
+               SteadyTime from, SteadyTime until, Take take) const {
+    const int x0 = column_of(position_m.x() - communication_radius_m),
+              x1 = column_of(position_m.x() + communication_radius_m);
+    const int y0 = row_of(position_m.y() - communication_radius_m),
+              y1 = row_of(position_m.y() + communication_radius_m);
     const double range_squared = communication_radius_m * communication_radius_m;
     for (const Moment& moment : moments_) {
       const bool faulty = faults_.any() && faults_.at(moment.at - begin_);

@@ -11,8 +11,8 @@
 #include <fmt/format.h>
 
 #include "planner_service/methods/builtin_methods.hpp"
-#include "robot_agent/methods/shared/density_attraction.hpp"
 #include "robot_agent/loop/tick_phase.hpp"
+#include "robot_agent/methods/shared/density_attraction.hpp"
 #include "swarm_core/mission/placement.hpp"
 
 namespace swarm::launcher {
@@ -64,7 +64,7 @@ Simulation::Simulation(const Mission& mission, planner::Planner planner,
       supervisor_(supervisor_options(mission), kBegin),
       cadence_(mission.control.rate_hz, mission.link.status_hz),
       network_(mission.world.bounds_m(), largest_communication_radius_m(mission), options.faults,
-           mix_seed(options.seed, 0xA1B), kBegin),
+               mix_seed(options.seed, 0xA1B), kBegin),
       gate_({.limits = link::wire_limits(mission)}),
       thread_pool_(std::max<std::size_t>(options.threads, 1)),
       collected_(thread_pool_.size()),

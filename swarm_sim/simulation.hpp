@@ -14,15 +14,15 @@
 #include "robot_agent/loop/density_forecast.hpp"
 #include "robot_agent/loop/robot_loop.hpp"
 #include "robot_agent/loop/status_cadence.hpp"
-#include "swarmflow/core/result.hpp"
 #include "swarm_core/mission/link_faults.hpp"
-#include "swarmflow/mission/mission.hpp"
-#include "swarm_sim/simulated_network.hpp"
-#include "swarm_sim/thread_pool.hpp"
-#include "swarm_sim/kills.hpp"
-#include "swarm_sim/recording.hpp"
 #include "swarm_launcher/supervision/supervisor.hpp"
 #include "swarm_link/gate/gate.hpp"
+#include "swarm_sim/kills.hpp"
+#include "swarm_sim/recording.hpp"
+#include "swarm_sim/simulated_network.hpp"
+#include "swarm_sim/thread_pool.hpp"
+#include "swarmflow/core/result.hpp"
+#include "swarmflow/mission/mission.hpp"
 
 namespace swarm::launcher {
 
@@ -101,8 +101,8 @@ class Simulation {
   /// One robot of the simulation.
   struct Robot {
     agent::RobotLoop loop;
-    agent::SimulatedRobot body;  // by value: in the cache with the rest
-    double communication_radius_m = 0.0;        // its own, or the mission's
+    agent::SimulatedRobot body;           // by value: in the cache with the rest
+    double communication_radius_m = 0.0;  // its own, or the mission's
     SteadyTime received_until;
     std::uint32_t plan_version = 0;  // that it follows
   };
@@ -177,10 +177,10 @@ class Simulation {
   link::Gate gate_;  // what receivers check, once for each published state
   ThreadPool thread_pool_;
   std::vector<Robot> robots_;
-  std::vector<Rng> rngs_;                          // of each; large and rarely used
-  std::vector<std::vector<std::uint32_t>> slots_;  // robots that tick together
-  std::vector<Collected> collected_;               // one a thread
-  std::vector<agent::NeighbourReport> sent_states_;     // states published at a moment
+  std::vector<Rng> rngs_;                            // of each; large and rarely used
+  std::vector<std::vector<std::uint32_t>> slots_;    // robots that tick together
+  std::vector<Collected> collected_;                 // one a thread
+  std::vector<agent::NeighbourReport> sent_states_;  // states published at a moment
   // Robots that report their status out of turn. Apart from robots_: a pass over all of them reads
   // little memory.
   std::vector<std::uint8_t> has_updates_;

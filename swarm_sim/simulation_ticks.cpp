@@ -24,8 +24,9 @@ struct Simulation::RobotBus {
 
   template <class Take>
   void receive(const Vec2& position_m, Take take) {
-    network.receive(robot.loop.id(), position_m, robot.communication_radius_m, robot.received_until, now,
-             [&](const agent::NeighbourReport& report) { take(report, now - report.as_of); });
+    network.receive(
+        robot.loop.id(), position_m, robot.communication_radius_m, robot.received_until, now,
+        [&](const agent::NeighbourReport& report) { take(report, now - report.as_of); });
     robot.received_until = now;
     if (prefetched != nullptr) prefetch(*prefetched);
   }
@@ -114,10 +115,10 @@ void Simulation::deliver_published(SteadyTime now) {
     for (const link::RobotStateMessage& state : collected.published) {
       if (!gate_.state(state, utc(now))) continue;
       sent_states_.push_back({.robot = RobotId(state.robot_id),
-                         .sequence = state.sequence_number,
-                         .as_of = now,
-                         .position_m = {state.x_m, state.y_m},
-                         .velocity_mps = {state.vx_mps, state.vy_mps}});
+                              .sequence = state.sequence_number,
+                              .as_of = now,
+                              .position_m = {state.x_m, state.y_m},
+                              .velocity_mps = {state.vx_mps, state.vy_mps}});
     }
     collected.published.clear();
   }
@@ -142,12 +143,12 @@ void Simulation::report_status() {
                                        .scene_version = keeper_.planned_scene(),
                                        .sent_at = now_});
     keeper_.receive({.robot = RobotId(i),
-                  .position_m = {status.x_m, status.y_m},
-                  .arrived = status.arrived,
-                  .lag_s = status.lag_s,
-                  .plan_version = keeper_.version(),
-                  .plan_time_s = clock_.plan_time_s},
-                 status.mode == RobotMode::kMoving, now_);
+                     .position_m = {status.x_m, status.y_m},
+                     .arrived = status.arrived,
+                     .lag_s = status.lag_s,
+                     .plan_version = keeper_.version(),
+                     .plan_time_s = clock_.plan_time_s},
+                    status.mode == RobotMode::kMoving, now_);
   }
 }
 

@@ -6,9 +6,9 @@
 
 #include <fmt/format.h>
 
-#include "robot_agent/methods/diffusion/intermittent_diffusion_keys.hpp"
 #include "experiments/papers/experiments.hpp"
 #include "experiments/papers/figure.hpp"
+#include "robot_agent/methods/diffusion/intermittent_diffusion_keys.hpp"
 
 namespace swarm::launcher {
 namespace {

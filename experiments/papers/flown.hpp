@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
+#include "swarm_sim/simulation.hpp"
 #include "swarmflow/core/result.hpp"
 #include "swarmflow/mission/mission.hpp"
-#include "swarm_sim/simulation.hpp"
 
 namespace swarm::launcher {
 
@@ -20,10 +20,10 @@ struct Flown {
   std::uint64_t seed = 0;
   Outcome outcome = Outcome::kNone;
   std::uint32_t robots = 0;
-  std::uint32_t arrived = 0;    ///< robots at their goal at the end
-  std::uint32_t contacts = 0;  ///< pairs of robots, and robots with obstacles
-  double wall_s = 0.0;         ///< planning and flying
-  double plan_ms = 0.0;        ///< of all plans of the flight
+  std::uint32_t arrived = 0;       ///< robots at their goal at the end
+  std::uint32_t contacts = 0;      ///< pairs of robots, and robots with obstacles
+  double wall_s = 0.0;             ///< planning and flying
+  double plan_ms = 0.0;            ///< of all plans of the flight
   double ns_per_agent_step = 0.0;  ///< median over the steps
   double mission_s = 0.0;
   double path_m = 0.0;   ///< mean over the robots

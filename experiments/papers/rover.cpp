@@ -46,11 +46,11 @@ void compare_clearances(Rows& rows) {
     const bool worse_robot = own_robot_m < robot_m;
     const bool worse_obstacle = own_obstacle_m < obstacle_m;
     rows.add_line(fmt::format("| {} | {:.2f} / {:.2f} | {:.2f} / {:.2f} | {} |", row.name, robot_m,
-                         own_robot_m, obstacle_m, own_obstacle_m,
-                         worse_robot && worse_obstacle ? "both worse"
-                         : worse_robot                 ? "robots worse"
-                         : worse_obstacle              ? "obstacles worse"
-                                                       : "not worse"));
+                              own_robot_m, obstacle_m, own_obstacle_m,
+                              worse_robot && worse_obstacle ? "both worse"
+                              : worse_robot                 ? "robots worse"
+                              : worse_obstacle              ? "obstacles worse"
+                                                            : "not worse"));
   }
 }
 
@@ -125,10 +125,10 @@ Result<void> rover_experiment(Rows& rows) {
   for (std::size_t a = 0; a < by_alpha.size(); ++a) {
     const Row& row = rows.all()[by_alpha[a]];
     rows.add_line(fmt::format("| {}{} | {} | {:.3f} | {:.4f} | {:.1f} |", kAlphas[a].first,
-                         a == 0 ? " (the flights of scenario 2 above)" : "", kAlphas[a].second,
-                         row.mean([](const Flown& f) { return f.clearance_m; }),
-                         row.mean([](const Flown& f) { return f.ratio(); }),
-                         row.mean([](const Flown& f) { return f.mission_s; })));
+                              a == 0 ? " (the flights of scenario 2 above)" : "", kAlphas[a].second,
+                              row.mean([](const Flown& f) { return f.clearance_m; }),
+                              row.mean([](const Flown& f) { return f.ratio(); }),
+                              row.mean([](const Flown& f) { return f.mission_s; })));
   }
   draw_distances(rows, by_alpha);
   return {};

@@ -11,7 +11,7 @@ namespace swarm::launcher {
 
 /// Resources that a process uses now, as counted by the kernel.
 struct ProcessSample {
-  double cpu_s = 0.0;  ///< user + system
+  double cpu_s = 0.0;   ///< user + system
   double rss_mb = 0.0;  ///< resident memory
   std::uint32_t threads = 0;
   std::uint32_t open_files = 0;

@@ -5,10 +5,10 @@
 #include <cstdio>
 #include <utility>
 
-#include "swarm_core/app/run_directory.hpp"
-#include "swarm_launcher/processes/child_process.hpp"
 #include "experiments/soak/soak_mission.hpp"
 #include "experiments/soak/soak_watch.hpp"
+#include "swarm_core/app/run_directory.hpp"
+#include "swarm_launcher/processes/child_process.hpp"
 #include "swarm_monitor/audit/audit.hpp"
 
 namespace swarm::launcher {

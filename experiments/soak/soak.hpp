@@ -7,8 +7,8 @@
 #include <optional>
 #include <string>
 
-#include "swarmflow/core/result.hpp"
 #include "experiments/soak/soak_result.hpp"
+#include "swarmflow/core/result.hpp"
 
 namespace swarm::launcher {
 

@@ -26,15 +26,15 @@ struct SoakSample {
 
 /// Measurements of a soak while its mission ran.
 struct SoakMeasurements {
-  std::vector<SoakSample> samples{};  ///< about one a second
+  std::vector<SoakSample> samples{};                    ///< about one a second
   std::optional<link::StreamMeter::Counts> received{};  ///< empty: the channel has no listener
-  Histogram latency{};                               ///< written → received by a waiting listener
+  Histogram latency{};               ///< written → received by a waiting listener
   link::StreamMeter::Worst worst{};  ///< the largest latency and its robot
-  Histogram use_latency{};        ///< written → used by a neighbour's controller
-  std::uint64_t states_sent = 0;  ///< as the robots count
+  Histogram use_latency{};           ///< written → used by a neighbour's controller
+  std::uint64_t states_sent = 0;     ///< as the robots count
   std::uint64_t states_used = 0;
   std::uint64_t ticks = 0, late_ticks = 0;  ///< control periods, and those that began late
-  std::uint64_t receive_drops = 0;  ///< by the kernel, all UDP sockets of the machine
+  std::uint64_t receive_drops = 0;          ///< by the kernel, all UDP sockets of the machine
 };
 
 }  // namespace swarm::launcher

@@ -173,7 +173,8 @@ std::string to_text(const SoakResult& result, const std::vector<std::string>& co
   text += fmt::format("  to its use       {}\n", quantiles_text(m.use_latency));
   if (m.received) {
     text += fmt::format("  states           {} sent, {} lost, {} twice, {} out of order\n",
-                        m.received->sent(), m.received->lost, m.received->duplicates, m.received->reordered);
+                        m.received->sent(), m.received->lost, m.received->duplicates,
+                        m.received->reordered);
   }
   text += fmt::format("  at the robots    {} used, {} dropped by the kernel\n", m.states_used,
                       m.receive_drops);

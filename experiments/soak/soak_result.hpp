@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "swarm_core/mission/channel.hpp"
 #include "experiments/soak/soak_measurements.hpp"
+#include "swarm_core/mission/channel.hpp"
 
 namespace swarm::launcher {
 

@@ -8,8 +8,8 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include "swarm_core/base/clock.hpp"
 #include "experiments/soak/process_sample.hpp"
+#include "swarm_core/base/clock.hpp"
 
 namespace swarm::launcher {
 namespace {

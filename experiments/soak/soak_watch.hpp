@@ -11,8 +11,8 @@
 #include <thread>
 #include <vector>
 
-#include "swarm_launcher/flight/flight.hpp"
 #include "experiments/soak/soak_measurements.hpp"
+#include "swarm_launcher/flight/flight.hpp"
 #include "swarm_link/channels/groups/group_tap.hpp"
 
 namespace swarm::launcher {

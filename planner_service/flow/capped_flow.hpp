@@ -8,8 +8,8 @@
 #include "planner_service/flow/density_cap.hpp"
 #include "planner_service/flow/route.hpp"
 #include "planner_service/roadmap/edge_check.hpp"
-#include "swarmflow/planning/roadmap.hpp"
 #include "swarmflow/core/result.hpp"
+#include "swarmflow/planning/roadmap.hpp"
 
 namespace swarm::planner {
 

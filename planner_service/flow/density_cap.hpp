@@ -6,8 +6,8 @@
 #include <numbers>
 #include <span>
 
-#include "swarmflow/core/result.hpp"
 #include "swarmflow/core/gaussian.hpp"
+#include "swarmflow/core/result.hpp"
 
 namespace swarm::planner {
 

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "swarmflow/planning/density_peak.hpp"
 #include "swarmflow/core/flow_plan.hpp"
+#include "swarmflow/planning/density_peak.hpp"
 
 namespace swarm::planner {
 

@@ -26,8 +26,8 @@ constexpr std::array kStraightenSteps{1.0, 0.5, 0.25};
 // Extra distances from obstacles that are tried [m]: at a corner the legs beside a node need more
 // room than the node itself.
 constexpr std::array kExtraRooms_m{0.0, 0.4, 1.0};
-constexpr double kLater_s = 1e-9;    // rounding
-constexpr double kCoarser = 2.0;     // every second time, until the whole is checked
+constexpr double kLater_s = 1e-9;              // rounding
+constexpr double kCoarser = 2.0;               // every second time, until the whole is checked
 constexpr double kStraightenBelowCap = 0.999;  // leaves the check of the whole little to undo
 
 // √S = (S + √det I) / √(tr + 2√det), for a positive definite matrix of two rows.
@@ -213,7 +213,8 @@ class Straightener {
   // Sets the Gaussian of a node if the density keeps the cap on its legs, else leaves it as it is.
   bool try_place(std::uint32_t i, const Gaussian& g) {
     const Gaussian before = std::exchange(nodes_[i].gaussian, g);
-    if (density_.try_change(nodes_, legs_of_[i], kStraightenBelowCap * cap_.max_per_m2)) return true;
+    if (density_.try_change(nodes_, legs_of_[i], kStraightenBelowCap * cap_.max_per_m2))
+      return true;
     nodes_[i].gaussian = before;
     return false;
   }

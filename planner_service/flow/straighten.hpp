@@ -8,8 +8,8 @@
 #include "planner_service/flow/density_cap.hpp"
 #include "planner_service/flow/route.hpp"
 #include "planner_service/roadmap/edge_check.hpp"
-#include "swarmflow/core/flow_plan.hpp"
 #include "swarmflow/core/cvar.hpp"
+#include "swarmflow/core/flow_plan.hpp"
 #include "swarmflow/core/world.hpp"
 
 namespace swarm::planner {

@@ -39,8 +39,8 @@ struct Terminals {
 };
 
 // Density of components that hold all of their mass [robots/m²].
-double stationary_density_per_m2(std::span<const Gaussian> components, std::span<const double> masses,
-                               double robots, const Vec2& at_m) {
+double stationary_density_per_m2(std::span<const Gaussian> components,
+                                 std::span<const double> masses, double robots, const Vec2& at_m) {
   double density = 0.0;
   for (std::size_t i = 0; i < masses.size(); ++i)
     density += masses[i] * components[i].density(at_m);
@@ -64,7 +64,7 @@ std::vector<double> first_capacities(const Roadmap& roadmap, const Terminals& te
     const double stationary_per_m2 =
         std::max(stationary_density_per_m2(nodes, terminals.supplies, cap.robots, at_m),
                  stationary_density_per_m2(nodes.subspan(terminals.supplies.size()),
-                                         terminals.demands, cap.robots, at_m));
+                                           terminals.demands, cap.robots, at_m));
     const double spacing = wave_spacing_m / std::pow(nodes[v].determinant(), 0.25);
     double waves = 1.0;
     for (int k = 1; k <= kNeighbouringWaves; ++k) {

@@ -10,9 +10,9 @@
 #include "planner_service/flow/density_cap.hpp"
 #include "planner_service/flow/route.hpp"
 #include "planner_service/roadmap/edge_check.hpp"
-#include "swarmflow/planning/roadmap.hpp"
-#include "swarmflow/core/result.hpp"
 #include "swarmflow/core/flow_plan.hpp"
+#include "swarmflow/core/result.hpp"
+#include "swarmflow/planning/roadmap.hpp"
 
 namespace swarm::planner {
 
@@ -21,7 +21,7 @@ struct TimedFlowOptions {
   LegSpeed speed{};
   double step_s = 0.0;            ///< grid of times; 0 for half of the median leg
   double detour = 1.05;           ///< legs on longer paths, by this factor, are left out
-  double delay_cost_mps = 0.1;   ///< metres of detour that a second of delay is worth
+  double delay_cost_mps = 0.1;    ///< metres of detour that a second of delay is worth
   double stretch_max = 8.0;       ///< latest end, in free-flow times
   std::uint32_t rounds_max = 40;  ///< of solving, checking the density and lowering capacities
   double sample_s = 0.5;          ///< the density is checked this often

@@ -207,8 +207,7 @@ TimedNetwork::Unrolled TimedNetwork::unrolled(std::uint32_t horizon,
       net.arcs.push_back({in, in + 1, 0.0, demand.capacities[v]});
       net.moves.push_back({v, step, v, step, 0.0});
       if (is_in_time(v, step + 1, horizon)) {
-        net.arcs.push_back(
-            {.from = in + 1, .to = in + 2, .cost = is_goal(v) ? 0.0 : step_cost_m_});
+        net.arcs.push_back({.from = in + 1, .to = in + 2, .cost = is_goal(v) ? 0.0 : step_cost_m_});
         net.moves.push_back({v, step, v, step + 1, 0.0});
       }
       for (const Arc& arc : arcs_[v]) {

@@ -16,9 +16,9 @@ namespace swarm::planner {
 
 /// Time grid and costs of a TimedNetwork.
 struct TimedNetworkOptions {
-  LegSpeed speed{};            ///< ends are legs at a start or goal component
-  double step_s = 0.0;         ///< the grid of times; 0 for half of the median leg
-  double detour = 1.05;        ///< legs on no path within this factor of the shortest are left out
+  LegSpeed speed{};           ///< ends are legs at a start or goal component
+  double step_s = 0.0;        ///< the grid of times; 0 for half of the median leg
+  double detour = 1.05;       ///< legs on no path within this factor of the shortest are left out
   double delay_cost_mps = 0;  ///< cost of a second of travel or waiting, besides the path length
 };
 

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "planner_service/flow/timed_network.hpp"
-#include "swarmflow/core/gaussian.hpp"
 #include "swarmflow/core/flow_plan.hpp"
+#include "swarmflow/core/gaussian.hpp"
 
 namespace swarm::planner {
 

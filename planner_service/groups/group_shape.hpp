@@ -4,9 +4,9 @@
 
 #include <vector>
 
-#include "swarmflow/planning/measured_swarm.hpp"
-#include "swarmflow/core/ids.hpp"
 #include "swarmflow/core/gaussian.hpp"
+#include "swarmflow/core/ids.hpp"
+#include "swarmflow/planning/measured_swarm.hpp"
 
 /// A group of robots as a Gaussian.
 namespace swarm::planner {

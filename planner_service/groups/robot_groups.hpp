@@ -7,10 +7,10 @@
 #include <optional>
 #include <vector>
 
-#include "swarmflow/planning/measured_swarm.hpp"
-#include "swarmflow/core/result.hpp"
-#include "swarmflow/core/mixture.hpp"
 #include "swarmflow/core/cvar.hpp"
+#include "swarmflow/core/mixture.hpp"
+#include "swarmflow/core/result.hpp"
+#include "swarmflow/planning/measured_swarm.hpp"
 
 namespace swarm::planner {
 

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "swarmflow/core/ids.hpp"
+#include "swarmflow/core/plan_clock.hpp"
 #include "swarmflow/core/time.hpp"
 #include "swarmflow/mission/mission.hpp"
-#include "swarmflow/core/plan_clock.hpp"
 
 namespace swarm::planner {
 

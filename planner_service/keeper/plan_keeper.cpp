@@ -255,7 +255,8 @@ void PlanKeeper::keep_clock(SteadyTime now, UtcTime utc, Step& step) {
   const PlanClock clock = governor_.reading(utc);
   // The clock jumps when it catches up after a restart.
   const bool jumped = std::abs(clock_reported_.plan_time_at_s(utc) - clock.plan_time_s) > 0.05;
-  if (clock.plan_version == clock_reported_.plan_version && clock.rate == clock_reported_.rate && !jumped) {
+  if (clock.plan_version == clock_reported_.plan_version && clock.rate == clock_reported_.rate &&
+      !jumped) {
     return;
   }
   clock_reported_ = clock;

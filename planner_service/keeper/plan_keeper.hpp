@@ -9,12 +9,12 @@
 #include <vector>
 
 #include "planner_service/keeper/clock_governor.hpp"
-#include "planner_service/planner.hpp"
 #include "planner_service/keeper/replan.hpp"
 #include "planner_service/keeper/robot_watch.hpp"
+#include "planner_service/planner.hpp"
+#include "swarm_core/mission/scene_bodies.hpp"
 #include "swarmflow/mission/mission.hpp"
 #include "swarmflow/mission/phase.hpp"
-#include "swarm_core/mission/scene_bodies.hpp"
 
 namespace swarm::planner {
 
@@ -100,9 +100,9 @@ class PlanKeeper {
   SteadyTime begun_at_;
   SteadyTime tried_at_;  // to plan anew
   ClockGovernor governor_;
-  PlanClock clock_reported_;     // of the last step that had one
-  SteadyTime judged_at_;     // the robots' lags
-  SteadyTime full_rate_at_;  // when the clock last ran at full rate
+  PlanClock clock_reported_;  // of the last step that had one
+  SteadyTime judged_at_;      // the robots' lags
+  SteadyTime full_rate_at_;   // when the clock last ran at full rate
   bool slow_reported_ = false;
   std::set<RobotId> hopeless_reported_;
 };

@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "planner_service/groups/plan_entry.hpp"
+#include "planner_service/planner.hpp"
 #include "swarmflow/planning/measured_swarm.hpp"
 #include "swarmflow/planning/plan_request.hpp"
 #include "swarmflow/planning/plan_result.hpp"
-#include "planner_service/planner.hpp"
 
 namespace swarm::planner {
 

@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
-#include "swarmflow/planning/measured_swarm.hpp"
 #include "swarmflow/core/time.hpp"
+#include "swarmflow/planning/measured_swarm.hpp"
 
 namespace swarm::planner {
 
@@ -24,12 +24,12 @@ class RobotWatch {
   void receive(const ReportedRobot& robot, bool moving, SteadyTime now) {
     std::optional<Received>& received = received_.at(robot.robot.value());
     const bool is_stopped = received && moving && received->moving &&
-                        (robot.position_m - received->stopped_at_m).norm() < kProgress_m;
+                            (robot.position_m - received->stopped_at_m).norm() < kProgress_m;
     received = Received{.robot = robot,
-                  .at = now,
-                  .moving = moving,
-                  .stopped_at_m = is_stopped ? received->stopped_at_m : robot.position_m,
-                  .stopped_since = is_stopped ? received->stopped_since : now};
+                        .at = now,
+                        .moving = moving,
+                        .stopped_at_m = is_stopped ? received->stopped_at_m : robot.position_m,
+                        .stopped_since = is_stopped ? received->stopped_since : now};
   }
 
   /// Drops the last status of a robot. \pre the id is below the number of robots
@@ -50,7 +50,8 @@ class RobotWatch {
   std::vector<ReportedRobot> stuck(SteadyTime now, Duration after) const {
     std::vector<ReportedRobot> robots;
     for (const std::optional<Received>& received : received_) {
-      if (is_fresh(received, now) && received->moving && received->at - received->stopped_since >= after) {
+      if (is_fresh(received, now) && received->moving &&
+          received->at - received->stopped_since >= after) {
         robots.push_back(received->robot);
       }
     }

@@ -6,11 +6,11 @@
 #include <span>
 #include <vector>
 
+#include "swarm_link/gate/gate.hpp"
+#include "swarm_link/port.hpp"
 #include "swarmflow/core/time.hpp"
 #include "swarmflow/mission/phase.hpp"
 #include "swarmflow/mission/scene.hpp"
-#include "swarm_link/gate/gate.hpp"
-#include "swarm_link/port.hpp"
 
 namespace swarm::planner {
 

@@ -15,11 +15,11 @@
 
 #include "planner_service/keeper/plan_keeper.hpp"
 #include "planner_service/program/planner_inbox.hpp"
+#include "swarm_core/app/run_directory.hpp"
+#include "swarm_core/app/stop_signal.hpp"
 #include "swarm_core/base/clock.hpp"
 #include "swarm_core/plan/plan_json.hpp"
 #include "swarm_core/plan/planning_record.hpp"
-#include "swarm_core/app/run_directory.hpp"
-#include "swarm_core/app/stop_signal.hpp"
 #include "swarm_link/roles/run_meeting.hpp"
 #include "swarm_link/to_message.hpp"
 #include "swarm_link/topics.hpp"
@@ -130,12 +130,12 @@ void PlannerProcess::Impl::receive(SteadyTime now) {
   for (const link::StatusMessage& status : inbox->statuses()) {
     for (const link::RobotStatusMessage& robot : status.robots) {
       keeper->receive({.robot = RobotId(robot.robot_id),
-                    .position_m = {robot.x_m, robot.y_m},
-                    .arrived = robot.arrived,
-                    .lag_s = robot.lag_s,
-                    .plan_version = status.plan_version,
-                    .plan_time_s = status.plan_time_s},
-                   robot.mode == RobotMode::kMoving, now);
+                       .position_m = {robot.x_m, robot.y_m},
+                       .arrived = robot.arrived,
+                       .lag_s = robot.lag_s,
+                       .plan_version = status.plan_version,
+                       .plan_time_s = status.plan_time_s},
+                      robot.mode == RobotMode::kMoving, now);
     }
   }
 }

@@ -6,9 +6,9 @@
 #include <filesystem>
 #include <memory>
 
-#include "swarmflow/planning/planning_registry.hpp"
-#include "swarmflow/core/result.hpp"
 #include "swarm_core/mission/link_faults.hpp"
+#include "swarmflow/core/result.hpp"
+#include "swarmflow/planning/planning_registry.hpp"
 
 namespace swarm::planner {
 

@@ -9,9 +9,9 @@
 #include <CLI/CLI.hpp>
 
 #include "planner_service/program/planner_process.hpp"
-#include "swarm_core/mission/link_faults.hpp"
 #include "swarm_core/app/program.hpp"
 #include "swarm_core/app/stop_signal.hpp"
+#include "swarm_core/mission/link_faults.hpp"
 #include "swarmflow/core/result.hpp"
 
 namespace swarm::planner {

@@ -5,8 +5,8 @@
 #include <cstddef>
 #include <vector>
 
-#include "swarmflow/core/result.hpp"
 #include "swarmflow/core/gaussian.hpp"
+#include "swarmflow/core/result.hpp"
 #include "swarmflow/core/world.hpp"
 
 namespace swarm::planner {

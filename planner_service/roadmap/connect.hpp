@@ -8,8 +8,8 @@
 
 #include "planner_service/roadmap/edge_check.hpp"
 #include "planner_service/roadmap/neighbours.hpp"
-#include "swarmflow/planning/roadmap.hpp"
 #include "swarmflow/core/gaussian.hpp"
+#include "swarmflow/planning/roadmap.hpp"
 
 namespace swarm::planner {
 

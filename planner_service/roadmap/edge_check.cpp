@@ -56,8 +56,8 @@ EdgeChecker::Rates::Rates(const EdgeEnd& a, const EdgeEnd& b, double k, double d
   const double sigma_min_m = std::min(a.sigma_min_m(), b.sigma_min_m());
   const double mean_path_squared = (b.mean_m() - a.mean_m()).squaredNorm();
   mean_path_m = std::sqrt(mean_path_squared);
-  const double shape_path_m =
-      std::sqrt(std::max(0.0, wasserstein2_squared(a.gaussian(), b.gaussian()) - mean_path_squared));
+  const double shape_path_m = std::sqrt(
+      std::max(0.0, wasserstein2_squared(a.gaussian(), b.gaussian()) - mean_path_squared));
   straight_m = mean_path_m + k * shape_path_m;
   turn_m2 = k * (sigma_max_m - sigma_min_m) * mean_path_m;
   distance_min_m = k * sigma_min_m - delta_m;

@@ -5,9 +5,9 @@
 #include <string>
 #include <string_view>
 
-#include "swarmflow/core/result.hpp"
-#include "swarmflow/core/mixture.hpp"
 #include "swarmflow/core/cvar.hpp"
+#include "swarmflow/core/mixture.hpp"
+#include "swarmflow/core/result.hpp"
 #include "swarmflow/core/world.hpp"
 
 namespace swarm::planner {

@@ -9,13 +9,13 @@
 
 #include "planner_service/roadmap/edge_check.hpp"
 #include "planner_service/roadmap/neighbours.hpp"
-#include "swarmflow/planning/roadmap.hpp"
 #include "planner_service/roadmap/sampler.hpp"
 #include "planner_service/roadmap/world_change.hpp"
-#include "swarmflow/core/random.hpp"
-#include "swarmflow/core/gaussian.hpp"
 #include "swarmflow/core/box_index.hpp"
+#include "swarmflow/core/gaussian.hpp"
+#include "swarmflow/core/random.hpp"
 #include "swarmflow/core/world.hpp"
+#include "swarmflow/planning/roadmap.hpp"
 
 namespace swarm::planner {
 

@@ -6,9 +6,9 @@
 #include <optional>
 #include <vector>
 
-#include "swarmflow/core/random.hpp"
-#include "swarmflow/core/gaussian.hpp"
 #include "swarmflow/core/cvar.hpp"
+#include "swarmflow/core/gaussian.hpp"
+#include "swarmflow/core/random.hpp"
 #include "swarmflow/core/world.hpp"
 
 namespace swarm::planner {

@@ -7,11 +7,11 @@
 #include <variant>
 
 #include "robot_agent/drivers/double_integrator.hpp"
-#include "swarmflow/robot/driver.hpp"
 #include "robot_agent/drivers/single_integrator.hpp"
 #include "robot_agent/drivers/unicycle.hpp"
 #include "swarmflow/core/random.hpp"
 #include "swarmflow/mission/mission.hpp"
+#include "swarmflow/robot/driver.hpp"
 
 namespace swarm::agent {
 

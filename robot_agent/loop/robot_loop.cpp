@@ -39,9 +39,9 @@ Measurement RobotLoop::measure(const RobotTick& tick, const RobotParts& parts) {
   position_m_ = body.position_m;
   if (body.command_expired) {  // the body stopped between two ticks: the log gets a step there
     parts.log.append(robot_log::Step{.stamp = tick.utc_now - (tick.now - body.expired_at),
-                                    .position_m = body.expired_position_m,
-                                    .mode = static_cast<std::uint8_t>(output_.mode),
-                                    .goal = goal()});
+                                     .position_m = body.expired_position_m,
+                                     .mode = static_cast<std::uint8_t>(output_.mode),
+                                     .goal = goal()});
   }
   if (tick.new_plan != nullptr) {
     std::optional<double> plan_time_s;
@@ -49,8 +49,8 @@ Measurement RobotLoop::measure(const RobotTick& tick, const RobotParts& parts) {
     agent_.accept_plan(tick.new_plan->flow, position_m_, tick.new_plan->entry, plan_time_s);
     parts.log.append(
         robot_log::Note{.stamp = tick.utc_now,
-                       .code = "plan",
-                       .text = "took plan version " + std::to_string(tick.plan_version)});
+                        .code = "plan",
+                        .text = "took plan version " + std::to_string(tick.plan_version)});
   }
   return body;
 }
@@ -85,9 +85,9 @@ void RobotLoop::decide(const RobotTick& tick, const RobotParts& parts, const Mea
   if (!mode_changed && !is_first) return;
   parts.log.append(
       robot_log::Note{.stamp = tick.utc_now,
-                     .caused = output_.mode == RobotMode::kStopped ? tick.stop_sent : UtcTime{},
-                     .code = "mode",
-                     .text = std::string(to_string(output_.mode))});
+                      .caused = output_.mode == RobotMode::kStopped ? tick.stop_sent : UtcTime{},
+                      .code = "mode",
+                      .text = std::string(to_string(output_.mode))});
 }
 
 /// A robot that does not know where it is brakes, and does not publish a position.
@@ -120,16 +120,16 @@ void RobotLoop::update_fault(bool has_position, const Driver& driver) {
 void RobotLoop::log_step(const RobotTick& tick, RobotLog& log, const Vec2& true_position_m) const {
   const TimeTracking tracking = output_.tracking.value_or(TimeTracking{});
   log.append(robot_log::Step{.stamp = tick.utc_now,
-                            .position_m = true_position_m,
-                            .velocity_mps = output_.velocity_mps,
-                            .lateness_us = to_us(tick.lateness),
-                            .mode = static_cast<std::uint8_t>(output_.mode),
-                            .goal = goal(),
-                            .neighbours = output_.neighbours,
-                            .plan_version = output_.tracking ? tick.plan_version : 0,
-                            .plan_time_s = static_cast<float>(tracking.plan_time_s),
-                            .reference_x_m = static_cast<float>(tracking.reference_m.x()),
-                            .reference_y_m = static_cast<float>(tracking.reference_m.y())});
+                             .position_m = true_position_m,
+                             .velocity_mps = output_.velocity_mps,
+                             .lateness_us = to_us(tick.lateness),
+                             .mode = static_cast<std::uint8_t>(output_.mode),
+                             .goal = goal(),
+                             .neighbours = output_.neighbours,
+                             .plan_version = output_.tracking ? tick.plan_version : 0,
+                             .plan_time_s = static_cast<float>(tracking.plan_time_s),
+                             .reference_x_m = static_cast<float>(tracking.reference_m.x()),
+                             .reference_y_m = static_cast<float>(tracking.reference_m.y())});
   if (ticks_ % kTicksPerEstimate != 0 || output_.estimated.empty()) return;
   // Each neighbour within reach in turn: the error of estimates is a sample of all pairs.
   const Neighbour& one = output_.estimated[ticks_ / kTicksPerEstimate % output_.estimated.size()];
@@ -151,21 +151,21 @@ link::RobotStateMessage RobotLoop::next_state(UtcTime utc_now) {
 
 link::RobotStatusMessage RobotLoop::status() const {
   constexpr double kNoNeighbourGap_m = 1e9;  // finite, as everything on the bus
-  return {
-      .robot_id = id_.value(),
-      .mode = output_.mode,
-      .arrived = output_.mode == RobotMode::kArrived,
-      .settled = output_.settled,
-      .x_m = position_m_.x(),
-      .y_m = position_m_.y(),
-      .remaining_m = output_.remaining_m,
-      .lag_s = agent_.lag_s(),
-      .nearest_gap_m = std::isfinite(output_.nearest_gap_m) ? output_.nearest_gap_m : kNoNeighbourGap_m,
-      .neighbours_heard = output_.neighbours,
-      .ticks = ticks_,
-      .late_ticks = late_ticks_,
-      .states_sent = states_sent_,
-      .states_received = states_received_};
+  return {.robot_id = id_.value(),
+          .mode = output_.mode,
+          .arrived = output_.mode == RobotMode::kArrived,
+          .settled = output_.settled,
+          .x_m = position_m_.x(),
+          .y_m = position_m_.y(),
+          .remaining_m = output_.remaining_m,
+          .lag_s = agent_.lag_s(),
+          .nearest_gap_m =
+              std::isfinite(output_.nearest_gap_m) ? output_.nearest_gap_m : kNoNeighbourGap_m,
+          .neighbours_heard = output_.neighbours,
+          .ticks = ticks_,
+          .late_ticks = late_ticks_,
+          .states_sent = states_sent_,
+          .states_received = states_received_};
 }
 
 }  // namespace swarm::agent

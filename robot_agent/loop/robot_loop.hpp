@@ -8,11 +8,11 @@
 #include <string>
 
 #include "robot_agent/agent.hpp"
-#include "swarmflow/robot/driver.hpp"
 #include "robot_agent/loop/robot_log.hpp"
 #include "swarm_core/base/prefetch.hpp"
 #include "swarm_core/metrics/histogram.hpp"
 #include "swarm_link/messages.hpp"
+#include "swarmflow/robot/driver.hpp"
 
 namespace swarm::agent {
 

@@ -11,11 +11,11 @@ namespace {
 constexpr std::size_t kFirstSlots = 128;
 constexpr std::size_t kSlotsEach = 4;  // of the index, for every robot known
 constexpr std::size_t kSweepAt = 8;    // lanes of gone robots that are worth a compaction
-constexpr double kStopped_mps = 0.01;   // slower counts as stopped: such a robot may be silent
-constexpr double kUpdates = 64.0;        // averaging window of the link quality, in messages
-constexpr double kPoor = 0.02;         // loss rate above which the link is degraded: 2 of 64 lost …
-constexpr double kClean = 0.005;       // … and below which it is good again (hysteresis)
-constexpr double kInside = 0.8;        // of the communication radius: beyond, gaps are no losses
+constexpr double kStopped_mps = 0.01;  // slower counts as stopped: such a robot may be silent
+constexpr double kUpdates = 64.0;      // averaging window of the link quality, in messages
+constexpr double kPoor = 0.02;    // loss rate above which the link is degraded: 2 of 64 lost …
+constexpr double kClean = 0.005;  // … and below which it is good again (hysteresis)
+constexpr double kInside = 0.8;   // of the communication radius: beyond, gaps are no losses
 constexpr std::int32_t kLongest_us = 1 << 29;  // clamp of ages, 537 s: differences fit 32 bits
 constexpr Duration kFrameFor = std::chrono::seconds(60);
 constexpr double kFrame_m = 100.0;
@@ -38,7 +38,7 @@ struct NeighbourTable::FilterPass {
     Float4 x_m, y_m;  // dead-reckoned
     Int4 age_us;
   };
-  std::vector<LaneBlock> blocks;           // as the table's
+  std::vector<LaneBlock> blocks;     // as the table's
   std::vector<std::uint32_t> close;  // numbers of the close robots, the first close_found
   std::vector<std::uint32_t> far;    // … of the others within reach, the first far_found
   std::size_t close_found = 0;
@@ -109,8 +109,9 @@ void NeighbourTable::keep_frame(SteadyTime now, const Vec2& own_position_m) {
 /// only where the report before the gap came from well inside the communication radius and is not
 /// older than the expected silence: otherwise the sender may have been out of range meanwhile. At
 /// most four losses count for one gap.
-void NeighbourTable::count_lost(const LaneBlock& block, std::size_t lane, const NeighbourReport& report,
-                                std::int32_t as_of_us, const Vec2& own_position_m) {
+void NeighbourTable::count_lost(const LaneBlock& block, std::size_t lane,
+                                const NeighbourReport& report, std::int32_t as_of_us,
+                                const Vec2& own_position_m) {
   const std::uint32_t lost = report.sequence - block.sequence[lane] - 1U;
   if (lost > 0) {
     const double inside_m = kInside * options_->communication_radius_m;
@@ -261,7 +262,7 @@ void NeighbourTable::filter(std::int32_t now_us, const Vec2& own_position_m, Fil
 /// The estimate of one robot within reach: extrapolated position, radius, age of the information
 /// and the time for which the robot may have been stopped.
 void NeighbourTable::estimate(std::size_t known, const Vec2& own_position_m, const FilterPass& pass,
-                             Neighbour& n) const {
+                              Neighbour& n) const {
   const LaneBlock& block = blocks_[known / kLanes];
   const FilterPass::LaneBlock& filtered = pass.blocks[known / kLanes];
   const std::size_t lane = known % kLanes;

@@ -7,14 +7,14 @@
 #include <span>
 #include <vector>
 
-#include "swarmflow/robot/neighbour.hpp"
-#include "swarmflow/core/ids.hpp"
 #include "swarm_core/base/lanes.hpp"
-#include "swarmflow/core/linalg.hpp"
 #include "swarm_core/base/prefetch.hpp"
 #include "swarm_core/base/shared.hpp"
-#include "swarmflow/core/time.hpp"
 #include "swarm_core/mission/fleet.hpp"
+#include "swarmflow/core/ids.hpp"
+#include "swarmflow/core/linalg.hpp"
+#include "swarmflow/core/time.hpp"
+#include "swarmflow/robot/neighbour.hpp"
 
 namespace swarm::agent {
 
@@ -41,8 +41,8 @@ struct LinkQuality {
 
 /// What the table of one robot is made with.
 struct NeighbourOptions {
-  double radius_m = 0.2;       ///< of the robot itself
-  Fleet fleet;                 ///< sizes and speeds of the others
+  double radius_m = 0.2;                ///< of the robot itself
+  Fleet fleet;                          ///< sizes and speeds of the others
   double communication_radius_m = 6.0;  ///< robots received or extrapolated farther off are dropped
   /// at() leaves out robots farther than this: they matter neither to control nor to safety. For
   /// information older than a control period it grows by reach_growth_mps. It includes the distance
@@ -117,7 +117,7 @@ class NeighbourTable {
   struct FilterPass;
   void filter(std::int32_t now_us, const Vec2& own_position_m, FilterPass& pass);
   void estimate(std::size_t known, const Vec2& own_position_m, const FilterPass& pass,
-               Neighbour& n) const;
+                Neighbour& n) const;
   void sweep();
 
   Shared<NeighbourOptions> options_;

@@ -14,10 +14,10 @@
 
 #include "robot_agent/loop/tick_phase.hpp"
 #include "robot_agent/program/process_loop.hpp"
-#include "swarm_core/base/clock.hpp"
-#include "swarmflow/mission/mission_file.hpp"
 #include "swarm_core/app/run_directory.hpp"
 #include "swarm_core/app/stop_signal.hpp"
+#include "swarm_core/base/clock.hpp"
+#include "swarmflow/mission/mission_file.hpp"
 
 namespace swarm::agent {
 namespace {

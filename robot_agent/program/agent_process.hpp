@@ -5,8 +5,8 @@
 #include <memory>
 
 #include "robot_agent/program/process_options.hpp"
-#include "swarmflow/robot/run_robot.hpp"
 #include "swarmflow/core/result.hpp"
+#include "swarmflow/robot/run_robot.hpp"
 
 namespace swarm::agent {
 

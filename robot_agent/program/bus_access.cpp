@@ -6,10 +6,10 @@
 
 #include <fmt/format.h>
 
-#include "swarmflow/core/random.hpp"
 #include "swarm_link/channels/groups/group_channel.hpp"
 #include "swarm_link/roles/run_meeting.hpp"
 #include "swarm_link/topics.hpp"
+#include "swarmflow/core/random.hpp"
 
 namespace swarm::agent {
 namespace {
@@ -53,11 +53,11 @@ Result<BusAccess> open_endpoints(std::unique_ptr<link::Participant> participant)
 }
 
 void open_topic_channel(BusAccess& access, const LinkSpec& spec) {
-  access.states =
-      link::make_topic_channel(*access.participant, {.cell_size_m = spec.cell_size_m,
-                                                     .communication_radius_m = spec.communication_radius_m,
-                                                     .join_margin_m = spec.join_margin_m,
-                                                     .leave_margin_m = spec.leave_margin_m});
+  access.states = link::make_topic_channel(*access.participant,
+                                           {.cell_size_m = spec.cell_size_m,
+                                            .communication_radius_m = spec.communication_radius_m,
+                                            .join_margin_m = spec.join_margin_m,
+                                            .leave_margin_m = spec.leave_margin_m});
 }
 
 /// Opens the state channel that the run uses. A process behind the gateway always uses topics.

@@ -6,11 +6,11 @@
 
 #include "robot_agent/inbox.hpp"
 #include "robot_agent/program/process_options.hpp"
+#include "swarm_core/app/run_directory.hpp"
+#include "swarm_link/channels/state_channel.hpp"
+#include "swarm_link/port.hpp"
 #include "swarmflow/core/result.hpp"
 #include "swarmflow/mission/mission.hpp"
-#include "swarm_core/app/run_directory.hpp"
-#include "swarm_link/port.hpp"
-#include "swarm_link/channels/state_channel.hpp"
 
 namespace swarm::agent {
 

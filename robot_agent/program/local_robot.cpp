@@ -35,10 +35,10 @@ Result<LogFile> open_log(const Mission& mission, const LocalRobotsSpec& spec, Ro
                     : robot_log::Writer::open(file, kRecordsAtOnce, robot.value() % kRecordsAtOnce);
   if (!writer) return tl::unexpected(writer.error());
   writer->append(robot_log::Header{.robot = robot,
-                                  .robots = mission.robots.count,
-                                  .process_id = static_cast<std::uint32_t>(::getpid()),
-                                  .radius_m = body_of(mission.robots, robot).radius_m,
-                                  .stamp = spec.utc_now});
+                                   .robots = mission.robots.count,
+                                   .process_id = static_cast<std::uint32_t>(::getpid()),
+                                   .radius_m = body_of(mission.robots, robot).radius_m,
+                                   .stamp = spec.utc_now});
   return LogFile(std::move(*writer));
 }
 

@@ -28,8 +28,8 @@ void ProcessEvents::on_tick(SteadyTime now, UtcTime utc_now, Inbox& inbox,
 void ProcessEvents::record_link_stats(UtcTime utc_now, Inbox& inbox, const Histogram& state_age) {
   for (LocalRobot& robot : robots_) {
     robot_log::LinkStats stats{.stamp = utc_now,
-                              .states_sent = robot.loop.states_sent(),
-                              .states_received = robot.loop.states_received()};
+                               .states_sent = robot.loop.states_sent(),
+                               .states_received = robot.loop.states_received()};
     if (&robot == &robots_.front()) {
       stats.state_age = state_age;
       stats.refused.assign(inbox.refused().all().begin(), inbox.refused().all().end());

@@ -118,9 +118,9 @@ void ProcessLoop::follow_scene(UtcTime utc_now) {
     world_moves_ = true;
     local_.robots.front().log.append(
         robot_log::Note{.stamp = utc_now,
-                       .caused = UtcTime(Duration(static_cast<std::int64_t>(scene_.version))),
-                       .code = "scene",
-                       .text = fmt::format("took scene version {}", scene_.version)});
+                        .caused = UtcTime(Duration(static_cast<std::int64_t>(scene_.version))),
+                        .code = "scene",
+                        .text = fmt::format("took scene version {}", scene_.version)});
   }
   if (!world_moves_) return;
   // A respawned robot is inside the obstacle of its own fallen body until the launcher receives it
@@ -147,7 +147,8 @@ void ProcessLoop::end(const Time& time) {
   status_.publish_all(source(time));
   for (LocalRobot& robot : local_.robots) {
     robot.driver->shutdown();
-    robot.log.append(robot_log::Note{.stamp = time.utc_now, .code = "exit", .text = "graceful end"});
+    robot.log.append(
+        robot_log::Note{.stamp = time.utc_now, .code = "exit", .text = "graceful end"});
   }
 }
 

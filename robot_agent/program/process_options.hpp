@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <filesystem>
 
-#include "swarmflow/core/ids.hpp"
 #include "swarm_core/mission/link_faults.hpp"
 #include "swarm_link/vendor.hpp"
+#include "swarmflow/core/ids.hpp"
 
 namespace swarm::agent {
 

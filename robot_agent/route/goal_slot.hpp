@@ -4,9 +4,9 @@
 
 #include <limits>
 
-#include "swarmflow/robot/control_method.hpp"
 #include "swarm_core/base/shared.hpp"
 #include "swarmflow/core/gaussian.hpp"
+#include "swarmflow/robot/control_method.hpp"
 
 namespace swarm::agent {
 

@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "swarmflow/robot/route.hpp"
 #include "swarm_core/base/shared.hpp"
 #include "swarmflow/core/world.hpp"
+#include "swarmflow/robot/route.hpp"
 
 namespace swarm::agent {
 

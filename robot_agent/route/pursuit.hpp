@@ -6,9 +6,9 @@
 #include <limits>
 #include <vector>
 
-#include "swarmflow/robot/polyline.hpp"
 #include "swarm_core/base/shared.hpp"
 #include "swarmflow/core/world.hpp"
+#include "swarmflow/robot/polyline.hpp"
 
 namespace swarm::agent {
 
@@ -68,13 +68,12 @@ class Pursuit {
   Shared<PursuitOptions> options_;
   double s_m_ = 0.0;
   Polyline::Segment segment_;  // the one s_m_ is on, kept here as the path is far off in memory
-  Polyline::Position here_;       // at s_m_
+  Polyline::Position here_;    // at s_m_
   double carrot_m_ = 0.0;      // of the last update
   double aim_s_m_ = 0.0;       // of the last visible aim
   Vec2 aim_m_ = Vec2::Zero();
-  std::uint32_t looks_in_ = 0;  // ticks until the next look
-  std::vector<float>
-      clearance_m_;  // least clearance of each piece of kSample_m of the path
+  std::uint32_t looks_in_ = 0;      // ticks until the next look
+  std::vector<float> clearance_m_;  // least clearance of each piece of kSample_m of the path
 };
 
 }  // namespace swarm::agent

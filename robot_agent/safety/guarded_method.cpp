@@ -42,8 +42,8 @@ bool GuardedMethod::has_arrived(const ControlView& view) {
 }
 
 Vec2 GuardedMethod::desired_velocity(const ControlView& view, bool arrived, Rng& rng) {
-  return checked(
-      guarded<Vec2>(Vec2::Zero(), [&](ControlMethod& m) { return m.desired_velocity(view, arrived, rng); }));
+  return checked(guarded<Vec2>(
+      Vec2::Zero(), [&](ControlMethod& m) { return m.desired_velocity(view, arrived, rng); }));
 }
 
 Vec2 GuardedMethod::hold(const ControlView& view) {

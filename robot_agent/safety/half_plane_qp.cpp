@@ -13,8 +13,9 @@ constexpr double kSlack_mps = 1e-9;
 
 /// The point of the line n·u = b nearest to `desired_velocity` that the disc and the earlier
 /// half-planes allow.
-std::optional<Vec2> nearest_on_line(const Vec2& desired_velocity, std::span<const HalfPlane> earlier,
-                                    const HalfPlane& line, double speed_max) {
+std::optional<Vec2> nearest_on_line(const Vec2& desired_velocity,
+                                    std::span<const HalfPlane> earlier, const HalfPlane& line,
+                                    double speed_max) {
   const double half_chord_squared = speed_max * speed_max - line.bound_mps * line.bound_mps;
   if (half_chord_squared < 0.0) return std::nullopt;  // the line misses the disc
   // The line is foot + t along; disc and half-planes bound t to [low, high].
@@ -46,8 +47,8 @@ std::optional<Vec2> nearest_on_line(const Vec2& desired_velocity, std::span<cons
 
 /// Seidel: adds one half-plane at a time. While the optimum so far lies within it, nothing changes;
 /// otherwise the new optimum lies on its line, a problem in one dimension.
-std::optional<Vec2> nearest_velocity(const Vec2& desired_mps, std::span<const HalfPlane> constraints,
-                                     double speed_max_mps) {
+std::optional<Vec2> nearest_velocity(const Vec2& desired_mps,
+                                     std::span<const HalfPlane> constraints, double speed_max_mps) {
   const double desired = desired_mps.norm();
   Vec2 best = desired > speed_max_mps ? Vec2(desired_mps * (speed_max_mps / desired)) : desired_mps;
   for (std::size_t i = 0; i < constraints.size(); ++i) {

@@ -15,12 +15,12 @@ namespace {
 constexpr int kBisections = 8;    // of the least violation: to 1 % of the speed
 constexpr double kBlocked = 0.1;  // less than this share of the desired speed is left: blocked
 constexpr std::array kTurns_rad{0.4, 0.9, 1.4};  // to the right, tried in turn while blocked, …
-constexpr double kFree = 0.3;                    // … until this share of the desired speed is left
-constexpr double kFollowMargin = 0.9;            // share of the margin that following may use up
-constexpr double kEvade = 1.0 / 3.0;             // share of the margin kept to any other robot
-constexpr double kFollows = 3.5;       // periods: a robot whose state is older may have turned
-constexpr double kFresh = 1.01;        // periods: up to this age states are fresh (rounding)
-constexpr double kWithdraw = 0.9;      // share of the largest speed, out of an obstacle
+constexpr double kFree = 0.3;           // … until this share of the desired speed is left
+constexpr double kFollowMargin = 0.9;   // share of the margin that following may use up
+constexpr double kEvade = 1.0 / 3.0;    // share of the margin kept to any other robot
+constexpr double kFollows = 3.5;        // periods: a robot whose state is older may have turned
+constexpr double kFresh = 1.01;         // periods: up to this age states are fresh (rounding)
+constexpr double kWithdraw = 0.9;       // share of the largest speed, out of an obstacle
 constexpr double kStopped_m2ps = 1e-9;  // slower does not move away from a neighbour
 constexpr double kNever_m2 = 1e9;
 constexpr double kLeastDesired_mps = 0.1;  // slower desired velocities are not worth a turn
@@ -134,7 +134,7 @@ void SafetyFilter::collect_neighbours(const Vec2& position_m, std::span<const Ne
 /// stopped. A stopped robot does not approach, so not closing in is enough: the bound is never
 /// negative.
 std::optional<HalfPlane> SafetyFilter::off_possible_stop(const Vec2& position_m, const Neighbour& n,
-                                                   double sum_m) const {
+                                                         double sum_m) const {
   const Vec2 back = -n.possible_stop_age_s * n.velocity_mps;
   const double share = (position_m - n.position_m).dot(back) / back.squaredNorm();
   const Vec2 offset = n.position_m + std::clamp(share, 0.0, 1.0) * back - position_m;
@@ -227,8 +227,9 @@ Vec2 SafetyFilter::filter(const Vec2& position_m, const Vec2& desired_mps,
   for (const double turn_rad : kTurns_rad) {
     const double c = std::cos(turn_rad);
     const double s = std::sin(turn_rad);
-    turned =
-        nearest({c * desired_mps.x() + s * desired_mps.y(), c * desired_mps.y() - s * desired_mps.x()}, lines);
+    turned = nearest(
+        {c * desired_mps.x() + s * desired_mps.y(), c * desired_mps.y() - s * desired_mps.x()},
+        lines);
     if (turned.norm() > kFree * desired) break;
   }
   return turned;

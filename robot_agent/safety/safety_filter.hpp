@@ -6,8 +6,8 @@
 #include <optional>
 #include <span>
 
-#include "robot_agent/safety/half_plane_qp.hpp"
 #include "robot_agent/neighbours/neighbour_table.hpp"
+#include "robot_agent/safety/half_plane_qp.hpp"
 #include "swarm_core/base/shared.hpp"
 #include "swarmflow/core/world.hpp"
 
@@ -79,8 +79,8 @@ class SafetyFilter {
 
   /// No allocation once warm. Cost: O(obstacles in reach + neighbours). `gives_way` allows the turn
   /// to the right: not where robots come to rest.
-  Vec2 filter(const Vec2& position_m, const Vec2& desired_mps, std::span<const Neighbour> neighbours,
-              bool gives_way = false) const;
+  Vec2 filter(const Vec2& position_m, const Vec2& desired_mps,
+              std::span<const Neighbour> neighbours, bool gives_way = false) const;
 
   /// What a robot at `position_m` with `velocity_mps` means to `neighbours`. O(neighbours).
   Listeners listeners(const Vec2& position_m, const Vec2& velocity_mps,
@@ -98,7 +98,7 @@ class SafetyFilter {
   void collect_neighbours(const Vec2& position_m, std::span<const Neighbour> neighbours,
                           Lines& lines) const;
   std::optional<HalfPlane> off_possible_stop(const Vec2& position_m, const Neighbour& n,
-                                       double sum_m) const;
+                                             double sum_m) const;
   Vec2 nearest(const Vec2& desired_mps, Lines& lines) const;
   Vec2 least_violation(const Vec2& desired_mps, Lines& lines) const;
 

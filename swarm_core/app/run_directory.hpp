@@ -7,9 +7,9 @@
 #include <string>
 #include <string_view>
 
+#include "swarm_core/mission/channel.hpp"
 #include "swarmflow/core/result.hpp"
 #include "swarmflow/core/time.hpp"
-#include "swarm_core/mission/channel.hpp"
 
 /// The directory of a run: the files by which launcher, planner, agents and monitor exchange what
 /// does not go over the bus.

@@ -287,7 +287,8 @@ Climb chosen_by_bic(Fitter& fitter, const FitOptions& options, Rng& rng) {
   Climb best;
   double best_bic = std::numeric_limits<double>::infinity();
   std::uint32_t without_gain = 0;
-  for (std::uint32_t k = 1; k <= options.components_max && without_gain < kBicStepsWithoutGain; ++k) {
+  for (std::uint32_t k = 1; k <= options.components_max && without_gain < kBicStepsWithoutGain;
+       ++k) {
     Climb climbed = fitter.best_of_starts(k, rng);
     const double bic = fitter.bic(climbed);
     ++without_gain;

@@ -6,9 +6,9 @@
 #include <span>
 #include <vector>
 
+#include "swarmflow/core/mixture.hpp"
 #include "swarmflow/core/random.hpp"
 #include "swarmflow/core/result.hpp"
-#include "swarmflow/core/mixture.hpp"
 
 namespace swarm {
 

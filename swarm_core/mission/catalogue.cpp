@@ -29,7 +29,7 @@ Json option_json(const OptionSpec& option) {
             {"doc", option.doc}};
   if (!option.at_most.empty()) json["at_most"] = option.at_most;
   if (option.kind == OptionSpec::Kind::kChoice) {
-    json["words"] = option.words;
+    json["choices"] = option.choices;
   } else {
     json["low"] = option.range.low;
     json["high"] = option.range.high;
@@ -68,7 +68,7 @@ OptionSpec option_from(const Json& json) {
       std::find_if(kKinds.begin(), kKinds.end(), [&](const auto& k) { return k.second == word; });
   if (kind != kKinds.end()) option.kind = kind->first;
   if (option.kind == OptionSpec::Kind::kChoice) {
-    option.words = json.at("words").get<std::vector<std::string>>();
+    option.choices = json.at("choices").get<std::vector<std::string>>();
   } else {
     option.range = {.low = json.at("low").get<double>(),
                     .high = json.at("high").get<double>(),

@@ -94,12 +94,14 @@ std::vector<BrokenRule> broken_rules(const Mission& mission) {
   rules.below({"link.join_margin_m", link.join_margin_m},
               {"link.leave_margin_m", link.leave_margin_m});
   // With cells at least as wide as the radius, the area within it touches at most 3 × 3 cells.
-  rules.at_most({"link.communication_radius_m", link.communication_radius_m}, {"link.cell_size_m", link.cell_size_m});
+  rules.at_most({"link.communication_radius_m", link.communication_radius_m},
+                {"link.cell_size_m", link.cell_size_m});
   if (link.communication_radius_m > kGroupCellsMax * link.group_cell_size_m) {
-    rules.add({"link.group_cell_size_m", "link.communication_radius_m"},
-              fmt::format("link.group_cell_size_m is {}; must be >= link.communication_radius_m / {}: a "
-                          "robot listens to every cell within that radius",
-                          link.group_cell_size_m, kGroupCellsMax));
+    rules.add(
+        {"link.group_cell_size_m", "link.communication_radius_m"},
+        fmt::format("link.group_cell_size_m is {}; must be >= link.communication_radius_m / {}: a "
+                    "robot listens to every cell within that radius",
+                    link.group_cell_size_m, kGroupCellsMax));
   }
   rules.at_most({"timing.clock_skew_warn_s", timing.clock_skew_warn_s},
                 {"timing.clock_skew_refuse_s", timing.clock_skew_refuse_s});
@@ -113,12 +115,15 @@ std::vector<BrokenRule> broken_rules(const Mission& mission) {
               fmt::format("timing.planner_silence_s is {}; must be >= {}, two heartbeats",
                           timing.planner_silence_s, 2.0 / timing.heartbeat_hz));
   }
-  if (const double least_m = least_communication_radius_m(mission); link.communication_radius_m < least_m) {
-    rules.add({"link.communication_radius_m", "robots.radius_m", "robots.speed_max_mps", "control.rate_hz",
-               "safety.gap_share", "safety.neighbour_margin_m", "link.send_interval_max_s"},
-              fmt::format("link.communication_radius_m is {}; must be >= {:.4g}, from where on the safety "
-                          "filter needs to know a robot",
-                          link.communication_radius_m, least_m));
+  if (const double least_m = least_communication_radius_m(mission);
+      link.communication_radius_m < least_m) {
+    rules.add({"link.communication_radius_m", "robots.radius_m", "robots.speed_max_mps",
+               "control.rate_hz", "safety.gap_share", "safety.neighbour_margin_m",
+               "link.send_interval_max_s"},
+              fmt::format(
+                  "link.communication_radius_m is {}; must be >= {:.4g}, from where on the safety "
+                  "filter needs to know a robot",
+                  link.communication_radius_m, least_m));
   }
   return std::move(rules.broken);
 }

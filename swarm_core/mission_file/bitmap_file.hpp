@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <filesystem>
 
-#include "swarmflow/core/result.hpp"
 #include "swarm_core/gmm/shape_patches.hpp"
+#include "swarmflow/core/result.hpp"
 
 namespace swarm {
 

@@ -158,10 +158,10 @@ class GoalShapeReader {
       frame.pixel_m = pixel_m.value_or(frame.pixel_m);
     }
     if (const Node* value = keys.take("dark")) {
-      static constexpr std::array<std::string_view, 2> kUpdates{"true", "false"};
-      const auto word = yaml::read_choice(*value, keys.path_of("dark"), kUpdates, violations_);
-      good = good && word.has_value();
-      frame.dark = word != "false";
+      static constexpr std::array<std::string_view, 2> kBooleans{"true", "false"};
+      const auto text = yaml::read_choice(*value, keys.path_of("dark"), kBooleans, violations_);
+      good = good && text.has_value();
+      frame.dark = text != "false";
     }
     if (!good) return std::nullopt;
     return frame;

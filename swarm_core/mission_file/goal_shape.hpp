@@ -7,8 +7,8 @@
 #include <optional>
 #include <string>
 
-#include "swarmflow/core/mixture.hpp"
 #include "swarm_core/mission_file/yaml_reader.hpp"
+#include "swarmflow/core/mixture.hpp"
 #include "swarmflow/core/shape_field.hpp"
 
 namespace swarm {

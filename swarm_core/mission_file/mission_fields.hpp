@@ -32,11 +32,11 @@ using swarm::positive;
 /// Bound of coordinates and sizes: a larger world is a mistake of units.
 inline constexpr double kMaxExtent_m = 1e6;
 inline constexpr yaml::Range kCoordinate_m = between(-kMaxExtent_m, kMaxExtent_m);  ///< x or y
-inline constexpr double kMaxRobots = 200'000;                                       ///< of the swarm
-inline constexpr std::size_t kMaxRobotGroups = 64;  ///< with bodies of their own
-inline constexpr std::size_t kMaxComponents = 255;  ///< a robot log names goals by one byte
-inline constexpr std::size_t kMaxObstacles = 10'000;  ///< of the world
-inline constexpr std::size_t kMaxVertices = 100'000;  ///< of all polygons together
+inline constexpr double kMaxRobots = 200'000;           ///< of the swarm
+inline constexpr std::size_t kMaxRobotGroups = 64;      ///< with bodies of their own
+inline constexpr std::size_t kMaxComponents = 255;      ///< a robot log names goals by one byte
+inline constexpr std::size_t kMaxObstacles = 10'000;    ///< of the world
+inline constexpr std::size_t kMaxVertices = 100'000;    ///< of all polygons together
 inline constexpr std::size_t kMaxScriptEvents = 1'000;  ///< of the mission's script
 inline constexpr std::size_t kMaxNameLength = 64;       ///< of the mission, in bytes
 /// Values of `action` in a script: commands first, then changes of the scene.

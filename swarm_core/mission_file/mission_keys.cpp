@@ -94,7 +94,7 @@ class Page {
     if (option.kind == OptionSpec::Kind::kCount) row.kind = "count";
     if (option.kind == OptionSpec::Kind::kChoice) {
       row.kind = "choice";
-      row.range = fmt::format("{}", fmt::join(option.words, ", "));
+      row.range = fmt::format("{}", fmt::join(option.choices, ", "));
     }
     if (!option.at_most.empty()) row.range += fmt::format(", <= {}", option.at_most);
     return row;

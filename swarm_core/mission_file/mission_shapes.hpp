@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "swarmflow/core/mixture.hpp"
 #include "swarm_core/mission_file/yaml_reader.hpp"
+#include "swarmflow/core/mixture.hpp"
 #include "swarmflow/core/shape_field.hpp"
 #include "swarmflow/core/world.hpp"
 

@@ -7,8 +7,8 @@
 
 #include "swarm_core/mission_file/mission_fields.hpp"
 #include "swarm_core/mission_file/scene_change_file.hpp"
-#include "swarmflow/mission/mission_file.hpp"
 #include "swarm_core/mission_file/yaml_point.hpp"
+#include "swarmflow/mission/mission_file.hpp"
 
 namespace swarm {
 namespace {
@@ -20,8 +20,8 @@ using Out = std::back_insert_iterator<std::string>;
 /// Two levels of indentation: the obstacle is an item of the list in the section `world`.
 void write_obstacle(Out out, const Obstacle& obstacle) {
   if (const auto* circle = std::get_if<Circle>(&obstacle)) {
-    fmt::format_to(out, "    - circle_m: {{center: {}, radius: {}}}\n", yaml_point(circle->center_m),
-                   circle->radius_m);
+    fmt::format_to(out, "    - circle_m: {{center: {}, radius: {}}}\n",
+                   yaml_point(circle->center_m), circle->radius_m);
     return;
   }
   fmt::format_to(out, "    - polygon_m:\n");

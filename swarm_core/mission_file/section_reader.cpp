@@ -30,9 +30,9 @@ void set_defaults(const Components& components, OptionValues& values) {
 }  // namespace
 
 /// Remembers where a key was read, or that its value was wrong.
-void SectionReader::keep_slot(const std::string& path, const Node& value, bool good) {
+void SectionReader::keep_position(const std::string& path, const Node& value, bool good) {
   if (good) {
-    places_[path] = value.at;
+    positions_[path] = value.at;
   } else {
     bad_.insert(path);
   }
@@ -163,8 +163,8 @@ void SectionReader::read_option(const Node& node, const MapReader& keys, const O
   const std::string path = keys.path_of(option.key);
   bool good = false;
   if (option.kind == OptionSpec::Kind::kChoice) {
-    const std::vector<std::string_view> words(option.words.begin(), option.words.end());
-    const auto chosen = yaml::read_choice(node, path, words, violations_);
+    const std::vector<std::string_view> choices(option.choices.begin(), option.choices.end());
+    const auto chosen = yaml::read_choice(node, path, choices, violations_);
     good = chosen.has_value();
     if (good) values.set(option.key, *chosen);
   } else if (option.kind == OptionSpec::Kind::kCount) {
@@ -176,7 +176,7 @@ void SectionReader::read_option(const Node& node, const MapReader& keys, const O
     good = number.has_value();
     if (good) values.set(option.key, *number);
   }
-  keep_slot(path, node, good);
+  keep_position(path, node, good);
 }
 
 /// Rules between keys are checked after all sections are read: they tie keys of different sections.
@@ -193,9 +193,10 @@ void SectionReader::add(const std::vector<BrokenRule>& rules) {
   for (const BrokenRule& rule : rules) {
     const auto is_bad = [&](const std::string& key) { return bad_.contains(key); };
     if (std::any_of(rule.keys.begin(), rule.keys.end(), is_bad)) continue;
-    const auto given = std::find_if(rule.keys.begin(), rule.keys.end(),
-                                    [&](const std::string& key) { return places_.contains(key); });
-    violations_.add(given == rule.keys.end() ? Position{} : places_[*given], rule.message);
+    const auto given =
+        std::find_if(rule.keys.begin(), rule.keys.end(),
+                     [&](const std::string& key) { return positions_.contains(key); });
+    violations_.add(given == rule.keys.end() ? Position{} : positions_[*given], rule.message);
   }
 }
 

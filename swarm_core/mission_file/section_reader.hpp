@@ -11,8 +11,8 @@
 #include <type_traits>
 #include <variant>
 
-#include "swarm_core/mission_file/mission_fields.hpp"
 #include "swarm_core/mission/mission_rules.hpp"
+#include "swarm_core/mission_file/mission_fields.hpp"
 #include "swarm_core/mission_file/yaml_reader.hpp"
 #include "swarmflow/mission/catalogue.hpp"
 
@@ -88,10 +88,10 @@ class SectionReader {
           }
         },
         field.member);
-    keep_slot(path, value, good);
+    keep_position(path, value, good);
   }
 
-  void keep_slot(const std::string& path, const yaml::Node& value, bool good);
+  void keep_position(const std::string& path, const yaml::Node& value, bool good);
   void read_body(yaml::MapReader& keys, BodySpec& body);
   void read_groups(const yaml::Node& node, RobotsSpec& robots);
   void set_lag(BodySpec& body) const;
@@ -106,8 +106,8 @@ class SectionReader {
 
   const Catalogue& catalogue_;
   yaml::Violations& violations_;
-  std::map<std::string, yaml::Position> places_;  // of scalar keys, by path
-  std::set<std::string> bad_;                     // paths of scalar keys with a violation
+  std::map<std::string, yaml::Position> positions_;  // of scalar keys, by path
+  std::set<std::string> bad_;                        // paths of scalar keys with a violation
 };
 
 }  // namespace swarm

@@ -126,7 +126,7 @@ void MapReader::finish() {
     const bool was_renamed =
         key == kFormerKey && std::find(known_.begin(), known_.end(), kRenamedKey) != known_.end();
     const std::optional<std::string> nearest =
-        was_renamed ? std::string(kRenamedKey) : nearest_word(key, known_);
+        was_renamed ? std::string(kRenamedKey) : nearest_key(key, known_);
     violations_.add(entry->at,
                     nearest ? fmt::format("unknown key {}; did you mean {}?",
                                           path_of(key.substr(0, 80)), path_of(*nearest))
@@ -224,14 +224,14 @@ const std::vector<Node>* read_list(const Node& node, const std::string& path, st
   return &node.items;
 }
 
-std::optional<std::string> nearest_word(std::string_view word,
-                                        const std::vector<std::string>& candidates) {
-  if (word.size() > 80) return std::nullopt;
+std::optional<std::string> nearest_key(std::string_view key,
+                                       const std::vector<std::string>& candidates) {
+  if (key.size() > 80) return std::nullopt;
   std::optional<std::string> best;
   // Up to a third of the letters may be mistyped; with more the key is probably not meant.
-  std::size_t best_distance = std::max<std::size_t>(2, word.size() / 3) + 1;
+  std::size_t best_distance = std::max<std::size_t>(2, key.size() / 3) + 1;
   for (const std::string& candidate : candidates) {
-    const std::size_t distance = edit_distance(word, candidate);
+    const std::size_t distance = edit_distance(key, candidate);
     if (distance >= best_distance) continue;
     best_distance = distance;
     best = candidate;

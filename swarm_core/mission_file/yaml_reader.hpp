@@ -10,8 +10,8 @@
 #include <string_view>
 #include <vector>
 
-#include "swarmflow/mission/options.hpp"
 #include "swarm_core/mission_file/yaml_tree.hpp"
+#include "swarmflow/mission/options.hpp"
 
 namespace swarm::yaml {
 
@@ -85,7 +85,7 @@ const std::vector<Node>* read_list(const Node& node, const std::string& path, st
                                    std::size_t max_size, Violations& violations);
 
 /// The candidate with the smallest edit distance, if any is similar (for "did you mean").
-std::optional<std::string> nearest_word(std::string_view word,
-                                        const std::vector<std::string>& candidates);
+std::optional<std::string> nearest_key(std::string_view key,
+                                       const std::vector<std::string>& candidates);
 
 }  // namespace swarm::yaml

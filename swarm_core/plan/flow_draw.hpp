@@ -51,7 +51,7 @@ struct FlowPosition {
 
 /// \pre `source` is an index into plan.sources()
 inline FlowPosition position_in_flow(const FlowPlan& plan, std::size_t source, double share,
-                               MissionTime at) {
+                                     MissionTime at) {
   FlowPosition place;
   std::uint32_t node = plan.sources()[source];
   while (!plan.legs_out(node).empty()) {

@@ -5,8 +5,8 @@
 #include <string>
 #include <string_view>
 
-#include "swarmflow/core/result.hpp"
 #include "swarmflow/core/flow_plan.hpp"
+#include "swarmflow/core/result.hpp"
 
 namespace swarm {
 

@@ -7,8 +7,8 @@
 #include <functional>
 #include <limits>
 
-#include "swarmflow/core/result.hpp"
 #include "swarm_core/robot_log/format.hpp"
+#include "swarmflow/core/result.hpp"
 
 namespace swarm::mcap {
 

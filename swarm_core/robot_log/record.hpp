@@ -8,10 +8,10 @@
 #include <variant>
 #include <vector>
 
+#include "swarm_core/metrics/histogram.hpp"
 #include "swarmflow/core/ids.hpp"
 #include "swarmflow/core/linalg.hpp"
 #include "swarmflow/core/time.hpp"
-#include "swarm_core/metrics/histogram.hpp"
 
 /// The robot log: each robot appends to its own file, at control rate. Audits and reports are
 /// computed from these files alone.

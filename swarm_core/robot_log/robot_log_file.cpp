@@ -15,8 +15,8 @@
 #include <unistd.h>
 
 #include "swarm_core/base/assert.hpp"
-#include "swarm_core/robot_log/record_codec.hpp"
 #include "swarm_core/robot_log/idl_text.hpp"
+#include "swarm_core/robot_log/record_codec.hpp"
 
 namespace swarm::robot_log {
 namespace {

@@ -8,11 +8,11 @@
 #include <optional>
 #include <vector>
 
-#include "swarmflow/core/result.hpp"
-#include "swarm_core/robot_log/record.hpp"
-#include "swarm_core/robot_log/record_codec.hpp"
 #include "swarm_core/robot_log/format.hpp"
 #include "swarm_core/robot_log/reader.hpp"
+#include "swarm_core/robot_log/record.hpp"
+#include "swarm_core/robot_log/record_codec.hpp"
+#include "swarmflow/core/result.hpp"
 
 namespace swarm::robot_log {
 

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "swarmflow/core/result.hpp"
 #include "swarm_core/robot_log/format.hpp"
+#include "swarmflow/core/result.hpp"
 
 namespace swarm::mcap {
 

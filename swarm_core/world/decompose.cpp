@@ -6,9 +6,8 @@
 #include <map>
 #include <utility>
 
-#include "swarmflow/core/polygon.hpp"
-
 #include "swarm_core/world/plane.hpp"
+#include "swarmflow/core/polygon.hpp"
 
 namespace swarm {
 namespace {

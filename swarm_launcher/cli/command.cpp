@@ -17,7 +17,7 @@ namespace swarm::launcher::cli {
 Command add_command(CLI::App& program) {
   struct Options {
     std::filesystem::path run_dir;
-    std::vector<std::string> words;
+    std::vector<std::string> arguments;
   };
   const auto o = std::make_shared<Options>();
   CLI::App* const command = program.add_subcommand(
@@ -31,11 +31,12 @@ Command add_command(CLI::App& program) {
       "  risk 'alpha: 0.15'\n"
       "  clear 7    (the body of robot 7, which is not received any more, was carried away)");
   command->add_option("run_dir", o->run_dir, "Its run directory")->required()->type_name("RUN_DIR");
-  command->add_option("words", o->words, "The command and its keys, as in a mission script")
+  command->add_option("arguments", o->arguments, "The command and its keys, as in a mission script")
       ->required()
       ->type_name("COMMAND [KEYS]");
-  return {command,
-          [o] { return command_mission(o->run_dir, fmt::format("{}", fmt::join(o->words, " "))); }};
+  return {command, [o] {
+            return command_mission(o->run_dir, fmt::format("{}", fmt::join(o->arguments, " ")));
+          }};
 }
 
 }  // namespace swarm::launcher::cli

@@ -9,11 +9,11 @@
 
 #include <unistd.h>
 
-#include "swarmflow/mission/mission_file.hpp"
+#include "swarm_launcher/flight/flight.hpp"
 #include "swarm_launcher/processes/child_process.hpp"
 #include "swarm_launcher/processes/described_program.hpp"
-#include "swarm_launcher/flight/flight.hpp"
 #include "swarm_launcher/processes/packing.hpp"
+#include "swarmflow/mission/mission_file.hpp"
 
 namespace swarm::launcher {
 namespace {

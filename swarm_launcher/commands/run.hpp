@@ -6,8 +6,8 @@
 #include <filesystem>
 #include <optional>
 
-#include "swarmflow/core/result.hpp"
 #include "swarm_launcher/flight/flight_choices.hpp"
+#include "swarmflow/core/result.hpp"
 
 namespace swarm::launcher {
 

@@ -11,19 +11,19 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-#include "swarm_core/base/clock.hpp"
-#include "swarmflow/mission/mission_file.hpp"
-#include "swarm_core/mission/placement.hpp"
-#include "swarm_core/mission_file/scene_change_file.hpp"
 #include "swarm_core/app/run_dir.hpp"
 #include "swarm_core/app/run_directory.hpp"
 #include "swarm_core/app/stop_signal.hpp"
+#include "swarm_core/base/clock.hpp"
+#include "swarm_core/mission/placement.hpp"
+#include "swarm_core/mission_file/scene_change_file.hpp"
 #include "swarm_launcher/processes/child_process.hpp"
 #include "swarm_launcher/processes/host_limits.hpp"
 #include "swarm_link/monitor_topics.hpp"
 #include "swarm_link/roles/run_meeting.hpp"
 #include "swarm_link/udp_socket.hpp"
 #include "swarm_link/vendor.hpp"
+#include "swarmflow/mission/mission_file.hpp"
 
 namespace swarm::launcher {
 namespace {
@@ -107,8 +107,8 @@ Result<std::unique_ptr<Flight>> Flight::make(FlightOptions options, FlightObserv
     return tl::unexpected(fits.error());
   }
   const std::uint32_t relays = channel->channel == Channel::kGroups ? link::relays_for(agents) : 0;
-  auto lock =
-      link::DomainLock::take(options.how.domain, link::participants_for({.relays = relays}, agents));
+  auto lock = link::DomainLock::take(options.how.domain,
+                                     link::participants_for({.relays = relays}, agents));
   if (!lock) return tl::unexpected(lock.error());
   const auto dir = shell::make_run_dir(options.how.out, options.mission.name);
   if (!dir) return tl::unexpected(dir.error());
@@ -116,8 +116,8 @@ Result<std::unique_ptr<Flight>> Flight::make(FlightOptions options, FlightObserv
       !written) {
     return tl::unexpected(written.error());
   }
-  auto flight = std::unique_ptr<Flight>(
-      new Flight(std::move(options), observer, *dir, std::move(*lock), std::move(*channel), relays));
+  auto flight = std::unique_ptr<Flight>(new Flight(std::move(options), observer, *dir,
+                                                   std::move(*lock), std::move(*channel), relays));
   if (const auto joined = flight->join(); !joined) return tl::unexpected(joined.error());
   return flight;
 }

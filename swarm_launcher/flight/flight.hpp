@@ -13,27 +13,27 @@
 
 #include <sys/types.h>
 
-#include "swarmflow/core/result.hpp"
-#include "swarm_core/mission/channel.hpp"
-#include "swarmflow/mission/mission.hpp"
 #include "swarm_core/app/control_socket.hpp"
 #include "swarm_core/app/run_directory.hpp"
-#include "swarm_launcher/processes/channel_choice.hpp"
-#include "swarm_launcher/supervision/event_log.hpp"
-#include "swarm_launcher/supervision/fallen_body.hpp"
+#include "swarm_core/mission/channel.hpp"
 #include "swarm_launcher/flight/flight_choices.hpp"
 #include "swarm_launcher/flight/gateway.hpp"
 #include "swarm_launcher/flight/health_inbox.hpp"
-#include "swarm_launcher/hosts/remote_hosts.hpp"
 #include "swarm_launcher/flight/monitors.hpp"
-#include "swarm_launcher/supervision/progress.hpp"
 #include "swarm_launcher/flight/scene_keeper.hpp"
+#include "swarm_launcher/flight/swarm_view.hpp"
+#include "swarm_launcher/hosts/remote_hosts.hpp"
+#include "swarm_launcher/processes/channel_choice.hpp"
+#include "swarm_launcher/supervision/event_log.hpp"
+#include "swarm_launcher/supervision/fallen_body.hpp"
+#include "swarm_launcher/supervision/progress.hpp"
 #include "swarm_launcher/supervision/summary.hpp"
 #include "swarm_launcher/supervision/supervisor.hpp"
-#include "swarm_launcher/flight/swarm_view.hpp"
+#include "swarm_link/messages.hpp"
 #include "swarm_link/roles/domain_lock.hpp"
 #include "swarm_link/roles/join.hpp"
-#include "swarm_link/messages.hpp"
+#include "swarmflow/core/result.hpp"
+#include "swarmflow/mission/mission.hpp"
 
 namespace swarm::launcher {
 

@@ -4,8 +4,8 @@
 #include <fmt/format.h>
 
 #include "swarm_core/base/clock.hpp"
-#include "swarm_core/robot_log/robot_log_file.hpp"
 #include "swarm_core/mission/scene_bodies.hpp"
+#include "swarm_core/robot_log/robot_log_file.hpp"
 #include "swarm_launcher/flight/flight.hpp"
 
 namespace swarm::launcher {

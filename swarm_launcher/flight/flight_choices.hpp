@@ -8,8 +8,8 @@
 #include <string>
 
 #include "swarm_core/mission/channel.hpp"
-#include "swarm_launcher/processes/agent_dds.hpp"
 #include "swarm_launcher/flight/monitors.hpp"
+#include "swarm_launcher/processes/agent_dds.hpp"
 
 namespace swarm::launcher {
 

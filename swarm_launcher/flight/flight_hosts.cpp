@@ -6,8 +6,8 @@
 
 #include <fmt/format.h>
 
-#include "swarmflow/mission/mission_file.hpp"
 #include "swarm_launcher/flight/flight.hpp"
+#include "swarmflow/mission/mission_file.hpp"
 
 namespace swarm::launcher {
 namespace {
@@ -48,8 +48,7 @@ void Flight::collect_robot_logs() {
   if (hosts_ && hosts_->missing_logs() > 0) {
     log({.warning = true,
          .code = "boxes-missing",
-         .text =
-             fmt::format("{} robot logs of other hosts did not come", hosts_->missing_logs())});
+         .text = fmt::format("{} robot logs of other hosts did not come", hosts_->missing_logs())});
   }
 }
 

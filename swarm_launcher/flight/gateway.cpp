@@ -8,13 +8,13 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include "swarm_core/base/clock.hpp"
-#include "swarmflow/mission/mission_file.hpp"
 #include "swarm_core/app/run_directory.hpp"
 #include "swarm_core/app/stop_signal.hpp"
+#include "swarm_core/base/clock.hpp"
 #include "swarm_launcher/processes/child_process.hpp"
 #include "swarm_link/gateway/gateway.hpp"
 #include "swarm_link/roles/run_meeting.hpp"
+#include "swarmflow/mission/mission_file.hpp"
 
 namespace swarm::launcher {
 namespace {

@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
-#include "swarmflow/core/time.hpp"
 #include "swarm_link/gate/gate.hpp"
 #include "swarm_link/port.hpp"
+#include "swarmflow/core/time.hpp"
 
 namespace swarm::launcher {
 

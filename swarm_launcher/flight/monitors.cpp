@@ -8,9 +8,9 @@
 #include <fmt/format.h>
 #include <sys/wait.h>
 
-#include "swarmflow/core/time.hpp"
 #include "swarm_core/app/run_directory.hpp"
 #include "swarm_launcher/processes/child_process.hpp"
+#include "swarmflow/core/time.hpp"
 
 namespace swarm::launcher {
 namespace {

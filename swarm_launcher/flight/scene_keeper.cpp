@@ -6,8 +6,8 @@
 
 #include <fmt/format.h>
 
-#include "swarm_core/mission_file/scene_log.hpp"
 #include "swarm_core/app/run_directory.hpp"
+#include "swarm_core/mission_file/scene_log.hpp"
 #include "swarm_link/to_message.hpp"
 
 namespace swarm::launcher {

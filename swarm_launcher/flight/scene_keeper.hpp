@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "swarmflow/mission/scene.hpp"
 #include "swarm_link/port.hpp"
+#include "swarmflow/mission/scene.hpp"
 
 namespace swarm::launcher {
 

@@ -22,8 +22,8 @@ void SwarmView::take(const link::RobotStatusMessage& status) {
 bool SwarmView::receives_neighbours(std::uint32_t robot) const {
   const link::RobotStatusMessage& self = robots_.at(robot);
   std::uint32_t near = 0;
-  for (const link::Cell& touched :
-       link::cells_touching({self.x_m, self.y_m}, communication_radius_m_, communication_radius_m_)) {
+  for (const link::Cell& touched : link::cells_touching(
+           {self.x_m, self.y_m}, communication_radius_m_, communication_radius_m_)) {
     const auto cell = cells_.find(touched);
     if (cell == cells_.end()) continue;
     for (const std::uint32_t id : cell->second) {

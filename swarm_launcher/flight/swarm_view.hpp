@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "swarmflow/core/time.hpp"
 #include "swarm_link/channels/cell.hpp"
 #include "swarm_link/messages.hpp"
+#include "swarmflow/core/time.hpp"
 
 namespace swarm::launcher {
 

@@ -12,14 +12,14 @@
 #include <nlohmann/json.hpp>
 #include <unistd.h>
 
-#include "swarm_core/robot_log/robot_log_file.hpp"
-#include "swarmflow/mission/mission_file.hpp"
 #include "swarm_core/app/run_dir.hpp"
 #include "swarm_core/app/stop_signal.hpp"
-#include "swarm_launcher/processes/child_process.hpp"
+#include "swarm_core/robot_log/robot_log_file.hpp"
 #include "swarm_launcher/hosts/line_socket.hpp"
 #include "swarm_launcher/hosts/offer.hpp"
+#include "swarm_launcher/processes/child_process.hpp"
 #include "swarm_launcher/supervision/progress.hpp"
+#include "swarmflow/mission/mission_file.hpp"
 
 namespace swarm::launcher {
 namespace {
@@ -28,7 +28,7 @@ constexpr int kStep_ms = 20;
 constexpr Duration kAnswerTimeout = std::chrono::seconds(10);
 constexpr Duration kStartEvery = std::chrono::milliseconds(50);  // starting processes compete
 // Time between the signals of the ladder, as in the supervisor.
-constexpr Duration kGrace = std::chrono::seconds(5);             // of each signal
+constexpr Duration kGrace = std::chrono::seconds(5);  // of each signal
 constexpr std::size_t kMaxLogBytes = 1U << 30U;
 
 SteadyTime now() { return std::chrono::steady_clock::now(); }
@@ -49,7 +49,8 @@ Result<HostOffer> ask(LineSocket& socket, std::uint32_t robots) {
 /// times, and killed when the object is destroyed.
 class HostProcesses {
  public:
-  HostProcesses(const HostOffer& offer, std::filesystem::path dir, bool cyclone, std::uint32_t respawns)
+  HostProcesses(const HostOffer& offer, std::filesystem::path dir, bool cyclone,
+                std::uint32_t respawns)
       : offer_(offer), dir_(std::move(dir)), cyclone_(cyclone), respawns_(respawns) {
     for (std::uint32_t robot = 0; robot < offer.robots; robot += offer.per_process) {
       waiting_.push_back(robot);
@@ -142,7 +143,8 @@ Result<void> fly(HostProcesses& processes, LineSocket& socket, Progress& progres
       if (rung > signalled) signal_processes(rung);
     }
     if (signalled < 0 && (socket.gone() || shell::stop_requests() > 0)) signal_processes(0);
-    if (signalled >= 0 && signalled < 2 && now() - signalled_at > kGrace) signal_processes(signalled + 1);
+    if (signalled >= 0 && signalled < 2 && now() - signalled_at > kGrace)
+      signal_processes(signalled + 1);
     if (auto stepped = processes.step(); !stepped) return stepped;
     progress.show("flying", fmt::format("{} processes", processes.living()));
   }
@@ -160,7 +162,7 @@ void drain(LineSocket& socket) {
 /// Sends the robot logs one after the other, each as a line with its size and the bytes. Only one
 /// log is in memory at a time.
 void send_logs(const HostOffer& offer, const std::filesystem::path& dir, LineSocket& socket,
-                Progress& progress) {
+               Progress& progress) {
   socket.send(R"({"over": true})");
   for (std::uint32_t i = 0; i <= offer.robots && !socket.gone(); ++i) {
     if (i < offer.robots) {
@@ -223,7 +225,8 @@ Result<ExitCode> join_host(const JoinOptions& options) {
   Progress progress;
   {
     HostProcesses processes(*offer, *dir, options.cyclone, mission->launcher.respawn_agent_max);
-    if (auto flown = fly(processes, *socket, progress); !flown) return tl::unexpected(flown.error());
+    if (auto flown = fly(processes, *socket, progress); !flown)
+      return tl::unexpected(flown.error());
   }
   send_logs(*offer, *dir, *socket, progress);
   if (!part(*socket)) {

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <string>
 
-#include "swarmflow/core/result.hpp"
 #include "swarm_core/app/run_directory.hpp"
+#include "swarmflow/core/result.hpp"
 
 namespace swarm::launcher {
 

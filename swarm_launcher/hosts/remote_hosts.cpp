@@ -105,7 +105,7 @@ bool RemoteHosts::take_line(Host& host, const std::string& line) {
   host.log_robot = static_cast<std::uint32_t>(*robot);
   if (host.log_robot - host.first_robot >= host.robots) return false;
   host.log_file = std::ofstream(robot_log::file_of(dir_, RobotId(host.log_robot)),
-                           std::ios::binary | std::ios::trunc);
+                                std::ios::binary | std::ios::trunc);
   host.log_bytes = *bytes;
   return host.log_file.good();
 }

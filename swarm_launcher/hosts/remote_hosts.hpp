@@ -59,7 +59,7 @@ class RemoteHosts {
     std::uint32_t first_robot = 0, robots = 0;  // none: no request yet
     ProcessIndex first_process{};
     std::uint32_t processes = 0;
-    int signalled = -1;         // strongest signal sent
+    int signalled = -1;    // strongest signal sent
     bool over = false;     // its processes have ended …
     bool counted = false;  // … and the supervisor knows
     bool left = false;     // it has left, or the connection is lost
@@ -88,7 +88,7 @@ class RemoteHosts {
   std::vector<Host> hosts_;
   std::vector<std::size_t> joined_;  // since the last step: indices of hosts_
   std::vector<Block> free_;          // not assigned yet
-  std::vector<bool> collected_;           // robot logs
+  std::vector<bool> collected_;      // robot logs
   bool paused_ = false;              // by us
   bool overruled_ = false;           // the user resumed in spite of the cut
   bool begun_ = false;

@@ -6,8 +6,8 @@
 #include <optional>
 #include <string>
 
-#include "swarmflow/core/result.hpp"
 #include "swarm_core/mission/channel.hpp"
+#include "swarmflow/core/result.hpp"
 
 namespace swarm::launcher {
 

@@ -9,8 +9,8 @@
 
 #include <sys/types.h>
 
-#include "swarmflow/core/result.hpp"
 #include "swarm_launcher/supervision/supervisor.hpp"
+#include "swarmflow/core/result.hpp"
 
 namespace swarm::launcher {
 

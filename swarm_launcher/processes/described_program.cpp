@@ -52,8 +52,7 @@ int spawn(const std::filesystem::path& program, int out, pid_t& pid) {
   std::string path = program.string();
   std::string flag = "--describe";
   std::array<char*, 3> arguments{path.data(), flag.data(), nullptr};
-  const int error =
-      ::posix_spawn(&pid, path.c_str(), &actions, nullptr, arguments.data(), environ);
+  const int error = ::posix_spawn(&pid, path.c_str(), &actions, nullptr, arguments.data(), environ);
   ::posix_spawn_file_actions_destroy(&actions);
   return error;
 }

@@ -6,8 +6,8 @@
 #include <fstream>
 #include <string>
 
-#include "swarmflow/core/time.hpp"
 #include "swarm_link/messages.hpp"
+#include "swarmflow/core/time.hpp"
 
 namespace swarm::launcher {
 

@@ -24,7 +24,8 @@ double travel_m(const BodySpec& body, double speed_mps, double command_mps, doub
 }  // namespace
 
 // The speed is the mean over the last period, if the record before is recent enough.
-std::optional<LastKnown> last_known(std::span<const robot_log::Step> steps, const Mission& mission) {
+std::optional<LastKnown> last_known(std::span<const robot_log::Step> steps,
+                                    const Mission& mission) {
   if (steps.empty()) return std::nullopt;
   const robot_log::Step& last = steps.back();
   LastKnown known{

@@ -7,8 +7,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "swarm_core/plan/plan_json.hpp"
 #include "swarm_core/app/run_directory.hpp"
+#include "swarm_core/plan/plan_json.hpp"
 #include "swarm_monitor/audit/audit.hpp"
 #include "swarm_monitor/report/report.hpp"
 
@@ -110,7 +110,8 @@ Result<ExitCode> summarise(const std::filesystem::path& run_dir, const Measureme
   summary["channel"] = measured.channel ? to_string(*measured.channel) : "lock-step";
   if (measured.wall_s) summary["wall_s"] = *measured.wall_s;
   if (measured.ns_per_agent_step) summary["ns_per_agent_step"] = *measured.ns_per_agent_step;
-  summary["hearing_s"] = measured.neighbour_discovery_s < 0.0 ? Json() : Json(measured.neighbour_discovery_s);
+  summary["hearing_s"] =
+      measured.neighbour_discovery_s < 0.0 ? Json() : Json(measured.neighbour_discovery_s);
   summary["refused_by_launcher"] = measured.refused_by_launcher;
   const PlansExcess excess = plans_excess(run_dir);
   summary["plan_excess_m"] = excess.largest_m;

@@ -6,20 +6,20 @@
 #include <filesystem>
 #include <optional>
 
-#include "swarmflow/core/result.hpp"
 #include "swarm_core/mission/channel.hpp"
 #include "swarm_launcher/supervision/supervisor.hpp"
+#include "swarmflow/core/result.hpp"
 
 namespace swarm::launcher {
 
 /// Measurements that only the launcher can make.
 struct Measurements {
   Outcome outcome = Outcome::kNone;
-  std::optional<Channel> channel;  ///< empty: in lock-step
-  double discovery_s = -1.0;       ///< negative: never complete
+  std::optional<Channel> channel;       ///< empty: in lock-step
+  double discovery_s = -1.0;            ///< negative: never complete
   double neighbour_discovery_s = -1.0;  ///< from then until all receive their neighbours
-  double cpu_s = 0.0;       ///< of all processes of the run
-  double max_rss_mb = 0.0;  ///< of the largest child
+  double cpu_s = 0.0;                   ///< of all processes of the run
+  double max_rss_mb = 0.0;              ///< of the largest child
   std::uint64_t refused_by_launcher = 0;
   /// Of a simulation: time of all plans, of the whole simulation, and the median over control
   /// periods.

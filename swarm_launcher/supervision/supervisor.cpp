@@ -128,7 +128,8 @@ void Supervisor::on_exit(ProcessIndex process, const ProcessExit& exit, SteadyTi
   const auto [first, count] = robots_of(process);
   if (is_remote(process) && stage_ != Stage::kRunning) {  // another host may replace it
     p.started = false;
-    for (std::uint32_t r = first.value(); r < first.value() + count; ++r) robots_[r].received = false;
+    for (std::uint32_t r = first.value(); r < first.value() + count; ++r)
+      robots_[r].received = false;
     return;
   }
 

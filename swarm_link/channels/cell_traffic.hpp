@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "swarm_link/channels/cell.hpp"
-#include "swarm_link/messages.hpp"
 #include "swarm_link/channels/state_channel.hpp"
+#include "swarm_link/messages.hpp"
 
 /// Cell bookkeeping common to all state channels, independent of what transports the states. Pure.
 namespace swarm::link {

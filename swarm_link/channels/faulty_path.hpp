@@ -9,8 +9,8 @@
 
 #include <netinet/in.h>
 
-#include "swarmflow/core/time.hpp"
 #include "swarm_core/mission/link_faults.hpp"
+#include "swarmflow/core/time.hpp"
 
 namespace swarm::link {
 

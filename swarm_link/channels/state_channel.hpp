@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "swarmflow/core/linalg.hpp"
 #include "swarm_link/port.hpp"
+#include "swarmflow/core/linalg.hpp"
 
 namespace swarm::link {
 

@@ -4,12 +4,12 @@
 
 #include <cstdint>
 
-#include "swarmflow/core/time.hpp"
-#include "swarmflow/mission/scene.hpp"
-#include "swarmflow/core/flow_plan.hpp"
 #include "swarm_link/gate/refusal.hpp"
 #include "swarm_link/gate/wire_limits.hpp"
 #include "swarm_link/messages.hpp"
+#include "swarmflow/core/flow_plan.hpp"
+#include "swarmflow/core/time.hpp"
+#include "swarmflow/mission/scene.hpp"
 
 /// Checks of one message by itself: schema, sizes, finite numbers, ranges. Pure functions. The Gate
 /// also compares a message with those before it and with the clock; receivers therefore call the

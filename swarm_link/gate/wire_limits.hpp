@@ -4,9 +4,9 @@
 
 #include <cstdint>
 
+#include "swarmflow/core/box.hpp"
 #include "swarmflow/core/time.hpp"
 #include "swarmflow/mission/mission.hpp"
-#include "swarmflow/core/box.hpp"
 
 namespace swarm::link {
 

@@ -11,9 +11,9 @@
 #include <fmt/format.h>
 
 #include "swarm_link/channels/cell_traffic.hpp"
-#include "swarm_link/gateway/gateway_inbox.hpp"
 #include "swarm_link/channels/groups/group_channel.hpp"
 #include "swarm_link/channels/groups/group_tap.hpp"
+#include "swarm_link/gateway/gateway_inbox.hpp"
 
 namespace swarm::link {
 namespace {

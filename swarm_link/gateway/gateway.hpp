@@ -6,12 +6,12 @@
 #include <memory>
 #include <string>
 
-#include "swarmflow/core/result.hpp"
-#include "swarmflow/core/time.hpp"
+#include "swarm_link/channels/state_channel.hpp"
 #include "swarm_link/gate/refusal.hpp"
 #include "swarm_link/gate/wire_limits.hpp"
 #include "swarm_link/port.hpp"
-#include "swarm_link/channels/state_channel.hpp"
+#include "swarmflow/core/result.hpp"
+#include "swarmflow/core/time.hpp"
 
 namespace swarm::link {
 

@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "swarmflow/core/time.hpp"
 #include "swarm_link/gate/gate.hpp"
+#include "swarmflow/core/time.hpp"
 
 namespace swarm::link {
 

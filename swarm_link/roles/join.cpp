@@ -8,8 +8,8 @@
 
 #include <fmt/format.h>
 
-#include "swarm_link/announcement_port.hpp"
 #include "swarm_link/adapters/cyclone/cyclone_participant.hpp"
+#include "swarm_link/announcement_port.hpp"
 #include "swarm_link/roles/relay_participant.hpp"
 
 namespace swarm::link {
@@ -45,14 +45,15 @@ FastDdsOptions member(const Meeting& meeting, std::string name, std::uint32_t in
 Result<std::unique_ptr<Participant>> make_checked(const FastDdsOptions& options) {
   auto made = make_fastdds_participant(options);
   if (!made) return made;
-  if (const auto can_receive = (*made)->self_check(); !can_receive) return tl::unexpected(can_receive.error());
+  if (const auto can_receive = (*made)->self_check(); !can_receive)
+    return tl::unexpected(can_receive.error());
   return made;
 }
 
 // Launcher or planner with Cyclone DDS: a fixed index, so that agents know its port, and the other
 // of the two as its peer.
 CycloneOptions cyclone_relay(const Meeting& meeting, std::string name, std::uint32_t index,
-                           std::uint32_t peer) {
+                             std::uint32_t peer) {
   return {.name = std::move(name),
           .domain = meeting.domain,
           .peer_ports = {announcement_port(meeting.domain, peer)},
@@ -108,7 +109,7 @@ Result<std::unique_ptr<Participant>> join_as_planner(const Meeting& meeting,
   if (meeting.planner == Vendor::kCycloneDds) {
     if (meeting.relays == 0) return no_server_for_cyclone("--planner-dds");
     CycloneOptions options = cyclone_relay(meeting, "planner_service", planner_index(meeting, 0),
-                                         launcher_index(meeting, 0));
+                                           launcher_index(meeting, 0));
     options.ownership_strength = ownership_strength;
     return make_cyclone_participant(options);
   }
@@ -135,8 +136,8 @@ Result<std::unique_ptr<Participant>> join_as_monitor(const Meeting& meeting, std
                                                      std::uint32_t number) {
   FastDdsOptions options = member(meeting, "swarm_monitor", agent_index(meeting, agents + number));
   if (meeting.relays > 0) {
-    options.static_peers = StaticPeers{.peers = {launcher_index(meeting, 0), planner_index(meeting, 0)},
-                        .host = meeting.host};
+    options.static_peers = StaticPeers{
+        .peers = {launcher_index(meeting, 0), planner_index(meeting, 0)}, .host = meeting.host};
   }
   options.cells_by_multicast = false;
   return make_checked(options);
@@ -183,7 +184,8 @@ Result<std::unique_ptr<Participant>> join_as_agent(const Meeting& meeting, std::
     return make_cyclone_participant(options);
   }
   FastDdsOptions options = member(meeting, name, agent_index(meeting, number));
-  if (!relays.empty()) options.static_peers = StaticPeers{.peers = std::move(relays), .host = meeting.host};
+  if (!relays.empty())
+    options.static_peers = StaticPeers{.peers = std::move(relays), .host = meeting.host};
   return make_checked(options);
 }
 

@@ -96,7 +96,8 @@ class RelayParticipant final : public Participant {
 }  // namespace
 
 // A single participant needs no wrapper.
-std::unique_ptr<Participant> make_relay_participant(std::vector<std::unique_ptr<Participant>> participants) {
+std::unique_ptr<Participant> make_relay_participant(
+    std::vector<std::unique_ptr<Participant>> participants) {
   SWARM_ASSERT(!participants.empty());
   if (participants.size() == 1) return std::move(participants.front());
   return std::make_unique<RelayParticipant>(std::move(participants));

@@ -13,6 +13,7 @@ namespace swarm::link {
 /// For processes that communicate with everyone in a swarm of hundreds: the reliable discovery of a
 /// vendor costs the square of the number of peers of a participant, so the peers are divided among
 /// several. \pre at least one participant
-std::unique_ptr<Participant> make_relay_participant(std::vector<std::unique_ptr<Participant>> participants);
+std::unique_ptr<Participant> make_relay_participant(
+    std::vector<std::unique_ptr<Participant>> participants);
 
 }  // namespace swarm::link

@@ -21,12 +21,12 @@ namespace {
 
 /// The first ten entries of a list and the number of the others, as in `3, 7, 12 and 40 more`: the
 /// reasons of a failed audit stay readable when hundreds of robots fail.
-std::string list(const std::vector<std::string>& words) {
+std::string list(const std::vector<std::string>& items) {
   constexpr std::size_t kShown = 10;
   const std::vector<std::string> first(
-      words.begin(), words.begin() + static_cast<std::ptrdiff_t>(std::min(words.size(), kShown)));
+      items.begin(), items.begin() + static_cast<std::ptrdiff_t>(std::min(items.size(), kShown)));
   std::string text = fmt::format("{}", fmt::join(first, ", "));
-  if (words.size() > kShown) text += fmt::format(" and {} more", words.size() - kShown);
+  if (items.size() > kShown) text += fmt::format(" and {} more", items.size() - kShown);
   return text;
 }
 

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "swarm_monitor/audit/estimate_error.hpp"
 #include "swarm_monitor/audit/clearance.hpp"
+#include "swarm_monitor/audit/estimate_error.hpp"
 #include "swarm_monitor/audit/recorded_run.hpp"
 #include "swarm_monitor/audit/tracking/tracking.hpp"
 

@@ -35,9 +35,9 @@ std::string to_json(const Audit& audit) {
   Json estimate = nullptr;
   if (audit.estimate) {
     estimate = {{"p50", audit.estimate->p50_cm},
-              {"p99", audit.estimate->p99_cm},
-              {"p999", audit.estimate->p999_cm},
-              {"max", audit.estimate->max_cm}};
+                {"p99", audit.estimate->p99_cm},
+                {"p999", audit.estimate->p999_cm},
+                {"max", audit.estimate->max_cm}};
   }
   Json stop = nullptr;
   if (audit.stop) {

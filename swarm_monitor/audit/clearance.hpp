@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "swarmflow/mission/scene.hpp"
 #include "swarm_monitor/audit/recorded_run.hpp"
+#include "swarmflow/mission/scene.hpp"
 
 /// Surface-to-surface gaps of the recorded motion, exact in continuous time: between two points a
 /// robot moves in a straight line, so the nearest approach lies anywhere, not only at the ticks.

@@ -46,9 +46,9 @@ std::optional<EstimateError> estimate_error(std::span<const Track> tracks) {
     return errors_cm[std::max<std::size_t>(rank, 1) - 1];
   };
   return EstimateError{.p50_cm = quantile(0.5),
-                     .p99_cm = quantile(0.99),
-                     .p999_cm = quantile(0.999),
-                     .max_cm = errors_cm.back()};
+                       .p99_cm = quantile(0.99),
+                       .p999_cm = quantile(0.999),
+                       .max_cm = errors_cm.back()};
 }
 
 }  // namespace swarm::monitor

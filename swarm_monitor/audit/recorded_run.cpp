@@ -16,12 +16,12 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "swarm_core/robot_log/robot_log_file.hpp"
-#include "swarm_core/robot_log/reader.hpp"
-#include "swarmflow/mission/mission_file.hpp"
+#include "swarm_core/app/run_directory.hpp"
 #include "swarm_core/mission_file/scene_log.hpp"
 #include "swarm_core/plan/plan_json.hpp"
-#include "swarm_core/app/run_directory.hpp"
+#include "swarm_core/robot_log/reader.hpp"
+#include "swarm_core/robot_log/robot_log_file.hpp"
+#include "swarmflow/mission/mission_file.hpp"
 
 namespace swarm::monitor {
 namespace {
@@ -100,8 +100,8 @@ void TrackMaker::take(const robot_log::Step& step) {
 
 void TrackMaker::take(const robot_log::Estimate& estimate) {
   track_.estimates.push_back({.time_s = to_seconds(estimate.stamp - origin_),
-                            .neighbour = estimate.neighbour,
-                            .position_m = estimate.position_m});
+                              .neighbour = estimate.neighbour,
+                              .position_m = estimate.position_m});
 }
 
 /// The note "exit" is the last record of a process that ended gracefully; without it the robot is
@@ -210,7 +210,8 @@ class TrackTable {
     };
     for (Track& track : run.tracks) {
       for (TrackPoint& point : track.points) point.time_s = since_begin(point.time_s);
-      for (EstimatePoint& estimate : track.estimates) estimate.time_s = since_begin(estimate.time_s);
+      for (EstimatePoint& estimate : track.estimates)
+        estimate.time_s = since_begin(estimate.time_s);
     }
     run.begin = *origin_ + begin;
     return true;
@@ -274,7 +275,7 @@ Result<RecordedRun> read_directory(const std::filesystem::path& run_dir) {
   for (std::uint32_t i = 0; i < run->mission.robots.count; ++i) {
     damages.push_back(
         robot_log::read_records(robot_log::file_of(run_dir, RobotId(i)),
-                               [&](const auto& record) { tracks.add(RobotId(i), record); }));
+                                [&](const auto& record) { tracks.add(RobotId(i), record); }));
   }
   run = finished(std::move(*run), tracks, texts, run_dir);
   if (!run) return run;

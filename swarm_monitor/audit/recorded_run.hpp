@@ -7,12 +7,12 @@
 #include <string>
 #include <vector>
 
+#include "swarm_core/plan/planning_record.hpp"
 #include "swarm_core/robot_log/record.hpp"
-#include "swarmflow/mission/mission.hpp"
-#include "swarmflow/mission/phase.hpp"
 #include "swarmflow/core/flow_plan.hpp"
 #include "swarmflow/core/plan_clock.hpp"
-#include "swarm_core/plan/planning_record.hpp"
+#include "swarmflow/mission/mission.hpp"
+#include "swarmflow/mission/phase.hpp"
 
 namespace swarm::monitor {
 
@@ -50,8 +50,8 @@ struct Track {
   /// The body of a fallen robot stays at the last point until this time; a time before the last
   /// point means that there is no body. Set by lay_fallen_bodies().
   double body_until_s = 0.0;
-  std::string unreadable{};   ///< why there is no robot log; empty if there is one
-  std::uint64_t damaged = 0;  ///< unreadable stretches of the file, and steps back in time
+  std::string unreadable{};       ///< why there is no robot log; empty if there is one
+  std::uint64_t damaged = 0;      ///< unreadable stretches of the file, and steps back in time
   std::uint64_t late_steps = 0;   ///< later than kLate_us
   std::uint64_t refused = 0;      ///< messages, over all incarnations
   Histogram state_age{};          ///< over all incarnations

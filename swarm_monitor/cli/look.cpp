@@ -10,9 +10,9 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
-#include "swarm_core/base/clock.hpp"
 #include "swarm_core/app/run_directory.hpp"
 #include "swarm_core/app/stop_signal.hpp"
+#include "swarm_core/base/clock.hpp"
 #include "swarm_monitor/cli/commands.hpp"
 #include "swarm_monitor/view/live_source.hpp"
 #include "swarm_monitor/view/recorded_source.hpp"

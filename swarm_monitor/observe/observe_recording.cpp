@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <vector>
 
-#include "swarmflow/observe/observer.hpp"
 #include "swarm_monitor/audit/recorded_run.hpp"
+#include "swarmflow/observe/observer.hpp"
 
 namespace swarm::monitor {
 namespace {

@@ -4,9 +4,9 @@
 #include <thread>
 #include <utility>
 
-#include "swarmflow/mission/mission_file.hpp"
 #include "swarm_core/app/run_directory.hpp"
 #include "swarm_monitor/observe/bus_reader.hpp"
+#include "swarmflow/mission/mission_file.hpp"
 
 namespace swarm::monitor {
 namespace {

@@ -8,8 +8,8 @@
 #include <fmt/format.h>
 
 #include "swarm_core/base/clock.hpp"
-#include "swarm_core/robot_log/record_codec.hpp"
 #include "swarm_core/robot_log/idl_text.hpp"
+#include "swarm_core/robot_log/record_codec.hpp"
 #include "swarm_link/channels/groups/group_tap.hpp"
 #include "swarm_link/monitor_topics.hpp"
 #include "swarm_link/roles/run_meeting.hpp"

@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
+#include "swarm_core/robot_log/format.hpp"
 #include "swarmflow/core/result.hpp"
 #include "swarmflow/core/time.hpp"
-#include "swarm_core/robot_log/format.hpp"
 
 namespace swarm::monitor {
 

@@ -4,9 +4,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include "swarm_core/app/run_directory.hpp"
 #include "swarm_core/base/clock.hpp"
 #include "swarm_core/robot_log/writer.hpp"
-#include "swarm_core/app/run_directory.hpp"
 #include "swarm_link/cdr/codec.hpp"
 #include "swarm_monitor/recording/bus_tap.hpp"
 #include "swarmflow/mission/mission_file.hpp"

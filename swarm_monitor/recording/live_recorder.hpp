@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
+#include "swarm_link/stream_meter.hpp"
 #include "swarmflow/core/result.hpp"
 #include "swarmflow/core/time.hpp"
-#include "swarm_link/stream_meter.hpp"
 
 namespace swarm::monitor {
 

@@ -9,9 +9,9 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "swarm_core/app/run_directory.hpp"
 #include "swarm_core/robot_log/reader.hpp"
 #include "swarm_core/robot_log/writer.hpp"
-#include "swarm_core/app/run_directory.hpp"
 
 namespace swarm::monitor {
 namespace {

@@ -8,11 +8,11 @@
 
 #include <fmt/format.h>
 
-#include "swarm_core/base/clock.hpp"
 #include "swarm_core/app/run_dir.hpp"
 #include "swarm_core/app/run_directory.hpp"
-#include "swarm_link/roles/domain_lock.hpp"
+#include "swarm_core/base/clock.hpp"
 #include "swarm_link/monitor_topics.hpp"
+#include "swarm_link/roles/domain_lock.hpp"
 #include "swarm_link/roles/run_meeting.hpp"
 #include "swarm_monitor/recording/bus_tap.hpp"
 

@@ -11,11 +11,11 @@
 #include <fmt/format.h>
 
 #include "swarm_core/app/run_directory.hpp"
+#include "swarm_monitor/audit/tracking/tracking_charts.hpp"
 #include "swarm_monitor/report/charts.hpp"
 #include "swarm_monitor/report/png.hpp"
 #include "swarm_monitor/report/report_page.hpp"
 #include "swarm_monitor/report/svg.hpp"
-#include "swarm_monitor/audit/tracking/tracking_charts.hpp"
 
 namespace swarm::monitor {
 namespace {

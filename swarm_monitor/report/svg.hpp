@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "swarmflow/core/mixture.hpp"
 #include "swarmflow/core/flow_plan.hpp"
+#include "swarmflow/core/mixture.hpp"
 #include "swarmflow/core/world.hpp"
 
 namespace swarm::monitor {

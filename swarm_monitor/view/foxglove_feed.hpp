@@ -8,9 +8,9 @@
 #include <span>
 #include <vector>
 
-#include "swarmflow/core/time.hpp"
 #include "swarm_monitor/view/foxglove_session.hpp"
 #include "swarm_monitor/view/view_source.hpp"
+#include "swarmflow/core/time.hpp"
 
 namespace swarm::monitor {
 

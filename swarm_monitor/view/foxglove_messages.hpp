@@ -6,8 +6,8 @@
 #include <string_view>
 #include <vector>
 
-#include "swarmflow/core/time.hpp"
 #include "swarm_monitor/view/view_frame_reader.hpp"
+#include "swarmflow/core/time.hpp"
 
 /// Foxglove's schemas as CDR.
 namespace swarm::monitor::foxglove {

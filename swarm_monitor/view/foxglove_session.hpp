@@ -12,9 +12,9 @@
 #include <variant>
 #include <vector>
 
+#include "swarm_monitor/view/session.hpp"
 #include "swarmflow/core/result.hpp"
 #include "swarmflow/core/time.hpp"
-#include "swarm_monitor/view/session.hpp"
 
 namespace swarm::monitor {
 

@@ -8,11 +8,11 @@
 
 #include <fmt/format.h>
 
-#include "swarm_core/base/clock.hpp"
-#include "swarmflow/mission/mission_file.hpp"
 #include "swarm_core/app/run_directory.hpp"
-#include "swarm_monitor/view/view_frame.hpp"
+#include "swarm_core/base/clock.hpp"
 #include "swarm_monitor/view/scene_json.hpp"
+#include "swarm_monitor/view/view_frame.hpp"
+#include "swarmflow/mission/mission_file.hpp"
 
 namespace swarm::monitor {
 namespace {
@@ -128,13 +128,13 @@ void LiveSource::add_row() {
 }
 
 void LiveSource::view_frame(std::optional<double>, std::optional<RobotId> focus,
-                         std::vector<std::byte>& out) {
+                            std::vector<std::byte>& out) {
   const auto& robots = state_.robots();
   std::optional<Mixture> mixture;
   if (state_.plan()) mixture = state_.plan()->mixture_at(MissionTime(state_.plan_time_s(now_)));
   ViewFrameEncoder maker(out, static_cast<std::uint32_t>(robots.size()),
-                     state_.begin() ? to_seconds(now_ - *state_.begin()) : 0.0,
-                     static_cast<std::uint32_t>(state_.phase()), mixture);
+                         state_.begin() ? to_seconds(now_ - *state_.begin()) : 0.0,
+                         static_cast<std::uint32_t>(state_.phase()), mixture);
   for (const SwarmState::Robot& robot : robots) {
     maker.add({.position_m = state_.position_of(robot, now_),
                .heading_rad = std::atan2(robot.velocity_mps.y(), robot.velocity_mps.x()),

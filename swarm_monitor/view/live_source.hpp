@@ -25,7 +25,7 @@ class LiveSource final : public ViewSource {
   const std::vector<std::string>& events() const override { return events_; }
   const std::vector<std::string>& series() const override { return series_; }
   void view_frame(std::optional<double> time_s, std::optional<RobotId> focus,
-               std::vector<std::byte>& out) override;
+                  std::vector<std::byte>& out) override;
   const std::vector<RawChannel>& raw_channels() const override { return raw_channels_; }
   void on_raw(std::function<void(const RawSample&)> sink) override { raw_sink_ = std::move(sink); }
   std::string metrics() const override;

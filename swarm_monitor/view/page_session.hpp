@@ -10,9 +10,9 @@
 #include <string_view>
 #include <variant>
 
-#include "swarmflow/core/result.hpp"
 #include "swarm_monitor/view/session.hpp"
 #include "swarm_monitor/view/view_source.hpp"
+#include "swarmflow/core/result.hpp"
 
 namespace swarm::monitor {
 

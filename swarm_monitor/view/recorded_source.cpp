@@ -10,8 +10,8 @@
 
 #include "swarm_monitor/audit/clearance.hpp"
 #include "swarm_monitor/audit/tracking/plan_timeline.hpp"
-#include "swarm_monitor/view/view_frame.hpp"
 #include "swarm_monitor/view/scene_json.hpp"
+#include "swarm_monitor/view/view_frame.hpp"
 
 namespace swarm::monitor {
 namespace {
@@ -62,9 +62,9 @@ std::vector<FrameEstimate> estimates_at(const Track& track, double time_s) {
   for (auto it = track.estimates.rbegin(); it != track.estimates.rend(); ++it) {
     if (it->time_s > time_s) continue;
     if (it->time_s < time_s - kEstimate_s) break;
-    const bool newer_known = std::any_of(estimates.begin(), estimates.end(), [&](const auto& known) {
-      return known.neighbour == it->neighbour;
-    });
+    const bool newer_known =
+        std::any_of(estimates.begin(), estimates.end(),
+                    [&](const auto& known) { return known.neighbour == it->neighbour; });
     if (!newer_known) estimates.push_back({it->neighbour, it->position_m});
   }
   return estimates;
@@ -133,7 +133,7 @@ void RecordedSource::make_series() {
 
 /// Frames of any time: the page can move in a recording. The mixture follows the published clock.
 void RecordedSource::view_frame(std::optional<double> time_s, std::optional<RobotId> focus,
-                             std::vector<std::byte>& out) {
+                                std::vector<std::byte>& out) {
   const double t = std::clamp(time_s.value_or(end_s_), 0.0, end_s_);
   std::optional<Mixture> mixture;
   if (const auto moment = PlanTimeline(run_).at(t)) {
@@ -142,9 +142,9 @@ void RecordedSource::view_frame(std::optional<double> time_s, std::optional<Robo
     // Runs recorded before there was a plan clock: plan time is taken to begin with the motion.
     mixture = run_.first_plan()->mixture_at(MissionTime(std::max(0.0, t - moving_from_s_)));
   }
-  ViewFrameEncoder maker(out, static_cast<std::uint32_t>(run_.tracks.size()), t,
-                     t >= end_s_ ? kEndedPhase : static_cast<std::uint32_t>(MissionPhase::kRunning),
-                     mixture);
+  ViewFrameEncoder maker(
+      out, static_cast<std::uint32_t>(run_.tracks.size()), t,
+      t >= end_s_ ? kEndedPhase : static_cast<std::uint32_t>(MissionPhase::kRunning), mixture);
   for (const Track& track : run_.tracks) maker.add(robot_at(track, t));
   const bool known = focus && focus->value() < run_.tracks.size();
   maker.finish(known ? focus : std::nullopt,

@@ -22,7 +22,7 @@ class RecordedSource final : public ViewSource {
   const std::vector<std::string>& events() const override { return events_; }
   const std::vector<std::string>& series() const override { return series_; }
   void view_frame(std::optional<double> time_s, std::optional<RobotId> focus,
-               std::vector<std::byte>& out) override;
+                  std::vector<std::byte>& out) override;
   /// Empty: Foxglove opens a recording's file itself to get its messages.
   const std::vector<RawChannel>& raw_channels() const override { return no_channels_; }
   void on_raw(std::function<void(const RawSample&)>) override {}

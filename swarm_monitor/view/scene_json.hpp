@@ -6,10 +6,10 @@
 #include <string>
 
 #include "swarm_core/mission/channel.hpp"
-#include "swarmflow/mission/mission.hpp"
+#include "swarm_monitor/audit/recorded_run.hpp"
 #include "swarmflow/core/flow_plan.hpp"
 #include "swarmflow/core/world.hpp"
-#include "swarm_monitor/audit/recorded_run.hpp"
+#include "swarmflow/mission/mission.hpp"
 
 /// Text messages of PROTOCOL.md.
 namespace swarm::monitor {

@@ -27,9 +27,9 @@ SwarmState::SwarmState(const Mission& mission)
 void SwarmState::on_state(const ObservedState& state) {
   if (!begin_) begin_ = state.received;
   meter_.receive({.robot_id = state.robot.value(),
-               .sequence_number = state.sequence,
-               .stamp_utc_ns = state.stamp.time_since_epoch().count()},
-              state.received);
+                  .sequence_number = state.sequence,
+                  .stamp_utc_ns = state.stamp.time_since_epoch().count()},
+                 state.received);
   Robot& robot = robots_[state.robot.value()];
   robot.was_received = true;
   robot.received = robot.moved = state.received;

@@ -9,13 +9,13 @@
 #include <vector>
 
 #include "swarm_core/metrics/histogram.hpp"
+#include "swarm_link/stream_meter.hpp"
+#include "swarm_monitor/audit/recorded_run.hpp"
+#include "swarm_monitor/observe/bus_reader.hpp"
+#include "swarm_monitor/recording/bus_tap.hpp"
+#include "swarmflow/core/flow_plan.hpp"
 #include "swarmflow/mission/mission.hpp"
 #include "swarmflow/mission/scene.hpp"
-#include "swarmflow/core/flow_plan.hpp"
-#include "swarm_link/stream_meter.hpp"
-#include "swarm_monitor/observe/bus_reader.hpp"
-#include "swarm_monitor/audit/recorded_run.hpp"
-#include "swarm_monitor/recording/bus_tap.hpp"
 
 namespace swarm::monitor {
 
@@ -34,7 +34,7 @@ class SwarmState final : private Observer {
     bool was_received = false;
     bool arrived = false;
     UtcTime received{};  ///< its last state or status
-    UtcTime moved{};  ///< its last state
+    UtcTime moved{};     ///< its last state
     Vec2 position_m = Vec2::Zero();
     Vec2 velocity_mps = Vec2::Zero();
     RobotMode mode = RobotMode::kWaiting;

@@ -16,7 +16,7 @@ void ViewFrameEncoder::put(T value) {
 
 /// Header: magic, number of robots, time, phase, number of mixture components; 24 bytes.
 ViewFrameEncoder::ViewFrameEncoder(std::vector<std::byte>& out, std::uint32_t robots, double time_s,
-                           std::uint32_t phase, const std::optional<Mixture>& mixture)
+                                   std::uint32_t phase, const std::optional<Mixture>& mixture)
     : out_(out), mixture_(mixture) {
   out_.clear();
   for (const char c : {'S', 'W', 'F', '1'}) put(c);

@@ -35,18 +35,18 @@ std::optional<ViewFrame> read_view_frame(std::span<const std::byte> bytes) {
   bytes = bytes.subspan(kHead);
   for (std::uint64_t i = 0; i < robots; ++i, bytes = bytes.subspan(kRobot)) {
     view_frame.robots.push_back({.x_m = at<float>(bytes, 0),
-                              .y_m = at<float>(bytes, 4),
-                              .heading = at<float>(bytes, 8),
-                              .was_received = (at<std::uint8_t>(bytes, kFlags) & 1U) != 0});
+                                 .y_m = at<float>(bytes, 4),
+                                 .heading = at<float>(bytes, 8),
+                                 .was_received = (at<std::uint8_t>(bytes, kFlags) & 1U) != 0});
   }
   view_frame.mixture.reserve(components);
   for (std::uint64_t i = 0; i < components; ++i, bytes = bytes.subspan(kComponent)) {
     view_frame.mixture.push_back({.x_m = at<float>(bytes, 0),
-                               .y_m = at<float>(bytes, 4),
-                               .xx = at<float>(bytes, 8),
-                               .xy = at<float>(bytes, 12),
-                               .yy = at<float>(bytes, 16),
-                               .weight = at<float>(bytes, 20)});
+                                  .y_m = at<float>(bytes, 4),
+                                  .xx = at<float>(bytes, 8),
+                                  .xy = at<float>(bytes, 12),
+                                  .yy = at<float>(bytes, 16),
+                                  .weight = at<float>(bytes, 20)});
   }
   return view_frame;
 }

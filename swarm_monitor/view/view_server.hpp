@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "swarmflow/core/result.hpp"
-#include "swarmflow/core/time.hpp"
 #include "swarm_monitor/view/page_session.hpp"
 #include "swarm_monitor/view/session.hpp"
 #include "swarm_monitor/view/view_source.hpp"
+#include "swarmflow/core/result.hpp"
+#include "swarmflow/core/time.hpp"
 
 namespace swarm::monitor {
 

@@ -49,7 +49,7 @@ class ViewSource {
 
   /// Replaces `out` by a frame: of a time since the begin [s], or the newest.
   virtual void view_frame(std::optional<double> time_s, std::optional<RobotId> focus,
-                       std::vector<std::byte>& out) = 0;
+                          std::vector<std::byte>& out) = 0;
 
   /// The topics that are passed on to Foxglove unchanged. The list only grows.
   virtual const std::vector<RawChannel>& raw_channels() const = 0;

@@ -69,7 +69,7 @@ class Sender {
 class ChannelSender final : public Sender {
  public:
   ChannelSender(std::unique_ptr<link::Participant> participant,
-               std::unique_ptr<link::StateChannel> channel)
+                std::unique_ptr<link::StateChannel> channel)
       : participant_(std::move(participant)), channel_(std::move(channel)) {}
 
   std::uint64_t tick(std::span<const link::RobotStateMessage> states) override {
@@ -136,7 +136,8 @@ T or_end(Result<T> made) {
   std::_Exit(2);
 }
 
-std::unique_ptr<Sender> make_sender(const Case& c, std::uint32_t self, const link::Meeting& meeting) {
+std::unique_ptr<Sender> make_sender(const Case& c, std::uint32_t self,
+                                    const link::Meeting& meeting) {
   const std::string name = c.name;
   if (name.starts_with("udp")) return std::make_unique<UdpSender>(self, c.processes);
   if (name.starts_with("groups")) {

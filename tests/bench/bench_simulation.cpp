@@ -115,14 +115,16 @@ void receive_all(benchmark::State& state, bool cells) {
   const auto robots = static_cast<std::uint32_t>(state.range(0));
   const double side_m = std::sqrt(kArea_m2 * robots);
   const SteadyTime then;
-  SimulatedNetwork network({{0, 0}, {side_m, side_m}}, cells ? kRange_m : 2.0 * side_m, {}, 1, then);
+  SimulatedNetwork network({{0, 0}, {side_m, side_m}}, cells ? kRange_m : 2.0 * side_m, {}, 1,
+                           then);
   const std::vector<agent::NeighbourReport> sent = reports_of(robots, side_m);
   const SteadyTime now = then + std::chrono::milliseconds(100);
   network.post(then, sent);
   for (auto _ : state) {
     std::uint64_t received = 0;
     for (const agent::NeighbourReport& self : sent) {
-      network.receive(self.robot, self.position_m, kRange_m, then, now, [&](const auto&) { ++received; });
+      network.receive(self.robot, self.position_m, kRange_m, then, now,
+                      [&](const auto&) { ++received; });
     }
     benchmark::DoNotOptimize(received);
   }

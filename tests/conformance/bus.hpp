@@ -10,8 +10,8 @@
 #include <gtest/gtest.h>
 
 #include "swarm_link/adapters/fastdds/fastdds_participant.hpp"
-#include "swarm_link/port.hpp"
 #include "swarm_link/channels/state_channel.hpp"
+#include "swarm_link/port.hpp"
 
 /// The buses under test: each backend behind the same few functions.
 namespace swarm::link::conformance {

@@ -79,7 +79,8 @@ TEST_F(GroupChannelTest, ReceivesAStateAtOnce) {
 
   EXPECT_EQ(speaks->publish({&state, 1}), 1U);
 
-  const auto received = take(*receives);  // no discovery, no waiting: loopback delivers while it sends
+  const auto received =
+      take(*receives);  // no discovery, no waiting: loopback delivers while it sends
   ASSERT_EQ(received.size(), 1U);
   EXPECT_EQ(received[0].states, std::vector{state});
 }

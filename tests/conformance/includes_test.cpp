@@ -28,7 +28,8 @@ bool may_include_vendor(const std::string& file) {
       file == "swarm_link/adapters/cyclone/cyclone_participant.hpp") {
     return false;  // their public faces
   }
-  return file.starts_with("swarm_link/adapters/fastdds/") || file.starts_with("swarm_link/adapters/cyclone/") ||
+  return file.starts_with("swarm_link/adapters/fastdds/") ||
+         file.starts_with("swarm_link/adapters/cyclone/") ||
          file.starts_with("tests/conformance/hostile/") ||
          file.starts_with("tests/conformance/idl/");
 }
@@ -59,9 +60,9 @@ int for_each_include(const std::vector<std::string>& folders, Check check) {
   return files;
 }
 
-const std::vector<std::string> kSources = {
-    "swarm_core",    "swarm_link",     "planner_service", "robot_agent",
-    "swarm_monitor", "swarm_launcher", "swarm_sim",       "experiments", "tests"};
+const std::vector<std::string> kSources = {"swarm_core",  "swarm_link",    "planner_service",
+                                           "robot_agent", "swarm_monitor", "swarm_launcher",
+                                           "swarm_sim",   "experiments",   "tests"};
 
 TEST(Includes, OfVendorsStayInTheirAdapters) {
   static const std::regex kVendor(
@@ -77,12 +78,12 @@ TEST(Includes, OfVendorsStayInTheirAdapters) {
 /// `allowed`.
 void expect_knows_only(const std::string& folder, const std::vector<std::string>& allowed) {
   const int files = for_each_include({folder}, [&](const auto& file, const auto& include) {
-    const bool is_private =
-        std::any_of(kSources.begin(), kSources.end(),
-                    [&](const auto& source) { return include.starts_with(source + "/"); });
-    const bool is_allowed =
-        std::any_of(allowed.begin(), allowed.end(),
-                    [&](const auto& beginning) { return include.starts_with(beginning); });
+    const bool is_private = std::any_of(kSources.begin(), kSources.end(), [&](const auto& source) {
+      return include.starts_with(source + "/");
+    });
+    const bool is_allowed = std::any_of(allowed.begin(), allowed.end(), [&](const auto& beginning) {
+      return include.starts_with(beginning);
+    });
     EXPECT_TRUE(!is_private || is_allowed) << file << " includes " << include;
   });
   EXPECT_GT(files, 0) << folder;
@@ -192,7 +193,8 @@ TEST(Includes, OfThePlannerLeadFromMethodsToFlowToRoadmap) {
 
 TEST(Includes, OfThePlannerDoNotNameAMethod) {
   for_each_include({"planner_service"}, [](const auto& file, const auto& include) {
-    if (file.starts_with("planner_service/methods/") || file == "planner_service/program/main.cpp") return;
+    if (file.starts_with("planner_service/methods/") || file == "planner_service/program/main.cpp")
+      return;
     EXPECT_FALSE(include.starts_with("planner_service/methods/"))
         << file << " includes " << include;
   });
@@ -210,16 +212,16 @@ TEST(Includes, OfPublicHeadersArePublic) {
       {"planning", {"core", "mission", "planning"}},
       {"observe", {"core", "mission", "observe"}}};
   for (const auto& [ring, known] : allowed) {
-    const int files =
-        for_each_include({"include/swarmflow/" + ring}, [&](const auto& file, const auto& include) {
-          EXPECT_FALSE(starts_with_any(include, kSources) || std::regex_search(include, kThirdParty))
-              << file << " includes " << include;
-          if (!include.starts_with("swarmflow/")) return;
-          const bool is_known = std::any_of(known.begin(), known.end(), [&](const auto& other) {
-            return include.starts_with("swarmflow/" + other + "/");
-          });
-          EXPECT_TRUE(is_known) << file << " includes " << include;
-        });
+    const int files = for_each_include({"include/swarmflow/" + ring}, [&](const auto& file,
+                                                                          const auto& include) {
+      EXPECT_FALSE(starts_with_any(include, kSources) || std::regex_search(include, kThirdParty))
+          << file << " includes " << include;
+      if (!include.starts_with("swarmflow/")) return;
+      const bool is_known = std::any_of(known.begin(), known.end(), [&](const auto& other) {
+        return include.starts_with("swarmflow/" + other + "/");
+      });
+      EXPECT_TRUE(is_known) << file << " includes " << include;
+    });
     EXPECT_GT(files, 0) << ring;
   }
 }

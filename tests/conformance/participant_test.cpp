@@ -69,10 +69,10 @@ TEST_P(Participants, MatchExactlyWhereTheWriterOffersWhatTheReaderAsksFor) {
   };
   std::vector<Pair> pairs;
   for (int bits = 0; bits < 64; ++bits) {
-    const auto qos = [](int desired_velocity) {
-      return Qos{.reliability = desired_velocity & 1 ? Reliability::kReliable : Reliability::kBestEffort,
-                 .durability = desired_velocity & 2 ? Durability::kTransientLocal : Durability::kVolatile,
-                 .ownership = desired_velocity & 4 ? Ownership::kExclusive : Ownership::kShared};
+    const auto qos = [](int mask) {
+      return Qos{.reliability = mask & 1 ? Reliability::kReliable : Reliability::kBestEffort,
+                 .durability = mask & 2 ? Durability::kTransientLocal : Durability::kVolatile,
+                 .ownership = mask & 4 ? Ownership::kExclusive : Ownership::kShared};
     };
     const int offered = bits & 7;
     const int asked = bits >> 3;

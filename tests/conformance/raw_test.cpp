@@ -9,8 +9,8 @@
 #include <gtest/gtest.h>
 
 #include "swarm_link/cdr/codec.hpp"
-#include "swarm_link/roles/join.hpp"
 #include "swarm_link/monitor_topics.hpp"
+#include "swarm_link/roles/join.hpp"
 #include "tests/conformance/bus.hpp"
 
 namespace swarm::link::conformance {
@@ -47,7 +47,8 @@ MonitorTopic topic_named(const std::string& recorded) {
 }
 
 /// The messages that a reader has received so far, sorted by the time of publication.
-std::vector<RawMessage> received(Participant& participant, RawReader& reader, std::size_t expected) {
+std::vector<RawMessage> received(Participant& participant, RawReader& reader,
+                                 std::size_t expected) {
   std::vector<RawMessage> messages;
   EXPECT_TRUE(eventually([&] {
     participant.receive();

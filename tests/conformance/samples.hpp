@@ -4,9 +4,9 @@
 
 #include <bit>
 
-#include "swarmflow/core/random.hpp"
 #include "swarm_link/messages.hpp"
 #include "swarm_link/topics.hpp"
+#include "swarmflow/core/random.hpp"
 
 /// Messages with every field set to something of its own.
 namespace swarm::link::conformance {

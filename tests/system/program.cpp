@@ -25,10 +25,10 @@ std::filesystem::path new_folder() {
 
 Program::Program(const std::string& name, const std::vector<std::string>& arguments) {
   folder_ = new_folder();
-  std::vector<std::string> words = {std::string(SWARM_BIN_DIR) + "/" + name};
-  words.insert(words.end(), arguments.begin(), arguments.end());
+  std::vector<std::string> command_line = {std::string(SWARM_BIN_DIR) + "/" + name};
+  command_line.insert(command_line.end(), arguments.begin(), arguments.end());
   std::vector<char*> argv;
-  for (std::string& word : words) argv.push_back(word.data());
+  for (std::string& argument : command_line) argv.push_back(argument.data());
   argv.push_back(nullptr);
   const std::string out = folder_ / "out";
   const std::string err = folder_ / "err";

@@ -47,9 +47,9 @@ TEST(Scene, ChangesByScriptAndTheSwarmFollows) {
 TEST(Scene, ChangesByCommandAndReportsWhatItMadeOfIt) {
   FlownRun run;
   ASSERT_TRUE(run.mission_started());
-  const auto command = [&](const std::vector<std::string>& words) {
+  const auto command = [&](const std::vector<std::string>& command_line) {
     std::vector<std::string> arguments{"command", run.dir().string()};
-    arguments.insert(arguments.end(), words.begin(), words.end());
+    arguments.insert(arguments.end(), command_line.begin(), command_line.end());
     Program program("swarm_launcher", arguments);
     const int code = program.wait();
     return std::pair(code, program.out());
@@ -90,7 +90,8 @@ TEST(Scene, ThatCannotBePlannedKeepsTheLastPlan) {
   ASSERT_EQ(program.wait(), 0) << program.out();
 
   EXPECT_TRUE(eventually([&] { return !reported(run.dir(), "replan-failed").empty(); }));
-  EXPECT_NE(reported(run.dir(), "replan-failed").front().find("goal component 1"), std::string::npos);
+  EXPECT_NE(reported(run.dir(), "replan-failed").front().find("goal component 1"),
+            std::string::npos);
   run.launcher().wait();
   EXPECT_EQ(run.summary()["collisions_obstacle"], 0);
   EXPECT_EQ(run.summary()["collisions_robot"], 0);

@@ -10,10 +10,10 @@
 #include <fmt/format.h>
 
 #include "program.hpp"
-#include "swarm_core/robot_log/robot_log_file.hpp"
 #include "swarm_core/mission/link_faults.hpp"
 #include "swarm_core/mission_file/scene_log.hpp"
 #include "swarm_core/plan/plan_json.hpp"
+#include "swarm_core/robot_log/robot_log_file.hpp"
 #include "swarm_launcher/processes/builtin_catalogue.hpp"
 #include "swarm_sim/simulation.hpp"
 #include "swarmflow/core/plan_clock.hpp"
@@ -133,7 +133,7 @@ Result<std::string> simulated_digest(const DigestCase& flight) {
   for (std::uint32_t i = 0; i < mission->robots.count; ++i) {
     const auto read =
         robot_log::read_records(robot_log::file_of(folder.path(), RobotId(i)),
-                               [&](const robot_log::Record& record) { std::visit(logs, record); });
+                                [&](const robot_log::Record& record) { std::visit(logs, record); });
     if (!read) return tl::unexpected(read.error());
   }
   return fmt::format("steps={} estimates={} notes={} link={} plans={} clock={} scenes={}",

@@ -60,7 +60,8 @@ TEST(TwoHosts, JoinFailsWithoutALauncher) {
   Program no_observer("swarm_launcher", {"join", "127.0.0.1:1", "--robots", "1"});
 
   EXPECT_NE(no_observer.wait(), 0);
-  EXPECT_NE(no_observer.err().find("cannot connect to 127.0.0.1:1"), std::string::npos) << no_observer.err();
+  EXPECT_NE(no_observer.err().find("cannot connect to 127.0.0.1:1"), std::string::npos)
+      << no_observer.err();
 }
 
 }  // namespace

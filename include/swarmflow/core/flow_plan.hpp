@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "swarmflow/core/time.hpp"
 #include "swarmflow/core/mixture.hpp"
+#include "swarmflow/core/time.hpp"
 
 namespace swarm {
 

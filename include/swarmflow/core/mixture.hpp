@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "swarmflow/core/random.hpp"
 #include "swarmflow/core/gaussian.hpp"
+#include "swarmflow/core/random.hpp"
 
 namespace swarm {
 

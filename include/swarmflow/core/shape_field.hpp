@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "swarmflow/core/box.hpp"
 #include "swarmflow/core/linalg.hpp"
 #include "swarmflow/core/result.hpp"
-#include "swarmflow/core/box.hpp"
 #include "swarmflow/core/world.hpp"
 
 namespace swarm {

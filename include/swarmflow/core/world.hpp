@@ -7,11 +7,11 @@
 #include <variant>
 #include <vector>
 
-#include "swarmflow/core/linalg.hpp"
-#include "swarmflow/core/result.hpp"
 #include "swarmflow/core/box.hpp"
 #include "swarmflow/core/box_index.hpp"
+#include "swarmflow/core/linalg.hpp"
 #include "swarmflow/core/polygon.hpp"
+#include "swarmflow/core/result.hpp"
 
 namespace swarm {
 

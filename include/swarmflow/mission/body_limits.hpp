@@ -7,8 +7,8 @@
 
 namespace swarm {
 
-/// λ: longest time that a body takes to reach a commanded velocity [s], from what its driver declares
-/// and the body's limits:
+/// λ: longest time that a body takes to reach a commanded velocity [s], from what its driver
+/// declares and the body's limits:
 ///
 ///   λ = fixed_s + v_max / a_max (if it accelerates) + (π/2) / ω_max (if it turns)
 double declared_lag_s(const BodySpec& body, const LagSpec& lag);

@@ -12,7 +12,8 @@
 namespace swarm {
 
 /// How the time that a body takes to reach a commanded velocity depends on its limits, see
-/// declared_lag_s(). A declaration and not a function, since programs without the driver use it too.
+/// declared_lag_s(). A declaration and not a function, since programs without the driver use it
+/// too.
 struct LagSpec {
   double fixed_s = 0.0;      ///< part that does not depend on the command [s]
   bool accelerates = false;  ///< adds the time from rest to full speed, v_max / a_max

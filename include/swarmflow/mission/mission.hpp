@@ -31,9 +31,10 @@ struct BodySpec {
   double speed_max_mps = 1.5;               ///< its largest speed [m/s]
   double acceleration_max_mps2 = 3.0;  ///< of unicycle (along its heading) and double integrator
   double turn_rate_max_radps = 3.0;    ///< of unicycle [rad/s]
-  double communication_radius_m = 0.0;          ///< its communication radius; 0: link.communication_radius_m
-  double motion_noise_m = 0.0;         ///< σ of w(k) per control step [ROVER, eq. 9]
-  double position_noise_m = 0.0;       ///< σ of its measured position [m]
+  double communication_radius_m =
+      0.0;                        ///< its communication radius; 0: link.communication_radius_m
+  double motion_noise_m = 0.0;    ///< σ of w(k) per control step [ROVER, eq. 9]
+  double position_noise_m = 0.0;  ///< σ of its measured position [m]
   /// Longest time that it takes to reach a commanded velocity [s]. Unset, `auto` in the file: the
   /// reader sets it as the driver declares it, see body_lag_s().
   std::optional<double> lag_s{};
@@ -90,15 +91,15 @@ struct SafetySpec {
 
 /// Key `link`: which states are received, and when they are published.
 struct LinkSpec {
-  double cell_size_m = 100.0;        ///< side of a cell of the topics channel [m]
-  double communication_radius_m = 4.0;        ///< communication radius [m]
-  double join_margin_m = 6.0;        ///< a cell is joined this much before it is needed [m]
-  double leave_margin_m = 9.0;       ///< and left this much after [m]
-  double group_cell_size_m = 5.0;    ///< side of a cell of the groups channel [m]
-  double send_error_m = 0.05;        ///< a state is published when extrapolation is off by this
-  double send_interval_max_s = 0.5;  ///< … or when the last one is this old
-  double send_near_m = 1.0;          ///< … or, on a degraded link, while a surface is this near
-  double status_hz = 1.0;            ///< rate of a robot's statuses
+  double cell_size_m = 100.0;           ///< side of a cell of the topics channel [m]
+  double communication_radius_m = 4.0;  ///< communication radius [m]
+  double join_margin_m = 6.0;           ///< a cell is joined this much before it is needed [m]
+  double leave_margin_m = 9.0;          ///< and left this much after [m]
+  double group_cell_size_m = 5.0;       ///< side of a cell of the groups channel [m]
+  double send_error_m = 0.05;           ///< a state is published when extrapolation is off by this
+  double send_interval_max_s = 0.5;     ///< … or when the last one is this old
+  double send_near_m = 1.0;  ///< … or, on a degraded link, while a surface is this near
+  double status_hz = 1.0;    ///< rate of a robot's statuses
 };
 
 /// Key `timing`: timeouts between processes.

@@ -48,12 +48,12 @@ class OptionTable {
     return *this;
   }
 
-  /// Adds an option of kind kChoice: its key, member, accepted words and documentation.
-  OptionTable& choice(std::string key, std::string T::*member, std::vector<std::string> words,
+  /// Adds an option of kind kChoice: its key, member, accepted choices and documentation.
+  OptionTable& choice(std::string key, std::string T::*member, std::vector<std::string> choices,
                       std::string doc) {
     add(std::move(key), OptionSpec::Kind::kChoice, {}, std::move(doc));
     specs_.back().fallback = T{}.*member;
-    specs_.back().words = std::move(words);
+    specs_.back().choices = std::move(choices);
     readers_.push_back([member](T& out, const OptionValues& values, const std::string& k) {
       if (const std::string* value = values.find(k)) out.*member = *value;
     });

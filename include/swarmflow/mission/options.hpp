@@ -37,15 +37,15 @@ struct OptionSpec {
   enum class Kind : std::uint8_t {
     kNumber,  ///< finite number within `range`
     kCount,   ///< whole number within `range`, which must lie in [0, 2³²)
-    kChoice   ///< one of `words`
+    kChoice   ///< one of `choices`
   };
-  std::string key;                   ///< key in the mission file, with its unit: "gain_hz"
-  Kind kind = Kind::kNumber;         ///< type of its values
-  std::string fallback;              ///< default, as a mission file would write it
-  Range range{};                     ///< accepted values of a number or count
-  std::vector<std::string> words{};  ///< accepted values of a choice
-  std::string doc;                   ///< one line for help and documentation
-  std::string at_most{};             ///< key of the section that its number must not exceed, if any
+  std::string key;                     ///< key in the mission file, with its unit: "gain_hz"
+  Kind kind = Kind::kNumber;           ///< type of its values
+  std::string fallback;                ///< default, as a mission file would write it
+  Range range{};                       ///< accepted values of a number or count
+  std::vector<std::string> choices{};  ///< accepted values of a choice
+  std::string doc;                     ///< one line for help and documentation
+  std::string at_most{};  ///< key of the section that its number must not exceed, if any
   /// Whether all members are the same: only then may two components share a key.
   bool operator==(const OptionSpec&) const = default;
 };

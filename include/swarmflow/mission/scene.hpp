@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "swarmflow/core/ids.hpp"
+#include "swarmflow/core/mixture.hpp"
 #include "swarmflow/core/result.hpp"
 #include "swarmflow/core/time.hpp"
-#include "swarmflow/core/mixture.hpp"
 #include "swarmflow/core/world.hpp"
 
 // What script and operator change while a mission runs.

@@ -7,13 +7,13 @@
 #include <functional>
 #include <string>
 
+#include "swarmflow/core/flow_plan.hpp"
 #include "swarmflow/core/ids.hpp"
 #include "swarmflow/core/result.hpp"
 #include "swarmflow/core/time.hpp"
 #include "swarmflow/mission/mission.hpp"
 #include "swarmflow/mission/phase.hpp"
 #include "swarmflow/mission/scene.hpp"
-#include "swarmflow/core/flow_plan.hpp"
 
 /// Monitors: the interface through which a program observes a run or its recording.
 namespace swarm::monitor {

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "swarmflow/core/time.hpp"
 #include "swarmflow/core/gaussian.hpp"
+#include "swarmflow/core/time.hpp"
 
 namespace swarm::planner {
 

@@ -4,9 +4,9 @@
 
 #include <functional>
 
+#include "swarmflow/core/mixture.hpp"
 #include "swarmflow/core/random.hpp"
 #include "swarmflow/core/time.hpp"
-#include "swarmflow/core/mixture.hpp"
 #include "swarmflow/core/world.hpp"
 
 namespace swarm::planner {

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "swarmflow/core/flow_plan.hpp"
+#include "swarmflow/core/time.hpp"
 #include "swarmflow/planning/density_peak.hpp"
 #include "swarmflow/planning/roadmap.hpp"
-#include "swarmflow/core/time.hpp"
-#include "swarmflow/core/flow_plan.hpp"
 
 namespace swarm::planner {
 

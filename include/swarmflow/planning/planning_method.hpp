@@ -6,13 +6,13 @@
 #include <span>
 #include <vector>
 
+#include "swarmflow/core/cvar.hpp"
+#include "swarmflow/core/mixture.hpp"
+#include "swarmflow/core/result.hpp"
+#include "swarmflow/core/time.hpp"
 #include "swarmflow/planning/measured_swarm.hpp"
 #include "swarmflow/planning/plan_request.hpp"
 #include "swarmflow/planning/plan_result.hpp"
-#include "swarmflow/core/result.hpp"
-#include "swarmflow/core/time.hpp"
-#include "swarmflow/core/mixture.hpp"
-#include "swarmflow/core/cvar.hpp"
 
 namespace swarm::planner {
 

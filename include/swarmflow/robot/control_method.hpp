@@ -6,13 +6,13 @@
 #include <optional>
 #include <span>
 
-#include "swarmflow/robot/planned_density.hpp"
-#include "swarmflow/robot/route.hpp"
-#include "swarmflow/robot/neighbour.hpp"
+#include "swarmflow/core/flow_plan.hpp"
 #include "swarmflow/core/random.hpp"
 #include "swarmflow/core/time.hpp"
-#include "swarmflow/core/flow_plan.hpp"
 #include "swarmflow/core/world.hpp"
+#include "swarmflow/robot/neighbour.hpp"
+#include "swarmflow/robot/planned_density.hpp"
+#include "swarmflow/robot/route.hpp"
 
 namespace swarm::agent {
 

@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "swarmflow/core/linalg.hpp"
 #include "swarmflow/core/flow_plan.hpp"
+#include "swarmflow/core/linalg.hpp"
 
 namespace swarm::agent {
 

@@ -50,7 +50,9 @@ class Polyline {
   /// \pre the path is not empty; not checked
   Segment segment(double s_m, std::size_t near = 0) const;
   /// The position at an arc length [m]; cost and precondition as of segment().
-  Vec2 at(double s_m, std::size_t near = 0) const { return segment(s_m, near).position(s_m).point_m; }
+  Vec2 at(double s_m, std::size_t near = 0) const {
+    return segment(s_m, near).position(s_m).point_m;
+  }
 
  private:
   std::vector<Vec2> vertices_;

@@ -6,10 +6,10 @@
 #include <optional>
 #include <vector>
 
-#include "swarmflow/robot/polyline.hpp"
-#include "swarmflow/robot/schedule.hpp"
 #include "swarmflow/core/flow_plan.hpp"
 #include "swarmflow/core/world.hpp"
+#include "swarmflow/robot/polyline.hpp"
+#include "swarmflow/robot/schedule.hpp"
 
 namespace swarm::agent {
 

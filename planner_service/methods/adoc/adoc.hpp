@@ -7,8 +7,8 @@
 
 #include "planner_service/flow/route.hpp"
 #include "planner_service/roadmap/collocation.hpp"
-#include "swarmflow/core/result.hpp"
 #include "swarmflow/core/mixture.hpp"
+#include "swarmflow/core/result.hpp"
 #include "swarmflow/core/world.hpp"
 
 /// The baseline of both papers in the style of ADOC (adaptive distributed optimal control):

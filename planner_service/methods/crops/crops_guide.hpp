@@ -11,12 +11,12 @@
 #include "planner_service/flow/route.hpp"
 #include "planner_service/roadmap/means.hpp"
 #include "planner_service/roadmap/neighbours.hpp"
-#include "swarmflow/planning/roadmap.hpp"
+#include "swarmflow/core/cvar.hpp"
+#include "swarmflow/core/mixture.hpp"
 #include "swarmflow/core/random.hpp"
 #include "swarmflow/core/result.hpp"
-#include "swarmflow/core/mixture.hpp"
-#include "swarmflow/core/cvar.hpp"
 #include "swarmflow/core/world.hpp"
+#include "swarmflow/planning/roadmap.hpp"
 
 namespace swarm::planner {
 

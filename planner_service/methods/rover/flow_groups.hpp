@@ -6,9 +6,9 @@
 #include <span>
 #include <vector>
 
-#include "swarmflow/planning/measured_swarm.hpp"
 #include "planner_service/methods/rover/risk_graph.hpp"
 #include "swarmflow/core/flow_plan.hpp"
+#include "swarmflow/planning/measured_swarm.hpp"
 
 namespace swarm::planner {
 

@@ -339,8 +339,8 @@ Result<HorizonPlan> solve_ftmpc(const RiskGraph& graph, std::span<const VertexMa
     plan.pivots += solution.pivots;
     if (solution.status != LpStatus::kOptimal) break;
     const bool converged = same_rows && (distance(solution.x, last_x) <= options.eta ||
-                                       last_cost - solution.objective <=
-                                           kConverged * (1.0 + std::abs(solution.objective)));
+                                         last_cost - solution.objective <=
+                                             kConverged * (1.0 + std::abs(solution.objective)));
     if (converged) break;
     last_x = solution.x;
     last_cost = solution.objective;
@@ -351,9 +351,10 @@ Result<HorizonPlan> solve_ftmpc(const RiskGraph& graph, std::span<const VertexMa
     if (!changed) break;
   }
   if (solution.status != LpStatus::kOptimal) {
-    return fail(ErrorCode::kInfeasible,
-                "no paths that join the swarm with the goal's weights; enlarge the transport radius "
-                "or shrink the mean clearance");
+    return fail(
+        ErrorCode::kInfeasible,
+        "no paths that join the swarm with the goal's weights; enlarge the transport radius "
+        "or shrink the mean clearance");
   }
   // The rows are linearisations: the optimum is tested against the constraints themselves.
   Use most;

@@ -67,7 +67,7 @@ HorizonNetwork::HorizonNetwork(const RiskGraph& graph, std::span<const VertexMas
 // Cheapest path to one goal from every row, by backward dynamic programming: O(columns).
 HorizonNetwork::Paths HorizonNetwork::paths_to(std::size_t goal) const {
   Paths paths{std::vector<double>(goal_row_, kUnbounded),
-            std::vector<std::size_t>(goal_row_, columns_.size())};
+              std::vector<std::size_t>(goal_row_, columns_.size())};
   // Columns are ordered by stage: from the last to the first every layer is ready when it is read.
   for (std::size_t c = columns_.size(); c-- > 0;) {
     const Column& column = columns_[c];

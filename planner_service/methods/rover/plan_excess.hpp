@@ -4,10 +4,10 @@
 
 #include <cstddef>
 
-#include "swarmflow/planning/plan_result.hpp"
-#include "swarmflow/core/flow_plan.hpp"
 #include "swarmflow/core/cvar.hpp"
+#include "swarmflow/core/flow_plan.hpp"
 #include "swarmflow/core/world.hpp"
+#include "swarmflow/planning/plan_result.hpp"
 
 namespace swarm::planner {
 

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "planner_service/roadmap/collocation.hpp"
-#include "swarmflow/core/mixture.hpp"
-#include "swarmflow/core/cvar.hpp"
 #include "swarm_core/risk/mixture_cvar.hpp"
+#include "swarmflow/core/cvar.hpp"
+#include "swarmflow/core/mixture.hpp"
 #include "swarmflow/core/world.hpp"
 
 namespace swarm::planner {

@@ -66,7 +66,7 @@ double highest_density_per_m2(const Mixture& mixture, double robots) {
 // Removes flows of negligible mass and scales the others, so that what leaves each vertex is
 // exactly the mass that was there: the solver keeps (11b) to its tolerance alone.
 std::vector<StageFlow> without_negligible(std::span<const StageFlow> flows,
-                                    std::span<const VertexMass> sources) {
+                                          std::span<const VertexMass> sources) {
   std::vector<StageFlow> kept;
   for (const VertexMass& source : sources) {
     const std::size_t first = kept.size();

@@ -7,8 +7,8 @@
 
 #include "planner_service/methods/rover/ftmpc.hpp"
 #include "planner_service/methods/rover/risk_graph.hpp"
-#include "swarmflow/core/mixture.hpp"
 #include "swarmflow/core/flow_plan.hpp"
+#include "swarmflow/core/mixture.hpp"
 
 namespace swarm::planner {
 

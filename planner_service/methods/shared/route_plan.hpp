@@ -6,12 +6,12 @@
 #include <vector>
 
 #include "planner_service/flow/route.hpp"
+#include "swarmflow/core/flow_plan.hpp"
+#include "swarmflow/core/gaussian.hpp"
+#include "swarmflow/core/result.hpp"
+#include "swarmflow/mission/body_limits.hpp"
 #include "swarmflow/planning/plan_request.hpp"
 #include "swarmflow/planning/plan_result.hpp"
-#include "swarmflow/core/result.hpp"
-#include "swarmflow/core/gaussian.hpp"
-#include "swarmflow/mission/body_limits.hpp"
-#include "swarmflow/core/flow_plan.hpp"
 
 /// Functions shared by methods that end in routes or a flow.
 namespace swarm::planner {

@@ -3,12 +3,12 @@
 #pragma once
 
 #include "planner_service/methods/swarmprm/swarmprm_options.hpp"
-#include "swarmflow/planning/plan_request.hpp"
-#include "swarmflow/planning/plan_result.hpp"
-#include "swarmflow/planning/roadmap.hpp"
 #include "planner_service/stage_timer.hpp"
 #include "swarmflow/core/random.hpp"
 #include "swarmflow/core/result.hpp"
+#include "swarmflow/planning/plan_request.hpp"
+#include "swarmflow/planning/plan_result.hpp"
+#include "swarmflow/planning/roadmap.hpp"
 
 namespace swarm::planner {
 

@@ -11,9 +11,9 @@ namespace swarm::planner {
 namespace {
 
 // The key has been validated: any other name is "fit".
-SamplerKind sampler_named(std::string_view word) {
-  if (word == "uniform") return SamplerKind::kUniform;
-  return word == "halton" ? SamplerKind::kHalton : SamplerKind::kFit;
+SamplerKind sampler_named(std::string_view name) {
+  if (name == "uniform") return SamplerKind::kUniform;
+  return name == "halton" ? SamplerKind::kHalton : SamplerKind::kFit;
 }
 
 }  // namespace

@@ -6,10 +6,10 @@
 #include <cstdint>
 
 #include "planner_service/flow/density_cap.hpp"
-#include "swarmflow/planning/planning_registry.hpp"
 #include "planner_service/roadmap/sampler.hpp"
-#include "swarmflow/mission/body_limits.hpp"
 #include "swarmflow/core/cvar.hpp"
+#include "swarmflow/mission/body_limits.hpp"
+#include "swarmflow/planning/planning_registry.hpp"
 
 namespace swarm::planner {
 

@@ -5,16 +5,16 @@
 #include <optional>
 #include <utility>
 
-#include "robot_agent/methods/shared/attraction.hpp"
-#include "swarmflow/robot/control_method.hpp"
-#include "robot_agent/methods/shared/density_attraction.hpp"
+#include "robot_agent/goal_watch.hpp"
 #include "robot_agent/methods/apf/diffusion_escape.hpp"
 #include "robot_agent/methods/apf/neighbour_repulsion.hpp"
 #include "robot_agent/methods/apf/obstacle_repulsion.hpp"
+#include "robot_agent/methods/shared/attraction.hpp"
+#include "robot_agent/methods/shared/density_attraction.hpp"
 #include "robot_agent/route/pace.hpp"
 #include "robot_agent/route/pursuit.hpp"
-#include "robot_agent/goal_watch.hpp"
 #include "swarm_core/base/shared.hpp"
+#include "swarmflow/robot/control_method.hpp"
 
 namespace swarm::agent {
 

@@ -9,7 +9,7 @@ namespace {
 
 // Largest factor by which repeated escapes spread farther.
 constexpr double kWideningMax = 4.0;
-constexpr double kEscapeReached = 1.0;    // radii from the target
+constexpr double kEscapeReached = 1.0;  // radii from the target
 constexpr double kRange = 10.0;     // range of the neighbours' repulsion in radii, as in the paper
 constexpr double kStrength = 0.01;  // of that repulsion, per range²
 
@@ -50,7 +50,8 @@ std::optional<Vec2> DiffusionEscape::update(const ControlView& view, double prog
   }
   // Under way to a target: until it is reached or time is up.
   if (target_m_) {
-    const bool reached = (*target_m_ - view.position_m).norm() < kEscapeReached * options_->radius_m;
+    const bool reached =
+        (*target_m_ - view.position_m).norm() < kEscapeReached * options_->radius_m;
     if (!reached && view.now < until_) return target_m_;
     target_m_.reset();
     best_at_ = view.now;

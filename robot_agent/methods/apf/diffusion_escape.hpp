@@ -5,9 +5,9 @@
 #include <optional>
 #include <utility>
 
-#include "swarmflow/robot/control_method.hpp"
 #include "robot_agent/methods/shared/virtual_diffusion.hpp"
 #include "swarm_core/base/shared.hpp"
+#include "swarmflow/robot/control_method.hpp"
 
 namespace swarm::agent {
 

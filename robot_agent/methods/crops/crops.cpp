@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <array>
 
-#include "robot_agent/methods/crops/fields/superposition.hpp"
 #include "robot_agent/methods/apf/neighbour_repulsion.hpp"
 #include "robot_agent/methods/apf/obstacle_repulsion.hpp"
+#include "robot_agent/methods/crops/fields/superposition.hpp"
 
 namespace swarm::agent {
 namespace {

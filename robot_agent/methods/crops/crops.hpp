@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "swarmflow/robot/control_method.hpp"
 #include "robot_agent/methods/crops/fields/escape_walk.hpp"
 #include "robot_agent/methods/crops/fields/give_way_field.hpp"
 #include "robot_agent/methods/crops/fields/goal_field.hpp"
@@ -12,6 +11,7 @@
 #include "robot_agent/route/goal_slot.hpp"
 #include "robot_agent/route/guide_points.hpp"
 #include "swarm_core/base/shared.hpp"
+#include "swarmflow/robot/control_method.hpp"
 
 namespace swarm::agent {
 

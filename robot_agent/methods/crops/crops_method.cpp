@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "robot_agent/margins.hpp"
 #include "robot_agent/methods/builtin_methods.hpp"
 #include "robot_agent/methods/crops/crops.hpp"
 #include "robot_agent/methods/shared/shared_keys.hpp"
-#include "robot_agent/margins.hpp"
 
 namespace swarm::agent {
 namespace {
@@ -32,8 +32,8 @@ CropsOptions crops_options(const Mission& mission, const BodySpec& body) {
                 .goal_radius_m = goal_radius_m(mission),
                 .sight_m = c.look_ahead_s * cruise_mps},
       .slot = {.radius_m = body.radius_m,
-                .room_gap_m = room_gap_m(mission),
-                .approach_gain_hz = c.approach_gain_hz},
+               .room_gap_m = room_gap_m(mission),
+               .approach_gain_hz = c.approach_gain_hz},
       .obstacle = {.radius_m = body.radius_m},
       .give_way = {.radius_m = body.radius_m, .gap_m = mission.safety.neighbour_margin_m + 0.1},
       .escape = {.window = ticks(c.stuck_after_s), .step = ticks(c.escape_s)},

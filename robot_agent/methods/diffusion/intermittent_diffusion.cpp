@@ -18,7 +18,7 @@ constexpr double kReachShare = 0.05;  // s, longest step, of the distance to the
 constexpr double kArrive = 0.99;      // of the tolerance, to arrive; all of it to stay arrived
 constexpr double kFadeAtRest = 0.1;   // of the range, see CotangentOptions
 constexpr double kRoom = 0.9;         // of the tolerance: here a robot under way to a target stays
-constexpr double kTargetReached = 1.0;      // radii from the target
+constexpr double kTargetReached = 1.0;  // radii from the target
 
 /// Whether a mixture has a component with this mean.
 bool is_goal_of(const Mixture& mixture, const Gaussian& g) {
@@ -110,13 +110,15 @@ double IntermittentDiffusion::reach_m(const ControlView& view) const {
 }
 
 /// F and G at this tick; computed once, as has_arrived() and desired_velocity() both need them.
-const IntermittentDiffusion::NeighboursInRange& IntermittentDiffusion::find_in_range(const ControlView& view) {
+const IntermittentDiffusion::NeighboursInRange& IntermittentDiffusion::find_in_range(
+    const ControlView& view) {
   if (in_range_ && in_range_->at == view.now) return *in_range_;
   const double reach = reach_m(view);
   CotangentOptions repulsion = options_->repulsion;
   if (resting_) repulsion.fade_share = kFadeAtRest;
-  in_range_ = {view.now, reach, cotangent_repulsion(view.position_m, view.neighbours, repulsion, reach),
-           shape_attraction(view.position_m, *shape_)};
+  in_range_ = {view.now, reach,
+               cotangent_repulsion(view.position_m, view.neighbours, repulsion, reach),
+               shape_attraction(view.position_m, *shape_)};
   energy_m2_ = in_range_->repulsion.energy_m2 + in_range_->shape.energy_m2;
   arrived_ = energy_m2_ <= (arrived_ ? 1.0 : kArrive) * options_->tolerance_m2;
   return *in_range_;

@@ -6,7 +6,6 @@
 #include <optional>
 #include <vector>
 
-#include "swarmflow/robot/control_method.hpp"
 #include "robot_agent/methods/apf/cotangent_repulsion.hpp"
 #include "robot_agent/methods/apf/obstacle_repulsion.hpp"
 #include "robot_agent/methods/shared/target_attraction.hpp"
@@ -14,6 +13,7 @@
 #include "swarm_core/base/shared.hpp"
 #include "swarmflow/core/mixture.hpp"
 #include "swarmflow/core/shape_field.hpp"
+#include "swarmflow/robot/control_method.hpp"
 
 namespace swarm::agent {
 

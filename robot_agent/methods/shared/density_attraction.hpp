@@ -4,8 +4,8 @@
 
 #include <span>
 
-#include "swarmflow/robot/planned_density.hpp"
 #include "robot_agent/neighbours/neighbour_table.hpp"
+#include "swarmflow/robot/planned_density.hpp"
 
 namespace swarm::agent {
 

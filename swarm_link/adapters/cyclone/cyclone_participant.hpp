@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "swarmflow/core/result.hpp"
 #include "swarm_link/port.hpp"
+#include "swarmflow/core/result.hpp"
 
 /// The Cyclone DDS adapter. No Cyclone header is needed to use it.
 namespace swarm::link {

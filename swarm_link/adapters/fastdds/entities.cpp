@@ -19,7 +19,8 @@ namespace dds = eprosima::fastdds::dds;
 Result<std::unique_ptr<Entities>> Entities::make(const FastDdsOptions& options) {
   const auto ports = first_ports(options.domain, options.index);
   if (!ports) return tl::unexpected(ports.error());
-  if (!options.static_peers && (options.discovery.host != "127.0.0.1" || options.discovery.port == 0)) {
+  if (!options.static_peers &&
+      (options.discovery.host != "127.0.0.1" || options.discovery.port == 0)) {
     return fail(ErrorCode::kBadInput,
                 fmt::format("discovery server '{}:{}' is not a port on 127.0.0.1",
                             options.discovery.host, options.discovery.port));
@@ -117,7 +118,8 @@ Result<void> Entities::self_check() const {
                             options_.domain, options_.index,
                             sockets_->can_receive_metatraffic() ? "data" : "discovery"));
   }
-  if (options_.static_peers && options_.static_peers->is_relay && !sockets_->can_receive(ports_.metatraffic)) {
+  if (options_.static_peers && options_.static_peers->is_relay &&
+      !sockets_->can_receive(ports_.metatraffic)) {
     return fail(ErrorCode::kEnvironment,
                 fmt::format("relay '{}': UDP port {}:{} (domain {}, index {}) is taken; end "
                             "old processes or use another domain",

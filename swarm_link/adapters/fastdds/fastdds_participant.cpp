@@ -50,7 +50,8 @@ class FastDdsParticipant final : public Participant {
       register_type(topic);
       // A topic with many readers is received by multicast: one datagram reaches all of them.
       std::optional<eprosima::fastrtps::rtps::Locator_t> group;
-      if (topic.qos.many_readers && multicast_) group = group_of(entities_->options().domain, topic.name);
+      if (topic.qos.many_readers && multicast_)
+        group = group_of(entities_->options().domain, topic.name);
       const auto made = entities_->make_reader(topic.name, topic.type, topic.qos, group);
       if (!made) return tl::unexpected(made.error());
       auto membership =

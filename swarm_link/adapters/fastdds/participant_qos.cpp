@@ -10,8 +10,8 @@
 #include <fastrtps/xmlparser/XMLProfileManager.h>
 #include <fmt/format.h>
 
-#include "swarm_link/announcement_port.hpp"
 #include "swarm_link/adapters/fastdds/cached_thread_id.hpp"
+#include "swarm_link/announcement_port.hpp"
 
 namespace swarm::link::fastdds {
 
@@ -56,7 +56,8 @@ dds::DomainParticipantQos common_qos(std::shared_ptr<ReceiveSockets> sockets,
 /// Static peers. Agents announce themselves every 0.8 s, because only so they discover a restarted
 /// planner within the two seconds in which robots tolerate its absence. Relay participants announce
 /// themselves less often: they answer announcements anyway.
-void announce_to(const StaticPeers& static_peers, std::uint32_t domain, rtps::BuiltinAttributes& builtin) {
+void announce_to(const StaticPeers& static_peers, std::uint32_t domain,
+                 rtps::BuiltinAttributes& builtin) {
   auto& discovery = builtin.discovery_config;
   discovery.discoveryProtocol = rtps::DiscoveryProtocol_t::SIMPLE;
   discovery.initial_announcements = {5, {0, 50'000'000}};  // the first is discarded

@@ -6,10 +6,10 @@
 #include <memory>
 #include <string>
 
-#include "swarmflow/core/result.hpp"
 #include "swarm_link/channels/cell.hpp"
 #include "swarm_link/channels/faulty_path.hpp"
 #include "swarm_link/channels/state_channel.hpp"
+#include "swarmflow/core/result.hpp"
 
 namespace swarm::link {
 

@@ -9,9 +9,9 @@
 #include <span>
 #include <vector>
 
+#include "swarm_link/messages.hpp"
 #include "swarmflow/core/result.hpp"
 #include "swarmflow/core/time.hpp"
-#include "swarm_link/messages.hpp"
 
 namespace swarm::link {
 

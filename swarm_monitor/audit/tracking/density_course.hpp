@@ -23,7 +23,7 @@ struct DensityCourse {
   double worst_per_m2 = 0.0;  ///< flown
   double p95_per_m2 = 0.0;    ///< flown, at 95 % of moments no more
   double planned_worst_per_m2 = 0.0;
-  std::optional<double> cap_per_m2{};     ///< of the mission
+  std::optional<double> cap_per_m2{};   ///< of the mission
   std::optional<double> dense_share{};  ///< of moments with flown > cap + 20 %
   std::vector<DensityMoment> moments{};
 

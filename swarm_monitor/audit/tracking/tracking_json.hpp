@@ -6,8 +6,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "swarmflow/mission/mission.hpp"
 #include "swarm_monitor/audit/tracking/tracking.hpp"
+#include "swarmflow/mission/mission.hpp"
 
 namespace swarm::monitor {
 

@@ -18,8 +18,8 @@ struct HostilePeers : testing::Test {
     const auto before = reader->undecodable();
     EXPECT_TRUE(bus->eventually(send));
     std::vector<M> received;
-    EXPECT_TRUE(
-        bus->eventually([&] { return reader->take(received) > 0 || reader->undecodable() > before; }));
+    EXPECT_TRUE(bus->eventually(
+        [&] { return reader->take(received) > 0 || reader->undecodable() > before; }));
     return received;
   }
 

@@ -8,9 +8,9 @@
 #include <variant>
 #include <vector>
 
-#include "swarmflow/mission/mission.hpp"
 #include "swarm_link/gate/refusal.hpp"
 #include "swarm_link/messages.hpp"
+#include "swarmflow/mission/mission.hpp"
 
 /// The receiving sides of the five programs behind one interface: a test publishes to them and
 /// reads their state and what they refused. No bus, no clock.

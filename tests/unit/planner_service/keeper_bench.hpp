@@ -13,8 +13,8 @@
 #include <gtest/gtest.h>
 
 #include "planner_service/keeper/plan_keeper.hpp"
-#include "swarmflow/mission/mission_file.hpp"
 #include "swarm_core/mission/placement.hpp"
+#include "swarmflow/mission/mission_file.hpp"
 #include "tests/unit/planner_service/planners.hpp"
 
 namespace swarm::testing {
@@ -46,11 +46,11 @@ class KeeperBench {
 
   void report(RobotId robot) {
     keeper.receive({.robot = robot,
-                 .position_m = positions_m[robot.value()],
-                 .lag_s = lag_s,
-                 .plan_version = robots_version,
-                 .plan_time_s = robots_plan_time_s},
-                true, now);
+                    .position_m = positions_m[robot.value()],
+                    .lag_s = lag_s,
+                    .plan_version = robots_version,
+                    .plan_time_s = robots_plan_time_s},
+                   true, now);
   }
   void report_all() {
     for (std::uint32_t i = 0; i < positions_m.size(); ++i) report(RobotId(i));

@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "planner_service/flow/plan_density.hpp"
-#include "planner_service/plan_checks.hpp"
 #include "planner_service/keeper/replan.hpp"
+#include "planner_service/plan_checks.hpp"
 #include "swarm_core/risk/mixture_cvar.hpp"
 #include "swarmflow/mission/mission.hpp"
 #include "tests/unit/planner_service/planners.hpp"

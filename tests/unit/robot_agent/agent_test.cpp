@@ -263,7 +263,7 @@ TEST(Agent, EvadesWhileItHolds) {
   sut.agents[0].accept_plan(plan_over_the_block(), sut.positions[0]);
   sut.tick(MissionPhase::kRunning, true);
   sut.agents[0].receive({RobotId(0), 1, sut.now, sut.positions[0] + Vec2(0.5, 0), {-1, 0}},
-                     sut.positions[0]);
+                        sut.positions[0]);
 
   const AgentOutput out =
       sut.agents[0].tick({sut.now, sut.positions[0], MissionPhase::kPaused, true}, sut.rngs[0]);

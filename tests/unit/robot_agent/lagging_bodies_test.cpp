@@ -9,8 +9,8 @@
 
 #include <gtest/gtest.h>
 
-#include "robot_agent/safety/safety_filter.hpp"
 #include "robot_agent/drivers/simulated_robot.hpp"
+#include "robot_agent/safety/safety_filter.hpp"
 #include "swarmflow/mission/body_limits.hpp"
 #include "swarmflow/robot/driver_registry.hpp"
 
@@ -55,7 +55,8 @@ std::pair<double, double> fly(const BodySpec& spec, const World& world, std::vec
             {RobotId(static_cast<std::uint32_t>(j)), positions[j], velocities[j], spec.radius_m});
       }
       const Vec2 desired_velocity = 1.5 * (goals[i] - positions[i]).normalized();
-      bodies[i].command(now, filter.filter(positions[i], desired_velocity, neighbours), milliseconds(200));
+      bodies[i].command(now, filter.filter(positions[i], desired_velocity, neighbours),
+                        milliseconds(200));
     }
     for (std::size_t i = 0; i < n; ++i) {
       const Measurement m = bodies[i].measure(now + milliseconds(100));

@@ -31,7 +31,7 @@ class FakeViewSource final : public ViewSource {
   const std::vector<std::string>& events() const override { return event_texts; }
   const std::vector<std::string>& series() const override { return rows; }
   void view_frame(std::optional<double> time_s, std::optional<RobotId> focus,
-               std::vector<std::byte>& out) override {
+                  std::vector<std::byte>& out) override {
     asked.resize(asked.size() % 64);
     asked.emplace_back(time_s, focus);
     out.clear();

@@ -7,8 +7,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "swarm_link/cdr/codec.hpp"
 #include "swarm_core/robot_log/writer.hpp"
+#include "swarm_link/cdr/codec.hpp"
 #include "swarm_link/to_message.hpp"
 #include "swarm_monitor/recording/replay.hpp"
 #include "swarm_monitor/view/live_source.hpp"
@@ -64,7 +64,8 @@ class FakeTap final : public BusTap {
     const auto* begin = reinterpret_cast<const unsigned char*>(bytes.data());
     samples_.push_back({topic_named(topic), received, {begin, begin + bytes.size()}});
   }
-  void send_state(std::uint32_t robot, std::uint32_t number, Vec2 at, Vec2 velocity, UtcTime received) {
+  void send_state(std::uint32_t robot, std::uint32_t number, Vec2 at, Vec2 velocity,
+                  UtcTime received) {
     link::CellStatesMessage batch;
     batch.states.push_back({.robot_id = robot,
                             .sequence_number = number,
@@ -150,14 +151,14 @@ TEST_F(Live, ShowsAPlanAsSoonAsItIsThere) {
   message.excess_m = 0.25;
   tap_->send_text("swarm/plan", message, at_ms(1000));
   tap_->send_text("swarm/heartbeat",
-            link::HeartbeatMessage{.phase = MissionPhase::kRunning,
-                                   .version = 1,
-                                   .epoch = 1,
-                                   .sequence_number = 1,
-                                   .stamp_utc_ns = 1,
-                                   .mission_time_s = 12.0,
-                                   .plan_time_s = 10.0},
-            at_ms(1000));
+                  link::HeartbeatMessage{.phase = MissionPhase::kRunning,
+                                         .version = 1,
+                                         .epoch = 1,
+                                         .sequence_number = 1,
+                                         .stamp_utc_ns = 1,
+                                         .mission_time_s = 12.0,
+                                         .plan_time_s = 10.0},
+                  at_ms(1000));
   source_.poll(at_ms(1000));
 
   const auto scene = nlohmann::json::parse(source_.scenes().back());
@@ -174,12 +175,12 @@ TEST_F(Live, ShowsAPlanAsSoonAsItIsThere) {
 
 TEST_F(Live, ReportsEventsOnce) {
   tap_->send_text("swarm/event",
-            link::EventMessage{.severity = link::Severity::kWarning,
-                               .source = link::kLauncherSource,
-                               .stamp_utc_ns = 5,
-                               .code = "agent-exit",
-                               .text = "robot 3 ended"},
-            at_ms(10));
+                  link::EventMessage{.severity = link::Severity::kWarning,
+                                     .source = link::kLauncherSource,
+                                     .stamp_utc_ns = 5,
+                                     .code = "agent-exit",
+                                     .text = "robot 3 ended"},
+                  at_ms(10));
   source_.poll(at_ms(10));
   source_.poll(at_ms(20));
 

@@ -59,22 +59,23 @@ void SyntheticRun::write(std::uint32_t robot, const Incarnation& incarnation) co
   auto writer = robot_log::Writer::open(robot_log::file_of(dir_, RobotId(robot)));
   ASSERT_TRUE(writer.has_value()) << writer.error().message;
   writer->append(robot_log::Header{.robot = RobotId(robot),
-                                  .robots = robots_,
-                                  .process_id = incarnation.process_id,
-                                  .radius_m = 0.2,
-                                  .stamp = at_s(incarnation.begin_s)});
-  const std::size_t arrives_at = std::min(incarnation.arrives_at, incarnation.positions_m.size() - 1);
+                                   .robots = robots_,
+                                   .process_id = incarnation.process_id,
+                                   .radius_m = 0.2,
+                                   .stamp = at_s(incarnation.begin_s)});
+  const std::size_t arrives_at =
+      std::min(incarnation.arrives_at, incarnation.positions_m.size() - 1);
   double now_s = incarnation.begin_s;
   for (std::size_t k = 0; k < incarnation.positions_m.size(); ++k) {
     now_s = incarnation.begin_s + 0.1 * static_cast<double>(k);
-    const RobotMode mode = k >= arrives_at        ? RobotMode::kArrived
+    const RobotMode mode = k >= arrives_at               ? RobotMode::kArrived
                            : k >= incarnation.moves_from ? RobotMode::kMoving
-                                                  : RobotMode::kWaiting;
+                                                         : RobotMode::kWaiting;
     writer->append(robot_log::Step{.stamp = at_s(now_s),
-                                  .position_m = incarnation.positions_m[k],
-                                  .lateness_us = incarnation.lateness_us,
-                                  .mode = static_cast<std::uint8_t>(mode),
-                                  .goal = incarnation.goal});
+                                   .position_m = incarnation.positions_m[k],
+                                   .lateness_us = incarnation.lateness_us,
+                                   .mode = static_cast<std::uint8_t>(mode),
+                                   .goal = incarnation.goal});
   }
   robot_log::LinkStats stats{
       .stamp = at_s(now_s), .states_sent = incarnation.states_sent, .refused = incarnation.refused};

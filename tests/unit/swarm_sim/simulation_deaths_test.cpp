@@ -7,10 +7,10 @@
 
 #include <gtest/gtest.h>
 
-#include "swarmflow/mission/mission_file.hpp"
 #include "swarm_core/mission/scene_bodies.hpp"
-#include "swarm_sim/simulation.hpp"
 #include "swarm_monitor/audit/audit.hpp"
+#include "swarm_sim/simulation.hpp"
+#include "swarmflow/mission/mission_file.hpp"
 
 namespace swarm::launcher {
 namespace {
@@ -23,7 +23,8 @@ Mission small_mission() {
 }
 
 struct RecordedCalls final : SimulationObserver {
-  explicit RecordedCalls(const Mission& mission) : scenes{first_scene(mission.world.obstacles().size())} {}
+  explicit RecordedCalls(const Mission& mission)
+      : scenes{first_scene(mission.world.obstacles().size())} {}
   void on_event(UtcTime, const std::string&, bool, const std::string& code,
                 const std::string& text) override {
     events.push_back(code + ": " + text);

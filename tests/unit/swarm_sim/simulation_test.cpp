@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include "swarmflow/mission/mission_file.hpp"
 #include "swarm_monitor/audit/audit.hpp"
+#include "swarmflow/mission/mission_file.hpp"
 
 namespace swarm::launcher {
 namespace {
@@ -160,7 +160,7 @@ TEST(SimulatedNetwork, IsFaultyOnlyInTheInterval) {
         {.robot = RobotId(1), .sequence = s, .as_of = now, .position_m = {6, 5}}};
     network.post(now, sent);
     network.receive(RobotId(0), {5, 5}, 4.0, now, now + std::chrono::seconds(1),
-             [&](const auto& report) { received.push_back(report.sequence); });
+                    [&](const auto& report) { received.push_back(report.sequence); });
   }
   EXPECT_EQ(received, std::vector({9U, 20U}));
 }

@@ -22,11 +22,11 @@ using std::chrono::microseconds;
 constexpr UtcTime kNow{std::chrono::seconds(1'000'000)};
 
 void receive(link::StreamMeter& meter, std::uint32_t robot, std::uint32_t number,
-          Duration age = microseconds(500)) {
+             Duration age = microseconds(500)) {
   meter.receive({.robot_id = robot,
-              .sequence_number = number,
-              .stamp_utc_ns = (kNow - age).time_since_epoch().count()},
-             kNow);
+                 .sequence_number = number,
+                 .stamp_utc_ns = (kNow - age).time_since_epoch().count()},
+                kNow);
 }
 
 TEST(StreamMeter, CountsWhatIsSkipped) {

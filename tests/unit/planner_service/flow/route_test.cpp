@@ -9,8 +9,8 @@
 #include <gtest/gtest.h>
 
 #include "planner_service/flow/build_plan.hpp"
-#include "swarmflow/core/random.hpp"
 #include "swarm_core/gmm/wasserstein.hpp"
+#include "swarmflow/core/random.hpp"
 
 namespace swarm::planner {
 namespace {

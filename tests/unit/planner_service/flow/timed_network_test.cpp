@@ -106,8 +106,8 @@ TEST(TimedNetwork, IsAsCheapAsALinearProgramOverAllNodesAndSteps) {
       const bool has_arrived = move.from == move.to && move.from >= 2 && move.from < 4;
       cost +=
           move.mass * wasserstein2(scene.roadmap.nodes[move.from], scene.roadmap.nodes[move.to]);
-      cost +=
-          has_arrived ? 0.0 : move.mass * kDelayCost_mps * kStep_s * (move.to_step - move.from_step);
+      cost += has_arrived ? 0.0
+                          : move.mass * kDelayCost_mps * kStep_s * (move.to_step - move.from_step);
     }
     EXPECT_NEAR(cost, *best, 1e-9 * *best) << "seed " << seed;
   }

@@ -46,7 +46,8 @@ TEST(NeighbourTable, ReportsThePossibleStopAge) {
   auto sut = table();
   sut.take(report(3, 1, 0, {1, 0}, {1, 0}), Vec2::Zero());
 
-  EXPECT_DOUBLE_EQ(sut.at(at(200), Vec2::Zero()).all[0].possible_stop_age_s, 0.0);  // its command still holds
+  EXPECT_DOUBLE_EQ(sut.at(at(200), Vec2::Zero()).all[0].possible_stop_age_s,
+                   0.0);  // its command still holds
   EXPECT_NEAR(sut.at(at(500), Vec2::Zero()).all[0].possible_stop_age_s, 0.3, 1e-12);
   EXPECT_NEAR(sut.at(at(500), Vec2::Zero()).all[0].position_m.x(), 1.5, 1e-12);
 }

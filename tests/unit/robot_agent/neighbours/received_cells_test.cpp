@@ -18,7 +18,8 @@ TEST(ReceivedCells, VisitAllThatIsNearOnceAndLittleElse) {
   std::vector<ReceivedState> received(kReceived);
   for (std::uint32_t i = 0; i < kReceived; ++i) {
     received[i].report.robot = RobotId(i);
-    received[i].report.position_m = {uniform(rng, -kSide_m, kSide_m), uniform(rng, -kSide_m, kSide_m)};
+    received[i].report.position_m = {uniform(rng, -kSide_m, kSide_m),
+                                     uniform(rng, -kSide_m, kSide_m)};
   }
   ReceivedCells cells(kCell_m);
   cells.sort(received);

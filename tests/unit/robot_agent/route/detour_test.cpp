@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include "swarmflow/robot/polyline.hpp"
 #include "swarmflow/core/random.hpp"
+#include "swarmflow/robot/polyline.hpp"
 
 namespace swarm::agent {
 namespace {

@@ -6,8 +6,8 @@
 
 #include <gtest/gtest.h>
 
-#include "swarmflow/core/random.hpp"
 #include "swarm_core/mission/placement.hpp"
+#include "swarmflow/core/random.hpp"
 
 namespace swarm::agent {
 namespace {

@@ -24,11 +24,14 @@ double worst_violation(const Vec2& u, const std::vector<HalfPlane>& constraints)
 
 /// Squared distance of the best feasible point, found by trying every candidate an optimum can be:
 /// the desired velocity, its projections on lines and the circle, all intersections.
-double brute_force(const Vec2& desired_velocity, const std::vector<HalfPlane>& constraints, double speed_max) {
+double brute_force(const Vec2& desired_velocity, const std::vector<HalfPlane>& constraints,
+                   double speed_max) {
   std::vector<Vec2> candidates = {desired_velocity};
-  if (desired_velocity.norm() > 0) candidates.push_back(desired_velocity * (speed_max / desired_velocity.norm()));
+  if (desired_velocity.norm() > 0)
+    candidates.push_back(desired_velocity * (speed_max / desired_velocity.norm()));
   for (const HalfPlane& a : constraints) {
-    candidates.push_back(desired_velocity + (a.bound_mps - a.normal.dot(desired_velocity)) * a.normal);
+    candidates.push_back(desired_velocity +
+                         (a.bound_mps - a.normal.dot(desired_velocity)) * a.normal);
     const double chord = speed_max * speed_max - a.bound_mps * a.bound_mps;
     if (chord >= 0) {
       const Vec2 along(-a.normal.y(), a.normal.x());

@@ -43,7 +43,7 @@ double least_gap(const std::vector<Body>& bodies) {
 /// A dense group in lock-step that knows its neighbours as they were `delay` steps ago,
 /// extrapolated, with a share of the messages lost. Returns the least gap of the run.
 double fly_dense_region(std::vector<Body>& bodies, const World& world, int steps, std::size_t delay,
-                 double loss, Rng& rng) {
+                        double loss, Rng& rng) {
   std::vector<SafetyFilter> filters(bodies.size(), SafetyFilter(world, options()));
   struct Received {
     std::vector<Vec2> position, velocity;
@@ -51,7 +51,8 @@ double fly_dense_region(std::vector<Body>& bodies, const World& world, int steps
   };
   const std::size_t n = bodies.size();
   std::vector<Received> received(
-      n, Received{std::vector<Vec2>(n), std::vector<Vec2>(n, Vec2::Zero()), std::vector<int>(n, -1)});
+      n,
+      Received{std::vector<Vec2>(n), std::vector<Vec2>(n, Vec2::Zero()), std::vector<int>(n, -1)});
   std::deque<std::vector<Body>> past;
   double least = least_gap(bodies);
   for (int step = 0; step < steps; ++step) {
@@ -81,9 +82,9 @@ double fly_dense_region(std::vector<Body>& bodies, const World& world, int steps
                               .information_age_s = age});
       }
       const Vec2 path = bodies[i].goal - bodies[i].position;
-      const Vec2 desired_velocity = path.norm() > 1e-9
-                            ? Vec2(path * (std::min(1.45, 0.8 * path.norm()) / path.norm()))
-                            : Vec2::Zero();
+      const Vec2 desired_velocity =
+          path.norm() > 1e-9 ? Vec2(path * (std::min(1.45, 0.8 * path.norm()) / path.norm()))
+                             : Vec2::Zero();
       commanded[i] = filters[i].filter(bodies[i].position, desired_velocity, neighbours);
     }
     for (std::size_t i = 0; i < n; ++i) {

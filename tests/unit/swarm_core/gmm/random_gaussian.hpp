@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "swarmflow/core/random.hpp"
 #include "swarmflow/core/gaussian.hpp"
+#include "swarmflow/core/random.hpp"
 
 namespace swarm::testing {
 

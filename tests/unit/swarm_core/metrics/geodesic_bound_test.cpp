@@ -9,9 +9,9 @@
 
 #include <gtest/gtest.h>
 
-#include "swarmflow/core/random.hpp"
 #include "swarm_core/metrics/assignment.hpp"
 #include "swarm_core/metrics/shortest_paths.hpp"
+#include "swarmflow/core/random.hpp"
 #include "swarmflow/mission/mission_file.hpp"
 
 namespace swarm {

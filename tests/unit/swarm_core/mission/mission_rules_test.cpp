@@ -37,10 +37,11 @@ TEST(MissionRules, NameTheKeysTheyTie) {
 }
 
 TEST(MissionRules, CompareKeysOfComponentsWithDefaults) {
-  const Components methods{{.name = "m",
-                            .doc = "",
-                            .options = {{.key = "low_m", .fallback = "1", .doc = "", .at_most = "high_m"},
-                                        {.key = "high_m", .fallback = "3", .doc = ""}}}};
+  const Components methods{
+      {.name = "m",
+       .doc = "",
+       .options = {{.key = "low_m", .fallback = "1", .doc = "", .at_most = "high_m"},
+                   {.key = "high_m", .fallback = "3", .doc = ""}}}};
   OptionValues values;
   EXPECT_TRUE(broken_rules("planner", methods, values).empty());
   values.set("high_m", 0.5);

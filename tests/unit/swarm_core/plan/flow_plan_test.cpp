@@ -7,8 +7,8 @@
 
 #include <gtest/gtest.h>
 
-#include "swarmflow/core/random.hpp"
 #include "swarm_core/gmm/wasserstein.hpp"
+#include "swarmflow/core/random.hpp"
 
 namespace swarm {
 namespace {

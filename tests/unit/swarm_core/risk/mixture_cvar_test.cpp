@@ -11,8 +11,8 @@
 
 #include <gtest/gtest.h>
 
-#include "swarmflow/core/random.hpp"
 #include "swarmflow/core/cvar.hpp"
+#include "swarmflow/core/random.hpp"
 
 namespace swarm {
 namespace {

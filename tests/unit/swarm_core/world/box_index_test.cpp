@@ -9,8 +9,8 @@
 
 #include <gtest/gtest.h>
 
-#include "swarmflow/core/random.hpp"
 #include "swarmflow/core/cvar.hpp"
+#include "swarmflow/core/random.hpp"
 #include "swarmflow/core/world.hpp"
 
 namespace swarm {

@@ -7,8 +7,8 @@
 #include <numbers>
 #include <vector>
 
-#include "swarmflow/core/random.hpp"
 #include "swarmflow/core/polygon.hpp"
+#include "swarmflow/core/random.hpp"
 
 namespace swarm::testing {
 

@@ -229,8 +229,10 @@ TEST(Supervisor, CountsAKilledAgentAsLostAndFliesOn) {
 }
 
 RobotReport report_of(SteadyTime sent_at) {
-  return {
-      .has_plan = true, .receives_neighbours = true, .mode = RobotMode::kMoving, .sent_at = sent_at};
+  return {.has_plan = true,
+          .receives_neighbours = true,
+          .mode = RobotMode::kMoving,
+          .sent_at = sent_at};
 }
 
 using Robots = std::vector<std::vector<RobotId>>;

@@ -6,15 +6,17 @@
 
 #include <gtest/gtest.h>
 
-#include "swarmflow/core/random.hpp"
-#include "swarm_link/inproc/inproc_bus.hpp"
 #include "swarm_link/channels/state_channel.hpp"
+#include "swarm_link/inproc/inproc_bus.hpp"
+#include "swarmflow/core/random.hpp"
 
 namespace swarm::link {
 namespace {
 
-constexpr CellOptions kOptions{
-    .cell_size_m = 10.0, .communication_radius_m = 4.0, .join_margin_m = 1.5, .leave_margin_m = 3.0};
+constexpr CellOptions kOptions{.cell_size_m = 10.0,
+                               .communication_radius_m = 4.0,
+                               .join_margin_m = 1.5,
+                               .leave_margin_m = 3.0};
 
 double distance_to_cell_m(const Vec2& p, const Cell& cell) {
   const Vec2 low(cell.x * kOptions.cell_size_m, cell.y * kOptions.cell_size_m);

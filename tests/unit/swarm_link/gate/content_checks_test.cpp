@@ -6,10 +6,10 @@
 
 #include <gtest/gtest.h>
 
-#include "swarmflow/core/random.hpp"
 #include "swarm_core/metrics/histogram.hpp"
 #include "swarm_link/to_message.hpp"
 #include "swarm_link/wire_bounds.hpp"
+#include "swarmflow/core/random.hpp"
 
 namespace swarm::link {
 namespace {

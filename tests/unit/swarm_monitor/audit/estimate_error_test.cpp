@@ -46,8 +46,8 @@ TEST(EstimateError, RanksAllOfThem) {
 TEST(EstimateError, LeavesOutWhatNoTrackCanAnswer) {
   std::vector<Track> tracks{driver(0), driver(1)};
   tracks[0].estimates = {{.time_s = 0.5, .neighbour = RobotId(1), .position_m = {9, 9}},
-                       {.time_s = 11.5, .neighbour = RobotId(1), .position_m = {9, 9}},
-                       {.time_s = 5.0, .neighbour = RobotId(7), .position_m = {9, 9}}};
+                         {.time_s = 11.5, .neighbour = RobotId(1), .position_m = {9, 9}},
+                         {.time_s = 5.0, .neighbour = RobotId(7), .position_m = {9, 9}}};
 
   EXPECT_FALSE(estimate_error(tracks));
 }

@@ -141,10 +141,10 @@ TEST(RecordedRun, ReadsTheDensityCapOfThePlanningMethod) {
 TEST(RecordedRun, ReadsWhatARobotTakesAsItsReference) {
   TrackMaker maker(RobotId(0), at_s(0.0));
   maker.add(robot_log::Step{.stamp = at_s(0.1),
-                           .plan_version = 3,
-                           .plan_time_s = 12.5F,
-                           .reference_x_m = 4.0F,
-                           .reference_y_m = -2.5F});
+                            .plan_version = 3,
+                            .plan_time_s = 12.5F,
+                            .reference_x_m = 4.0F,
+                            .reference_y_m = -2.5F});
 
   const Track track = maker.finish();
 

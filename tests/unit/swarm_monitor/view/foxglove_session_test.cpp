@@ -8,11 +8,11 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "tests/unit/swarm_monitor/fake_view_source.hpp"
-#include "tests/unit/swarm_monitor/frame_mutator.hpp"
 #include "swarm_monitor/view/foxglove_feed.hpp"
 #include "swarm_monitor/view/foxglove_messages.hpp"
 #include "swarm_monitor/view/foxglove_schemas.hpp"
+#include "tests/unit/swarm_monitor/fake_view_source.hpp"
+#include "tests/unit/swarm_monitor/frame_mutator.hpp"
 
 namespace swarm::monitor {
 namespace {

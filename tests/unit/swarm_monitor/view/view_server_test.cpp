@@ -7,8 +7,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "tests/unit/swarm_monitor/fake_view_source.hpp"
 #include "swarm_monitor/view/origin_check.hpp"
+#include "tests/unit/swarm_monitor/fake_view_source.hpp"
 #include "tests/unit/swarm_monitor/view_client.hpp"
 
 namespace swarm::monitor {

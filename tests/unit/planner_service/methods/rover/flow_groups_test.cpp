@@ -12,10 +12,10 @@
 
 #include "planner_service/groups/robot_groups.hpp"
 #include "planner_service/keeper/replan.hpp"
-#include "swarmflow/core/random.hpp"
 #include "swarm_core/gmm/wasserstein.hpp"
 #include "swarm_core/mission/placement.hpp"
 #include "swarm_core/plan/flow_draw.hpp"
+#include "swarmflow/core/random.hpp"
 #include "tests/unit/planner_service/methods/rover/rover_scene.hpp"
 
 namespace swarm::planner {

@@ -7,9 +7,9 @@
 #include <gtest/gtest.h>
 
 #include "planner_service/groups/robot_groups.hpp"
+#include "planner_service/keeper/plan_keeper.hpp"
 #include "planner_service/methods/rover/flow_groups.hpp"
 #include "planner_service/methods/rover/plan_excess.hpp"
-#include "planner_service/keeper/plan_keeper.hpp"
 #include "swarm_core/gmm/wasserstein.hpp"
 #include "swarm_core/mission/placement.hpp"
 #include "swarm_core/plan/flow_draw.hpp"
@@ -139,7 +139,8 @@ TEST(RoverSteps, KeepRobotsUnderWay) {
     }
   }
   double distance_m = 0.0;
-  for (std::size_t i = 0; i < 60; ++i) distance_m += (bench.robots[i].position_m - begin_m[i]).norm();
+  for (std::size_t i = 0; i < 60; ++i)
+    distance_m += (bench.robots[i].position_m - begin_m[i]).norm();
   // Without a memory of goals each robot changes its own about every third plan; with one less than
   // half as often: which goal is nearer is not decided while several are far.
   EXPECT_LE(changes, 60 * 59 / 6);

@@ -8,8 +8,8 @@
 #include <gtest/gtest.h>
 
 #include "planner_service/methods/rover/measured_state.hpp"
-#include "swarmflow/core/random.hpp"
 #include "swarm_core/gmm/wasserstein.hpp"
+#include "swarmflow/core/random.hpp"
 #include "tests/unit/planner_service/methods/rover/rover_scene.hpp"
 
 namespace swarm::planner {
@@ -232,8 +232,8 @@ TEST(Rover, AStepThatCannotKeepTheLimitReportsByHowMuch) {
   const auto refused = strict.step(at(92, 80));
   ASSERT_FALSE(refused.has_value());
   EXPECT_EQ(refused.error().code, ErrorCode::kInfeasible);
-  for (const char* word : {"CVaR", "obstacle 0", "step 1", "raise epsilon to", "alpha from 0.05"}) {
-    EXPECT_NE(refused.error().message.find(word), std::string::npos) << refused.error().message;
+  for (const char* part : {"CVaR", "obstacle 0", "step 1", "raise epsilon to", "alpha from 0.05"}) {
+    EXPECT_NE(refused.error().message.find(part), std::string::npos) << refused.error().message;
   }
   const auto softened = soft.step(at(92, 80));
   ASSERT_TRUE(softened.has_value());

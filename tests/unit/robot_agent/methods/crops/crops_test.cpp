@@ -149,7 +149,7 @@ TEST(Crops, IsAtRestWhereItGoesNowhereWhateverItsNoise) {
 TEST(Crops, OnlyKeepsOffWhileItIsHeld) {
   Swarm sut(1);
   sut.agents[0].receive({RobotId(1), 1, sut.now, sut.positions[0] + Vec2(0.9, 0), {0, 0}},
-                     sut.positions[0]);
+                        sut.positions[0]);
 
   const AgentOutput out =
       sut.agents[0].tick({sut.now, sut.positions[0], MissionPhase::kPaused, true}, sut.rngs[0]);

@@ -124,8 +124,8 @@ class Swarm {
     received_.clear();
     for (std::size_t j = 0; j < positions_m_.size(); ++j) {
       if (j == i || (positions_m_[j] - positions_m_[i]).norm() >= range_m()) continue;
-      received_.push_back({RobotId(static_cast<std::uint32_t>(j)), positions_m_[j], velocities_mps_[j],
-                        mission_.robots.radius_m});
+      received_.push_back({RobotId(static_cast<std::uint32_t>(j)), positions_m_[j],
+                           velocities_mps_[j], mission_.robots.radius_m});
     }
   }
 
@@ -202,7 +202,7 @@ TEST(IntermittentDiffusion, AgentsWithDeadReckonedNeighboursComeToRest) {
       for (std::uint32_t i = 0; i < robots; ++i) {
         if (i == j) continue;
         agents[i].receive({RobotId(j), step, now, positions_m[j], outputs[j].velocity_mps},
-                       positions_m[i]);
+                          positions_m[i]);
       }
     }
     settled = 0;

@@ -10,10 +10,10 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "swarmflow/core/random.hpp"
 #include "swarm_core/robot_log/idl_text.hpp"
 #include "swarm_core/robot_log/reader.hpp"
 #include "swarm_core/robot_log/writer.hpp"
+#include "swarmflow/core/random.hpp"
 
 namespace swarm::mcap {
 namespace {

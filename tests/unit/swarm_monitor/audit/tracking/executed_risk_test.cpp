@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/unit/swarm_monitor/tracking/planned_run.hpp"
+#include "tests/unit/swarm_monitor/audit/tracking/planned_run.hpp"
 
 namespace swarm::monitor {
 namespace {

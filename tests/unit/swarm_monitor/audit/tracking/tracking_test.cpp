@@ -4,10 +4,10 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/unit/swarm_monitor/well_formed.hpp"
-#include "tests/unit/swarm_monitor/tracking/planned_run.hpp"
-#include "swarm_monitor/report/report.hpp"
 #include "swarm_monitor/audit/tracking/tracking_json.hpp"
+#include "swarm_monitor/report/report.hpp"
+#include "tests/unit/swarm_monitor/audit/tracking/planned_run.hpp"
+#include "tests/unit/swarm_monitor/well_formed.hpp"
 
 namespace swarm::monitor {
 namespace {

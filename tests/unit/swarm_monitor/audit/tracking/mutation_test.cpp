@@ -196,7 +196,8 @@ TEST(Mutation, NoPublishedClock) {
 
 TEST(Mutation, AClockThatStopsBeingPublishedIsNoEvidence) {
   RecordedRun run = PlannedRun{}.make();
-  run.clock.push_back({run.begin + from_seconds(40.0), 2, 0.0, 1.0});  // a plan that was not recorded
+  run.clock.push_back(
+      {run.begin + from_seconds(40.0), 2, 0.0, 1.0});  // a plan that was not recorded
 
   const Audit audit = audit_recorded(std::move(run)).audit;
 

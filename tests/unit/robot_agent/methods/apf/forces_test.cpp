@@ -7,10 +7,10 @@
 
 #include <gtest/gtest.h>
 
-#include "robot_agent/methods/shared/attraction.hpp"
-#include "robot_agent/methods/shared/density_attraction.hpp"
 #include "robot_agent/methods/apf/neighbour_repulsion.hpp"
 #include "robot_agent/methods/apf/obstacle_repulsion.hpp"
+#include "robot_agent/methods/shared/attraction.hpp"
+#include "robot_agent/methods/shared/density_attraction.hpp"
 #include "swarmflow/core/random.hpp"
 
 namespace swarm::agent {
