@@ -108,21 +108,26 @@ Result<ExitCode> summarise_unrecorded(const Simulation& simulation, const Measur
   return measured.outcome == Outcome::kCompleted ? ExitCode::kOk : ExitCode::kCriteriaNotMet;
 }
 
+/// Ids can be checked only once the number of robots is known.
+Result<void> check_kills(const SimulateOptions& options, const Mission& mission) {
+  for (const Kill& kill : options.kills) {
+    for (const RobotId robot : kill.robots) {
+      if (robot.value() < mission.robots.count) continue;
+      return fail(ErrorCode::kBadInput,
+                  fmt::format("--kill: there is no robot {}, the mission has 0 to {}",
+                              robot.value(), mission.robots.count - 1));
+    }
+  }
+  return {};
+}
+
 }  // namespace
 
 Result<ExitCode> simulate_mission(const SimulateOptions& options) {
   auto mission = load_mission(options.mission_file, builtin_catalogue());
   if (!mission) return tl::unexpected(mission.error());
   if (options.robots) mission->robots.count = *options.robots;
-  // Ids can be checked only once the number of robots is known.
-  for (const Kill& kill : options.kills) {
-    for (const RobotId robot : kill.robots) {
-      if (robot.value() < mission->robots.count) continue;
-      return fail(ErrorCode::kBadInput,
-                  fmt::format("--kill: there is no robot {}, the mission has 0 to {}",
-                              robot.value(), mission->robots.count - 1));
-    }
-  }
+  if (auto known = check_kills(options, *mission); !known) return tl::unexpected(known.error());
 
   std::filesystem::path dir;
   std::unique_ptr<SimulationObserver> observer = std::make_unique<SimulationObserver>();

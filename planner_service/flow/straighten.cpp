@@ -257,37 +257,7 @@ class Straightener {
     return true;
   }
 
-  // Puts nodes beside peaks back to their Gaussians in the plan before. False when all are there
-  // already.
-  bool undo_beside(const std::vector<SharedPeak>& peaks, double share_that_counts) {
-    std::vector<std::uint32_t> open;
-    for (const SharedPeak& peak : peaks) {
-      for (const DensityShare& share : peak.shares) {
-        if (share.per_m2 < share_that_counts * peak.peak.per_m2) continue;
-        open.push_back(share.from);
-        open.push_back(share.to);
-      }
-    }
-    bool some = false;
-    while (!open.empty()) {
-      const std::uint32_t i = open.back();
-      open.pop_back();
-      const Gaussian& was = split_.plan.nodes()[i].gaussian;
-      if (same(nodes_[i].gaussian, was)) continue;
-      nodes_[i].gaussian = was;
-      some = true;
-      // Neighbours that can no longer be joined to the old Gaussian are put back as well.
-      for (const std::uint32_t l : legs_of_[i]) {
-        const Gaussian& from = nodes_[leg(l).from].gaussian;
-        const Gaussian& to = nodes_[leg(l).to].gaussian;
-        if (!is_slow_enough(l, from, to, duration_s(leg(l))) ||
-            !checker_.is_free(from, to, kPlanTolerance_m)) {
-          open.push_back(other_end(leg(l), i));
-        }
-      }
-    }
-    return some;
-  }
+  bool undo_beside(const std::vector<SharedPeak>& peaks, double share_that_counts);
 
   // A new node whose neighbours can be joined directly is not needed: it is put on the leg between
   // them and left out of the result. Its neighbours are nodes of the plan, which stay.
@@ -328,24 +298,7 @@ class Straightener {
     if (!take_back(false)) take_back(true);
   }
 
-  // The plan without the nodes that are not needed; the two legs of each become one.
-  FlowPlan result() const {
-    std::vector<std::uint32_t> index(nodes_.size(), 0);
-    std::vector<PlanNode> nodes;
-    for (std::uint32_t i = 0; i < nodes_.size(); ++i) {
-      index[i] = static_cast<std::uint32_t>(nodes.size());
-      if (!is_straight_[i]) nodes.push_back(nodes_[i]);
-    }
-    std::vector<PlanLeg> legs;
-    for (std::uint32_t l = 0; l < split_.plan.legs().size(); ++l) {
-      if (is_straight_[leg(l).from]) continue;
-      const std::uint32_t to = is_straight_[leg(l).to] ? leg(legs_of_[leg(l).to][1]).to : leg(l).to;
-      legs.push_back({index[leg(l).from], index[to], leg(l).mass});
-    }
-    auto made = FlowPlan::make(std::move(nodes), std::move(legs));
-    SWARM_ASSERT(made.has_value());
-    return *std::move(made);
-  }
+  FlowPlan result() const;
 
   const SplitPlan& split_;
   std::vector<PlanNode> nodes_;
@@ -361,6 +314,57 @@ class Straightener {
   EdgeChecker& checker_;
   DensityGrid density_;
 };
+
+/// Puts nodes beside peaks back to their Gaussians in the plan before. False when all are there
+/// already.
+bool Straightener::undo_beside(const std::vector<SharedPeak>& peaks, double share_that_counts) {
+  std::vector<std::uint32_t> open;
+  for (const SharedPeak& peak : peaks) {
+    for (const DensityShare& share : peak.shares) {
+      if (share.per_m2 < share_that_counts * peak.peak.per_m2) continue;
+      open.push_back(share.from);
+      open.push_back(share.to);
+    }
+  }
+  bool some = false;
+  while (!open.empty()) {
+    const std::uint32_t i = open.back();
+    open.pop_back();
+    const Gaussian& was = split_.plan.nodes()[i].gaussian;
+    if (same(nodes_[i].gaussian, was)) continue;
+    nodes_[i].gaussian = was;
+    some = true;
+    // Neighbours that can no longer be joined to the old Gaussian are put back as well.
+    for (const std::uint32_t l : legs_of_[i]) {
+      const Gaussian& from = nodes_[leg(l).from].gaussian;
+      const Gaussian& to = nodes_[leg(l).to].gaussian;
+      if (!is_slow_enough(l, from, to, duration_s(leg(l))) ||
+          !checker_.is_free(from, to, kPlanTolerance_m)) {
+        open.push_back(other_end(leg(l), i));
+      }
+    }
+  }
+  return some;
+}
+
+/// The plan without the nodes that are not needed; the two legs of each become one.
+FlowPlan Straightener::result() const {
+  std::vector<std::uint32_t> index(nodes_.size(), 0);
+  std::vector<PlanNode> nodes;
+  for (std::uint32_t i = 0; i < nodes_.size(); ++i) {
+    index[i] = static_cast<std::uint32_t>(nodes.size());
+    if (!is_straight_[i]) nodes.push_back(nodes_[i]);
+  }
+  std::vector<PlanLeg> legs;
+  for (std::uint32_t l = 0; l < split_.plan.legs().size(); ++l) {
+    if (is_straight_[leg(l).from]) continue;
+    const std::uint32_t to = is_straight_[leg(l).to] ? leg(legs_of_[leg(l).to][1]).to : leg(l).to;
+    legs.push_back({index[leg(l).from], index[to], leg(l).mass});
+  }
+  auto made = FlowPlan::make(std::move(nodes), std::move(legs));
+  SWARM_ASSERT(made.has_value());
+  return *std::move(made);
+}
 
 }  // namespace
 

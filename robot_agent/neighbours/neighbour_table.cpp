@@ -33,6 +33,8 @@ constexpr double in_s(std::int64_t us) { return 1e-6 * static_cast<double>(us); 
 /// The intermediate results of one call of at(). No state is kept from call to call, so that all
 /// robots that a thread ticks in turn share one buffer, which stays in the cache.
 struct NeighbourTable::FilterPass {
+  void make_room(std::size_t count);  // for this number of blocks
+
   /// The extrapolated positions of four robots.
   struct LaneBlock {
     Float4 x_m, y_m;  // dead-reckoned
@@ -185,14 +187,23 @@ NeighbourTable::Outcome NeighbourTable::take(const NeighbourReport& report,
   return Outcome::kTaken;
 }
 
+/// Room for all lanes in each list: numbers are written before it is known whether they count.
+void NeighbourTable::FilterPass::make_room(std::size_t count) {
+  blocks.resize(count);
+  close.resize(kLanes * count);
+  far.resize(kLanes * count);
+  neighbours.resize(kLanes * count);
+}
+
 /// The filter pass: extrapolates all known robots, four at a time, and sorts the numbers of those
 /// within reach into close and far ones. O(known robots). Which robots are within reach is
 /// unpredictable, so the pass has no branch on it. Robots that were extrapolated out of the
 /// communication radius, or are older than forget_after, are marked as gone; one that comes back is
-/// received again.
+/// received again. All quantities are floats relative to here_m_ and then_. On a good link a silent
+/// robot is where dead reckoning has it (see SendPolicy), so that its information is only as old as
+/// messages are late; on a degraded one it is as old as the state.
 void NeighbourTable::filter(std::int32_t now_us, const Vec2& own_position_m, FilterPass& pass) {
-  // All quantities as floats relative to here_m_ and then_. reach_now_m is the reach for
-  // information of age 0; at one control period it is options.reach_m.
+  // reach_now_m: the reach for information of age 0.
   const auto keep_m = static_cast<float>(options_->communication_radius_m);
   const auto growth_mps = static_cast<float>(options_->reach_growth_mps);
   const auto period_s = static_cast<float>(period_s_);
@@ -200,17 +211,9 @@ void NeighbourTable::filter(std::int32_t now_us, const Vec2& own_position_m, Fil
   const auto beyond_close_m = static_cast<float>(options_->reach_m - options_->close_m);
   const auto own_x_m = static_cast<float>(own_position_m.x() - here_m_.x());
   const auto own_y_m = static_cast<float>(own_position_m.y() - here_m_.y());
-  // On a good link a silent robot is where dead reckoning has it (see SendPolicy), so that its
-  // information is only as old as messages are late; on a degraded one it is as old as the state.
   const Int4 late_us =
       all(link_.poor ? kLongest_us : static_cast<std::int32_t>(1e6 * link_.late_s));
-  // Room for all lanes in each list: below, numbers are written before it is known if they count.
-  if (pass.blocks.size() < blocks_.size()) {
-    pass.blocks.resize(2 * blocks_.size());
-    pass.close.resize(kLanes * pass.blocks.size());
-    pass.far.resize(kLanes * pass.blocks.size());
-    pass.neighbours.resize(kLanes * pass.blocks.size());
-  }
+  if (pass.blocks.size() < blocks_.size()) pass.make_room(2 * blocks_.size());
   std::uint32_t* next_close = pass.close.data();
   std::uint32_t* next_far = pass.far.data();
   Int4 gone = all(0);

@@ -8,6 +8,51 @@
 
 namespace swarm::mcap {
 
+/// Number of records of each kind, the period, and the number of messages of each channel.
+void Writer::append_statistics(Put& put) const {
+  std::int64_t first = 0, last = 0;
+  for (const ChunkPlace& chunk : chunks_) {
+    first = &chunk == &chunks_.front() ? chunk.begin_ns : std::min(first, chunk.begin_ns);
+    last = std::max(last, chunk.end_ns);
+  }
+  const std::size_t record = put.begin_record(Op::kStatistics);
+  put.number(messages_);
+  put.number(static_cast<std::uint16_t>(schemas_.size()));
+  put.number(static_cast<std::uint32_t>(channels_.size()));
+  put.number(static_cast<std::uint32_t>(attachments_.size()));
+  put.number(static_cast<std::uint32_t>(metadata_.size()));
+  put.number(static_cast<std::uint32_t>(chunks_.size()));
+  put.number(first);
+  put.number(last);
+  const std::size_t map = put.begin_length<std::uint32_t>();
+  for (std::size_t i = 0; i < counts_.size(); ++i) {
+    put.number(static_cast<std::uint16_t>(i));
+    put.number(counts_[i]);
+  }
+  put.end_length<std::uint32_t>(map);
+  put.end_record(record);
+}
+
+/// Position and period of a chunk, and where in the file the index of each of its channels is.
+void Writer::append_chunk_index(Put& put, const ChunkPlace& chunk) const {
+  const std::size_t record = put.begin_record(Op::kChunkIndex);
+  put.number(chunk.begin_ns);
+  put.number(chunk.end_ns);
+  put.number(chunk.offset);
+  put.number(chunk.length);
+  const std::size_t map = put.begin_length<std::uint32_t>();
+  for (const auto& [channel, offset] : chunk.index_offsets) {
+    put.number(channel);
+    put.number(offset);
+  }
+  put.end_length<std::uint32_t>(map);
+  put.number(chunk.index_length);
+  put.text(compression_ == Compression::kZstd ? "zstd" : "");
+  put.number(chunk.compressed);
+  put.number(chunk.uncompressed);
+  put.end_record(record);
+}
+
 // The groups of the summary, then the offsets of these groups, the footer and the magic number.
 // `begin` is the position of the summary in the file.
 void Writer::append_summary(Bytes& out, std::uint64_t begin) const {
@@ -25,49 +70,10 @@ void Writer::append_summary(Bytes& out, std::uint64_t begin) const {
   };
   group(Op::kSchema, schemas_, [&](const Schema& schema) { append_schema(out, schema); });
   group(Op::kChannel, channels_, [&](const Channel& channel) { append_channel(out, channel); });
-  // There is one record of statistics; the list of one element makes it a group like the others.
-  group(Op::kStatistics, std::array{0}, [&](int) {
-    std::int64_t first = 0, last = 0;
-    for (const ChunkPlace& chunk : chunks_) {
-      first = &chunk == &chunks_.front() ? chunk.begin_ns : std::min(first, chunk.begin_ns);
-      last = std::max(last, chunk.end_ns);
-    }
-    const std::size_t record = put.begin_record(Op::kStatistics);
-    put.number(messages_);
-    put.number(static_cast<std::uint16_t>(schemas_.size()));
-    put.number(static_cast<std::uint32_t>(channels_.size()));
-    put.number(static_cast<std::uint32_t>(attachments_.size()));
-    put.number(static_cast<std::uint32_t>(metadata_.size()));
-    put.number(static_cast<std::uint32_t>(chunks_.size()));
-    put.number(first);
-    put.number(last);
-    const std::size_t map = put.begin_length<std::uint32_t>();
-    for (std::size_t i = 0; i < counts_.size(); ++i) {
-      put.number(static_cast<std::uint16_t>(i));
-      put.number(counts_[i]);
-    }
-    put.end_length<std::uint32_t>(map);
-    put.end_record(record);
-  });
+  // One record, as a group of one.
+  group(Op::kStatistics, std::array{0}, [&](int) { append_statistics(put); });
   // Lets a reader find the chunks of a period, and in them the messages of a channel.
-  group(Op::kChunkIndex, chunks_, [&](const ChunkPlace& chunk) {
-    const std::size_t record = put.begin_record(Op::kChunkIndex);
-    put.number(chunk.begin_ns);
-    put.number(chunk.end_ns);
-    put.number(chunk.offset);
-    put.number(chunk.length);
-    const std::size_t map = put.begin_length<std::uint32_t>();
-    for (const auto& [channel, offset] : chunk.index_offsets) {
-      put.number(channel);
-      put.number(offset);
-    }
-    put.end_length<std::uint32_t>(map);
-    put.number(chunk.index_length);
-    put.text(compression_ == Compression::kZstd ? "zstd" : "");
-    put.number(chunk.compressed);
-    put.number(chunk.uncompressed);
-    put.end_record(record);
-  });
+  group(Op::kChunkIndex, chunks_, [&](const ChunkPlace& chunk) { append_chunk_index(put, chunk); });
   group(Op::kAttachmentIndex, attachments_, [&](const auto& attachment) {
     const auto& [what, place] = attachment;
     const std::size_t record = put.begin_record(Op::kAttachmentIndex);
@@ -88,7 +94,6 @@ void Writer::append_summary(Bytes& out, std::uint64_t begin) const {
     put.text(name);
     put.end_record(record);
   });
-  // Lets a reader load one group, for example the attachments, without the rest of the summary.
   const std::uint64_t offsets_begin = begin + out.size();
   for (const Group& g : groups) {
     const std::size_t record = put.begin_record(Op::kSummaryOffset);

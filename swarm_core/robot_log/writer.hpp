@@ -66,6 +66,8 @@ class Writer {
   Writer() = default;
   bool put(const Bytes& bytes);
   void append_summary(Bytes& out, std::uint64_t begin) const;
+  void append_statistics(Put& put) const;
+  void append_chunk_index(Put& put, const ChunkPlace& chunk) const;
 
   int fd_ = -1;
   std::filesystem::path file_{};

@@ -11,6 +11,33 @@
 
 namespace swarm::launcher::cli {
 
+namespace {
+
+/// Options that choose the DDS of each program.
+void add_dds(CLI::App& run, const std::shared_ptr<RunOptions>& o) {
+  // The transformer maps the names to the enumeration while parsing.
+  const std::map<std::string, AgentDds> agent_dds = {{"fastdds", AgentDds::kFastDds},
+                                                     {"cyclonedds", AgentDds::kCycloneDds},
+                                                     {"half", AgentDds::kHalf}};
+  run.add_option("--agent-dds", o->how.agent_dds, "DDS of the agents (groups channel)")
+      ->transform(CLI::CheckedTransformer(agent_dds));
+  run.add_option("--by-gateway", o->how.by_gateway,
+                 "The first N agent processes use Cyclone DDS and publish their states on\n"
+                 "topics; a gateway connects them with the groups of the others");
+  run.add_option_function<std::string>(
+         "--launcher-dds",
+         [o](const std::string& name) { o->how.cyclone_launcher = name == "cyclonedds"; },
+         "DDS of the launcher (groups channel)")
+      ->check(CLI::IsMember({"fastdds", "cyclonedds"}));
+  run.add_option_function<std::string>(
+         "--planner-dds",
+         [o](const std::string& name) { o->how.cyclone_planner = name == "cyclonedds"; },
+         "DDS of the planner (groups channel)")
+      ->check(CLI::IsMember({"fastdds", "cyclonedds"}));
+}
+
+}  // namespace
+
 // The options are shared with the callback, which runs after parsing.
 Command add_run(CLI::App& program) {
   const auto o = std::make_shared<RunOptions>();
@@ -42,25 +69,7 @@ Command add_run(CLI::App& program) {
       ->check(CLI::ExistingFile);
   add_domain(*run, o->how.domain);
   add_channel(*run, o->how.channel);
-  // The transformer maps the names to the enumeration while parsing.
-  const std::map<std::string, AgentDds> agent_dds = {{"fastdds", AgentDds::kFastDds},
-                                                     {"cyclonedds", AgentDds::kCycloneDds},
-                                                     {"half", AgentDds::kHalf}};
-  run->add_option("--agent-dds", o->how.agent_dds, "DDS of the agents (groups channel)")
-      ->transform(CLI::CheckedTransformer(agent_dds));
-  run->add_option("--by-gateway", o->how.by_gateway,
-                  "The first N agent processes use Cyclone DDS and publish their states on\n"
-                  "topics; a gateway connects them with the groups of the others");
-  run->add_option_function<std::string>(
-         "--launcher-dds",
-         [o](const std::string& name) { o->how.cyclone_launcher = name == "cyclonedds"; },
-         "DDS of the launcher (groups channel)")
-      ->check(CLI::IsMember({"fastdds", "cyclonedds"}));
-  run->add_option_function<std::string>(
-         "--planner-dds",
-         [o](const std::string& name) { o->how.cyclone_planner = name == "cyclonedds"; },
-         "DDS of the planner (groups channel)")
-      ->check(CLI::IsMember({"fastdds", "cyclonedds"}));
+  add_dds(*run, o);
   run->add_option("--fault", o->how.fault,
                   "Simulate a degraded network for what planner and robots receive, such as\n"
                   "loss=0.2,delay-ms=150,jitter-ms=50,from=10,to=60")

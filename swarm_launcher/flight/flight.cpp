@@ -127,6 +127,43 @@ Flight::~Flight() {
   for (const auto& [pid, process] : children_) ::kill(pid, SIGKILL);
 }
 
+/// The endpoints of the launcher on the bus.
+Result<void> Flight::open_endpoints() {
+  auto status = participant_->make_reader(link::status_topic());
+  auto event = participant_->make_reader(link::event_topic());
+  auto command = participant_->make_writer(link::command_topic());
+  auto scene = participant_->make_writer(link::scene_topic());
+  if (!status) return tl::unexpected(status.error());
+  if (!event) return tl::unexpected(event.error());
+  if (!command) return tl::unexpected(command.error());
+  if (!scene) return tl::unexpected(scene.error());
+  inbox_.emplace(std::move(*status), std::move(*event), link::wire_limits(options_.mission));
+  command_writer_ = std::move(*command);
+  auto status_relay = participant_->make_writer(link::relayed_status_topic());
+  auto event_relay = participant_->make_writer(link::relayed_event_topic());
+  if (!status_relay) return tl::unexpected(status_relay.error());
+  if (!event_relay) return tl::unexpected(event_relay.error());
+  status_relay_ = std::move(*status_relay);
+  event_relay_ = std::move(*event_relay);
+  scene_.emplace(options_.mission.world, dir_, std::move(*scene));
+  return {};
+}
+
+/// Reports which channel was chosen and why, and limits of this host that the run may exceed.
+void Flight::report_channel(const shell::RunInfo& run) {
+  const std::string text =
+      fmt::format("robot states go by {}: {}", to_string(channel_.channel), channel_.reason);
+  note(link::Severity::kInfo, "channel", text);
+  std::fprintf(stderr, "%s\n", text.c_str());
+  raise_open_files();
+  for (const std::string& shortcoming : shortcomings(
+           read_host_limits(),
+           {.agents = run.agents, .robots_per_process = options_.per_process, .relays = relays_})) {
+    note(link::Severity::kWarning, "host-limits", shortcoming);
+    std::fprintf(stderr, "%s\n", shortcoming.c_str());
+  }
+}
+
 // The run information is written before any process starts, because processes read from it how to
 // join. The order of the rest: endpoints, control socket, supervisor, monitors, gateway.
 Result<void> Flight::join() {
@@ -154,23 +191,7 @@ Result<void> Flight::join() {
   auto participant = link::join_as_launcher(link::meeting_of(run));
   if (!participant) return tl::unexpected(participant.error());
   participant_ = std::move(*participant);
-  auto status = participant_->make_reader(link::status_topic());
-  auto event = participant_->make_reader(link::event_topic());
-  auto command = participant_->make_writer(link::command_topic());
-  auto scene = participant_->make_writer(link::scene_topic());
-  if (!status) return tl::unexpected(status.error());
-  if (!event) return tl::unexpected(event.error());
-  if (!command) return tl::unexpected(command.error());
-  if (!scene) return tl::unexpected(scene.error());
-  inbox_.emplace(std::move(*status), std::move(*event), link::wire_limits(options_.mission));
-  command_writer_ = std::move(*command);
-  auto status_relay = participant_->make_writer(link::relayed_status_topic());
-  auto event_relay = participant_->make_writer(link::relayed_event_topic());
-  if (!status_relay) return tl::unexpected(status_relay.error());
-  if (!event_relay) return tl::unexpected(event_relay.error());
-  status_relay_ = std::move(*status_relay);
-  event_relay_ = std::move(*event_relay);
-  scene_.emplace(options_.mission.world, dir_, std::move(*scene));
+  if (auto opened = open_endpoints(); !opened) return opened;
   auto control = shell::ControlServer::listen(dir_);
   if (!control) return tl::unexpected(control.error());
   control_.emplace(std::move(*control));
@@ -183,17 +204,7 @@ Result<void> Flight::join() {
                         .launcher = options_.mission.launcher,
                         .script = options_.mission.script},
       std::chrono::steady_clock::now());
-  const std::string text =
-      fmt::format("robot states go by {}: {}", to_string(channel_.channel), channel_.reason);
-  note(link::Severity::kInfo, "channel", text);
-  std::fprintf(stderr, "%s\n", text.c_str());
-  raise_open_files();
-  for (const std::string& shortcoming : shortcomings(
-           read_host_limits(),
-           {.agents = run.agents, .robots_per_process = options_.per_process, .relays = relays_})) {
-    note(link::Severity::kWarning, "host-limits", shortcoming);
-    std::fprintf(stderr, "%s\n", shortcoming.c_str());
-  }
+  report_channel(run);
   reported_.resize(options_.mission.robots.count);
   view_ = SwarmView(options_.mission.robots.count, options_.mission.link.communication_radius_m);
   monitors_.emplace(options_.how.monitors, dir_);

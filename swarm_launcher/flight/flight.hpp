@@ -88,6 +88,8 @@ class Flight {
 
   /// Joins the bus and creates everything that needs the bus or the run directory.
   Result<void> join();
+  Result<void> open_endpoints();
+  void report_channel(const shell::RunInfo& run);
   /// Executes one decision of the Supervisor.
   Result<void> act(const Action& action);
   Result<void> start(ProcessIndex process);

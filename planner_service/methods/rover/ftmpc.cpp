@@ -296,6 +296,23 @@ double distance(std::span<const double> a, std::span<const double> b) {
   return std::sqrt(squared);
 }
 
+/// Reads the flow of the solution back into the plan and remembers its arcs. Costs were scaled by
+/// the collocation spacing (horizon_network.hpp).
+void read_flow(const HorizonNetwork& network, std::span<const double> x, double unit_m,
+               HorizonPlan& plan, HorizonMemory& memory) {
+  const std::size_t horizon = memory.arcs().size();
+  plan.stages.resize(horizon);
+  for (auto& arcs : memory.arcs()) arcs.clear();
+  for (std::size_t c = 0; c < network.columns().size(); ++c) {
+    const HorizonNetwork::Column& column = network.columns()[c];
+    plan.cost_m2 += column.cost * x[c] * unit_m * unit_m;
+    if (column.stage < horizon && x[c] > 0.0) {
+      plan.stages[column.stage].push_back({column.from, column.to, x[c]});
+      memory.arcs()[column.stage].emplace_back(column.from, column.to);
+    }
+  }
+}
+
 }  // namespace
 
 HorizonMemory::HorizonMemory(std::size_t horizon, std::size_t parts, std::size_t obstacles)
@@ -371,18 +388,7 @@ Result<HorizonPlan> solve_ftmpc(const RiskGraph& graph, std::span<const VertexMa
   plan.columns = static_cast<int>(network.columns().size());
   plan.optimum = solution.objective;
   if (options.keep_program) plan.program = program.whole(constraints.rows());
-  // Read the flow back; costs were scaled by the collocation spacing (horizon_network.hpp).
-  const double unit_m = graph.options().collocation.spacing_m;
-  plan.stages.resize(options.costs.horizon);
-  for (auto& arcs : memory.arcs()) arcs.clear();
-  for (std::size_t c = 0; c < network.columns().size(); ++c) {
-    const HorizonNetwork::Column& column = network.columns()[c];
-    plan.cost_m2 += column.cost * solution.x[c] * unit_m * unit_m;
-    if (column.stage < options.costs.horizon && solution.x[c] > 0.0) {
-      plan.stages[column.stage].push_back({column.from, column.to, solution.x[c]});
-      memory.arcs()[column.stage].emplace_back(column.from, column.to);
-    }
-  }
+  read_flow(network, solution.x, graph.options().collocation.spacing_m, plan, memory);
   return plan;
 }
 

@@ -56,6 +56,26 @@ class Judge {
   std::vector<std::string> reasons_;
 };
 
+/// Criteria of single robots against their own references.
+void judge_robots(const CriteriaSpec& c, const Tracking& t, const std::string& no_clock,
+                  const std::string& no_references, Judge& judge) {
+  judge.at_most("lag_p90_max_s", c.lag_p90_max_s, member(t.own.lag, &LagQuantiles::amount_p90_s),
+                "amount of the robots' lag at 90 %", " s", no_references);
+  judge.at_most("lag_p99_max_s", c.lag_p99_max_s, member(t.own.lag, &LagQuantiles::amount_p99_s),
+                "amount of the robots' lag at 99 %", " s", no_references);
+  judge.at_most("clock_error_max_s", c.clock_error_max_s, t.own.clock_error_s,
+                "difference of a robot's plan time to the published one", " s", no_clock);
+  judge.at_most("reference_p50_max_m", c.reference_p50_max_m,
+                member(t.own.error, &ReferenceError::p50_m),
+                "median distance of robots to their references", " m", no_references);
+  judge.at_most("reference_p95_max_m", c.reference_p95_max_m,
+                member(t.own.error, &ReferenceError::p95_m),
+                "distance of robots to their references at 95 %", " m", no_references);
+  judge.at_most("reference_rms_max_m", c.reference_rms_max_m,
+                member(t.own.error, &ReferenceError::rms_m),
+                "rms distance of robots to their references", " m", no_references);
+}
+
 }  // namespace
 
 /// One call per key of the mission's criteria. Each names the reason why its quantity could not be
@@ -94,21 +114,7 @@ std::vector<std::string> failed_criteria(const CriteriaSpec& criteria, const Tra
                 t.centre_lag_s ? Value(std::abs(*t.centre_lag_s)) : std::nullopt,
                 early ? "earliness of the swarm's centre" : "lag of the swarm's centre", " s",
                 no_clock);
-  judge.at_most("lag_p90_max_s", c.lag_p90_max_s, member(t.own.lag, &LagQuantiles::amount_p90_s),
-                "amount of the robots' lag at 90 %", " s", no_references);
-  judge.at_most("lag_p99_max_s", c.lag_p99_max_s, member(t.own.lag, &LagQuantiles::amount_p99_s),
-                "amount of the robots' lag at 99 %", " s", no_references);
-  judge.at_most("clock_error_max_s", c.clock_error_max_s, t.own.clock_error_s,
-                "difference of a robot's plan time to the published one", " s", no_clock);
-  judge.at_most("reference_p50_max_m", c.reference_p50_max_m,
-                member(t.own.error, &ReferenceError::p50_m),
-                "median distance of robots to their references", " m", no_references);
-  judge.at_most("reference_p95_max_m", c.reference_p95_max_m,
-                member(t.own.error, &ReferenceError::p95_m),
-                "distance of robots to their references at 95 %", " m", no_references);
-  judge.at_most("reference_rms_max_m", c.reference_rms_max_m,
-                member(t.own.error, &ReferenceError::rms_m),
-                "rms distance of robots to their references", " m", no_references);
+  judge_robots(c, t, no_clock, no_references, judge);
   judge.at_most("density_over_cap_p95_max", c.density_over_cap_p95_max,
                 over_cap(&DensityCourse::p95_per_m2), "flown peak density over the cap at 95 %", "",
                 no_cap);
