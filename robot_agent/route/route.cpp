@@ -150,6 +150,11 @@ Route route_from_source(const FlowPlan& plan, std::uint32_t source, double share
 Route route_from_here(const FlowPlan& plan, double share, const Vec2& position_m,
                       const World& world, const RouteOptions& options,
                       std::optional<double> plan_time_s) {
+  // Each node is then both source and sink.
+  if (plan.legs().empty()) {
+    const auto source = static_cast<std::uint32_t>(draw_source(plan, share));
+    return route_from_source(plan, source, share, position_m, world, options);
+  }
   constexpr int kPointsPerLeg = 16;
   double best = std::numeric_limits<double>::infinity();
   bool best_visible = false;

@@ -77,6 +77,16 @@ TEST(Route, KeepsItsClearanceAtObstacles) {
   }
 }
 
+TEST(Route, LeadsToTheOnlyNodeOfAPlanWithoutLegs) {
+  const auto plan = FlowPlan::make({node({10, 0}, 2, 0, 1.0)}, {});
+  ASSERT_TRUE(plan.has_value());
+
+  const Route route = route_from_here(*plan, 0.5, {0, 0}, empty_world(), {});
+
+  EXPECT_EQ(route.sink, 0U);
+  EXPECT_TRUE(route.goal.contains_99(route.path.vertices_m().back()));
+}
+
 TEST(Route, JoinsADifferentPlanWhereItPassesNearest) {
   const FlowPlan plan = branching_plan();
 
