@@ -70,11 +70,12 @@ int main(int argc, char** argv) {
   registry.drivers.add(
       {.spec = {.name = "lagging_base",
                 .doc = "A base with a first-order lag",
-                .options = kOptions.specs()},
+                .options = kOptions.specs(),
+                // After three time constants 5 % of a change are left. A mission with another
+                // time constant sets robots.lag_s beside it.
+                .lag = {.fixed_s = 3.0 * BaseOptions().time_constant_s}},
        .make = [](const DriverContext& context) -> Result<std::unique_ptr<Driver>> {
          return std::make_unique<LaggingBase>(context, options_of(context.body()));
-       },
-       // After three time constants 5 % of a change are left.
-       .lag_s = [](const BodySpec& body) { return 3.0 * options_of(body).time_constant_s; }});
+       }});
   return run_robot(argc, argv, registry);
 }
