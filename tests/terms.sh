@@ -2,12 +2,12 @@
 # SPDX-FileCopyrightText: The Swarmflow authors
 # SPDX-License-Identifier: Apache-2.0
 # Fails where code, comments, messages, test names or documents use words that are not the field's.
-#   words.sh [--counts] [ALLOWED]     run in the repository; ALLOWED: a regex a line, tab, reason (default: beside this file)
+#   terms.sh [--counts] [ALLOWED]     run in the repository; ALLOWED: a regex a line, tab, reason (default: beside this file)
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
 counts=
 if [ "${1:-}" = --counts ]; then counts=1; shift; fi
-COUNTS=$counts ALLOWED=${1:-$here/words_allowed.txt} exec python3 - <<'PY'
+COUNTS=$counts ALLOWED=${1:-$here/terms_allowed.txt} exec python3 - <<'PY'
 import collections, os, re, subprocess, sys
 
 TERMS = '''say says said saying tell tells told telling hear hears heard hearing deaf believe believes believed belief beliefs
@@ -26,7 +26,7 @@ files = subprocess.check_output(['git', 'ls-files'], text=True).split('\n')
 wanted = re.compile(r'(\.(cpp|hpp|h|js|mjs|html|css|py|sh|cmake|idl|md)|CMakeLists\.txt)$')
 found, folders = 0, collections.Counter()
 for path in files:
-    if not wanted.search(path) or path.startswith("tests/words") or path == 'docs/soak-300.html':
+    if not wanted.search(path) or path.startswith("tests/terms") or path == 'docs/soak-300.html':
         continue
     for number, line in enumerate(open(path, encoding='utf-8', errors='replace'), 1):
         rest = line
@@ -53,6 +53,6 @@ if os.environ['COUNTS']:
             by_word[hit] += n
     print('\n'.join(f'{n:5d} {folder}' for folder, n in by_folder.most_common()))
     print('\n'.join(f'{n:5d} "{word}"' for word, n in by_word.most_common()))
-print(f'words.sh: {found} lines', file=sys.stderr)
+print(f'terms.sh: {found} lines', file=sys.stderr)
 sys.exit(1 if found else 0)
 PY
