@@ -4,6 +4,7 @@
 # Fails where code, comments, messages, test names or documents use words that are not the field's.
 #   terms.sh [--counts] [ALLOWED]     run in the repository; ALLOWED: a regex a line, tab, reason (default: beside this file)
 set -eu
+git ls-files >/dev/null 2>&1 || { echo "terms.sh: not a git checkout: nothing is checked" >&2; exit 77; }
 here=$(cd "$(dirname "$0")" && pwd)
 counts=
 if [ "${1:-}" = --counts ]; then counts=1; shift; fi
