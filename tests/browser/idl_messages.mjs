@@ -28,27 +28,27 @@ export function sizeByIdl(name, idl, bytes) {
 
 const isList = (value) => Array.isArray(value) || (ArrayBuffer.isView(value) && !(value instanceof DataView));
 
-function same(said, read) {
-  if (typeof read === 'bigint') return said === String(read);
+function same(expected, read) {
+  if (typeof read === 'bigint') return expected === String(read);
   // JSON has no value for numbers that are not finite.
-  if (typeof read === 'number' && !Number.isFinite(read)) return said === null;
-  return Object.is(said, read);
+  if (typeof read === 'number' && !Number.isFinite(read)) return expected === null;
+  return Object.is(expected, read);
 }
 
-/** Where JSON and a decoded message differ: { path, said, read } for every field. */
-export function* differences(said, read, path = '') {
+/** Where JSON and a decoded message differ: { path, expected, read } for every field. */
+export function* differences(expected, read, path = '') {
   const nested = read !== null && typeof read === 'object';
-  if (!nested || said === null || typeof said !== 'object' || isList(said) !== isList(read)) {
-    if (!same(said, read)) yield { path, said, read };
+  if (!nested || expected === null || typeof expected !== 'object' || isList(expected) !== isList(read)) {
+    if (!same(expected, read)) yield { path, expected, read };
     return;
   }
   if (isList(read)) {
-    if (said.length !== read.length) yield { path: `${path}.length`, said: said.length, read: read.length };
-    for (let i = 0; i < Math.min(said.length, read.length); ++i) yield* differences(said[i], read[i], `${path}[${i}]`);
+    if (expected.length !== read.length) yield { path: `${path}.length`, expected: expected.length, read: read.length };
+    for (let i = 0; i < Math.min(expected.length, read.length); ++i) yield* differences(expected[i], read[i], `${path}[${i}]`);
     return;
   }
-  for (const name of new Set([...Object.keys(said), ...Object.keys(read)])) {
-    yield* differences(said[name], read[name], path ? `${path}.${name}` : name);
+  for (const name of new Set([...Object.keys(expected), ...Object.keys(read)])) {
+    yield* differences(expected[name], read[name], path ? `${path}.${name}` : name);
   }
 }
 

@@ -33,7 +33,7 @@ async function open({ scheme = 'light', motion = 'no-preference', width = 1280, 
   await opened.goto(URL_OF_VIEW, { timeout: TIMEOUT_MS });
   await opened.waitForFunction(() => window.swarmflow?.state().robots > 0);
   // The panels follow the picture a little later.
-  await opened.waitForFunction(() => document.getElementById('heard').textContent !== '–');
+  await opened.waitForFunction(() => document.getElementById('received').textContent !== '–');
   return opened;
 }
 
@@ -71,14 +71,14 @@ test('loads and connects', async () => {
 test('shows the number of robots', async () => {
   const { robots } = await state();
   if (live) {
-    assert.match(await text('heard'), new RegExp(`^\\d+ / ${robots}$`));
+    assert.match(await text('received'), new RegExp(`^\\d+ / ${robots}$`));
     return;
   }
   // The panel follows a moment after the picture: both are looked at together.
   await until((n) => {
     let received = 0;
     for (let id = 0; id < n; ++id) received += window.swarmflow.robot(id).received ? 1 : 0;
-    return document.getElementById('heard').textContent === `${received} / ${n}`;
+    return document.getElementById('received').textContent === `${received} / ${n}`;
   }, robots);
 });
 

@@ -41,8 +41,8 @@ async function assertSameAsCat(file, messages) {
       publish_time_ns: message.publishTime, sequence: message.sequence,
       data: readerOf(message.schema.name, new TextDecoder().decode(message.schema.data)).readMessage(message.data),
     };
-    for (const { path, said, read: value } of differences(JSON.parse(line), read)) {
-      wrong.push(`message ${lines - 1} of ${read.topic}: ${path}: cat prints ${shown(said)}, the IDL reads ${shown(value)}`);
+    for (const { path, expected, read: value } of differences(JSON.parse(line), read)) {
+      wrong.push(`message ${lines - 1} of ${read.topic}: ${path}: cat prints ${shown(expected)}, the IDL reads ${shown(value)}`);
     }
   }
   const [code] = await exit;

@@ -33,7 +33,7 @@ TEST(TwoHosts, FlyOneMission) {
   EXPECT_EQ(first.wait(), 0) << first.err();
   EXPECT_EQ(second.wait(), 0) << second.err();
   const auto summary = run.summary();
-  EXPECT_EQ(summary["arrived"], 12);  // by the robot logs, which came home
+  EXPECT_EQ(summary["arrived"], 12);  // by the robot logs, which were collected
   EXPECT_EQ(summary["collisions_robot"], 0);
   EXPECT_EQ(summary["lost"], nlohmann::json::array());
 }

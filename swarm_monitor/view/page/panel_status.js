@@ -22,7 +22,7 @@ export class Status {
   viewFrame(phase, counts, robots) {
     put(byId('phase'), phase);
     byId('phase').dataset.phase = phase;
-    put(byId('heard'), `${counts.received} / ${robots}`);
+    put(byId('received'), `${counts.received} / ${robots}`);
     for (const name of ['moving', 'arrived', 'lost']) put(byId(name), String(counts[name]));
     byId('lost').classList.toggle('bad', counts.lost > 0);
   }

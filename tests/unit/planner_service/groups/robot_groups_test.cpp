@@ -57,17 +57,17 @@ TEST(RobotGroups, DoNotReachThroughWalls) {
 }
 
 TEST(RobotGroups, LetArrivedRobotsStay) {
-  const Gaussian& home = scene().goal.components()[1].gaussian;
-  const std::vector<ReportedRobot> robots{{RobotId(0), home.mean_m(), true},
-                                          {RobotId(1), home.mean_m() + Vec2(3, 2), true},
-                                          {RobotId(2), home.mean_m() + Vec2(1, 1), false}};
+  const Gaussian& at_goal = scene().goal.components()[1].gaussian;
+  const std::vector<ReportedRobot> robots{{RobotId(0), at_goal.mean_m(), true},
+                                          {RobotId(1), at_goal.mean_m() + Vec2(3, 2), true},
+                                          {RobotId(2), at_goal.mean_m() + Vec2(1, 1), false}};
 
   const auto groups = group_robots({scene().world, scene().goal, robots}, {}, {});
 
   ASSERT_TRUE(groups.has_value());
   ASSERT_EQ(groups->size(), 2U);
   EXPECT_EQ(groups->at(0).members.size(), 2U);
-  EXPECT_EQ(wasserstein2(groups->at(0).gaussian, home), 0.0);
+  EXPECT_EQ(wasserstein2(groups->at(0).gaussian, at_goal), 0.0);
 }
 
 TEST(RobotGroups, ReportWhereThereIsNoRoom) {
