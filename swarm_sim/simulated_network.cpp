@@ -41,19 +41,18 @@ void SimulatedNetwork::post(SteadyTime at, std::span<const agent::NeighbourRepor
     spare_.pop_back();
   }
   moment.at = at;
-  moment.begin.assign(static_cast<std::size_t>(columns_ * rows_) + 1, 0);
+  // Counts of cell c at c + 2: filling the cells moves their begins down to where they belong.
+  moment.begin.assign(static_cast<std::size_t>(columns_ * rows_) + 2, 0);
   moment.sent.resize(sent.size());
   cells_.resize(sent.size());
   for (std::size_t i = 0; i < sent.size(); ++i) {
     cells_[i] = static_cast<std::uint32_t>(row_of(sent[i].position_m.y()) * columns_ +
                                            column_of(sent[i].position_m.x()));
-    ++moment.begin[cells_[i] + 1];
+    ++moment.begin[cells_[i] + 2];
   }
-  for (std::size_t c = 1; c < moment.begin.size(); ++c) moment.begin[c] += moment.begin[c - 1];
-  // Filling a cell moves its begin to its end, which is the begin of the next.
-  for (std::size_t i = 0; i < sent.size(); ++i) moment.sent[moment.begin[cells_[i]]++] = sent[i];
-  for (std::size_t c = moment.begin.size() - 1; c > 0; --c) moment.begin[c] = moment.begin[c - 1];
-  moment.begin[0] = 0;
+  for (std::size_t c = 2; c < moment.begin.size(); ++c) moment.begin[c] += moment.begin[c - 1];
+  // Entry c + 1 is the begin of cell c, and after its states its end: the begin of cell c + 1.
+  for (std::size_t i = 0; i < sent.size(); ++i) moment.sent[moment.begin[cells_[i] + 1]++] = sent[i];
   moments_.push_back(std::move(moment));
 }
 

@@ -77,7 +77,7 @@ class SimulatedNetwork {
   /// The states sent at one moment, sorted by cell.
   struct Moment {
     SteadyTime at;
-    std::vector<std::uint32_t> begin;  // of each cell in `sent`, row by row; one more at the end
+    std::vector<std::uint32_t> begin;  // of each cell in `sent`, row by row; two more at the end
     std::vector<agent::NeighbourReport> sent;
   };
 

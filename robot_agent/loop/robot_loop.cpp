@@ -75,7 +75,8 @@ void RobotLoop::decide(const RobotTick& tick, const RobotParts& parts, const Mea
     // Valid for two periods: a tick may be late, a dead process must not drive on.
     parts.driver.command(tick.now, output_.velocity_mps, 2 * tick.period);
   }
-  update_fault(body.is_valid, parts.driver);
+  const bool is_well = body.is_valid && fault_.empty() && agent_.control_fault().empty();
+  if (!is_well || ticks_ % kTicksPerHealth == 0) update_fault(body.is_valid, parts.driver);
   const bool mode_changed = output_.mode != mode_before;
   has_updates_ = mode_changed || (output_.settled && !was_settled);
 

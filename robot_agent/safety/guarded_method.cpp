@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "robot_agent/safety/guarded_method.hpp"
 
+#include <cmath>
 #include <exception>
 
 namespace swarm::agent {
@@ -23,7 +24,7 @@ T GuardedMethod::guarded(T otherwise, Call call) const {
 
 /// Comparisons with NaN are false, so the safety filter would not limit one: it is caught here.
 Vec2 GuardedMethod::checked(const Vec2& velocity_mps) {
-  if (velocity_mps.allFinite()) return velocity_mps;
+  if (std::isfinite(velocity_mps.x()) && std::isfinite(velocity_mps.y())) return velocity_mps;
   fault_ = "the control method returned a velocity that is not finite";
   return Vec2::Zero();
 }
