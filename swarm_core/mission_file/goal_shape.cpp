@@ -11,13 +11,12 @@
 #include "swarm_core/gmm/image_boxes.hpp"
 #include "swarm_core/gmm/shape_patches.hpp"
 #include "swarm_core/mission_file/bitmap_file.hpp"
-#include "swarm_core/mission_file/mission_fields.hpp"
+#include "swarm_core/mission_file/reader_bounds.hpp"
 
 namespace swarm {
 namespace {
 
-using mission_fields::between;
-using mission_fields::kCoordinate_m;
+using reader_bounds::kCoordinate_m;
 using yaml::MapReader;
 using yaml::Node;
 
@@ -86,7 +85,7 @@ class GoalShapeReader {
     if (const Node* value = keys.take("components")) {
       set(options.components,
           yaml::read_count(*value, keys.path_of("components"),
-                           between(1, mission_fields::kMaxComponents), violations_));
+                           between(1, reader_bounds::kMaxComponents), violations_));
     }
     if (const Node* value = keys.take("components_max")) {
       set(options.components_max, yaml::read_count(*value, keys.path_of("components_max"),
@@ -152,8 +151,8 @@ class GoalShapeReader {
       if (origin) frame.origin_m = {(*origin)[0], (*origin)[1]};
     }
     if (pixel_node != nullptr) {
-      const auto pixel_m = yaml::read_number(*pixel_node, keys.path_of("pixel_m"),
-                                             mission_fields::positive(1000), violations_);
+      const auto pixel_m =
+          yaml::read_number(*pixel_node, keys.path_of("pixel_m"), positive(1000), violations_);
       good = good && pixel_m.has_value();
       frame.pixel_m = pixel_m.value_or(frame.pixel_m);
     }

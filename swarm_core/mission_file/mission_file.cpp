@@ -11,11 +11,12 @@
 #include <fmt/format.h>
 
 #include "swarm_core/mission_file/goal_shape.hpp"
-#include "swarm_core/mission_file/mission_fields.hpp"
 #include "swarm_core/mission_file/mission_shapes.hpp"
+#include "swarm_core/mission_file/reader_bounds.hpp"
 #include "swarm_core/mission_file/script_reader.hpp"
 #include "swarm_core/mission_file/section_reader.hpp"
 #include "swarm_core/mission_file/yaml_reader.hpp"
+#include "swarmflow/mission/section_key.hpp"
 
 namespace swarm {
 namespace {
@@ -25,7 +26,7 @@ using yaml::Node;
 
 /// The name becomes part of file names.
 bool is_good_name(std::string_view name) {
-  return !name.empty() && name.size() <= mission_fields::kMaxNameLength && name[0] != '.' &&
+  return !name.empty() && name.size() <= reader_bounds::kMaxNameLength && name[0] != '.' &&
          std::all_of(name.begin(), name.end(), [](char c) {
            return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
                   c == '_' || c == '-' || c == '.';
@@ -51,12 +52,12 @@ class MissionReader {
     if (const Node* node = top.take("goal_shape")) read_drawing(*node);
     sections_.read_planner(top.take("planner"), mission_.planner);
     sections_.read_control(top.take("control"), mission_.control);
-    read_section(top, "safety", mission_.safety, mission_fields::kSafety);
-    read_section(top, "link", mission_.link, mission_fields::kLink);
-    read_section(top, "timing", mission_.timing, mission_fields::kTiming);
-    read_section(top, "plan_clock", mission_.plan_clock, mission_fields::kPlanClock);
-    read_section(top, "launcher", mission_.launcher, mission_fields::kLauncher);
-    read_section(top, "criteria", mission_.criteria, mission_fields::kCriteria);
+    read_section(top, "safety", mission_.safety, kSafetyKeys);
+    read_section(top, "link", mission_.link, kLinkKeys);
+    read_section(top, "timing", mission_.timing, kTimingKeys);
+    read_section(top, "plan_clock", mission_.plan_clock, kPlanClockKeys);
+    read_section(top, "launcher", mission_.launcher, kLauncherKeys);
+    read_section(top, "criteria", mission_.criteria, kCriteriaKeys);
     if (const Node* node = top.take("script")) {
       mission_.script = read_script(
           *node, {.world = has_world_ ? &mission_.world : nullptr, .robots = mission_.robots.count},
@@ -72,7 +73,7 @@ class MissionReader {
   void read_version(MapReader& top) {
     const Node* node = top.take("version", true);
     if (node == nullptr) return;
-    yaml::read_count(*node, "version", mission_fields::between(1, 1), violations_);
+    yaml::read_count(*node, "version", between(1, 1), violations_);
   }
 
   void read_name(const Node& node) {
@@ -81,7 +82,7 @@ class MissionReader {
     if (!is_good_name(*name)) {
       violations_.add(node.at, fmt::format("name is {}; must be 1 to {} letters, digits, _ - . "
                                            "and not begin with a dot",
-                                           describe(node), mission_fields::kMaxNameLength));
+                                           describe(node), reader_bounds::kMaxNameLength));
       return;
     }
     mission_.name = *name;
@@ -89,7 +90,7 @@ class MissionReader {
 
   template <class Section, std::size_t N>
   void read_section(MapReader& top, const std::string& name, Section& section,
-                    const std::array<mission_fields::Field<Section>, N>& fields) {
+                    const std::array<SectionKey<Section>, N>& fields) {
     sections_.read(top.take(name), name, section, fields);
   }
 
@@ -115,7 +116,7 @@ class MissionReader {
   std::vector<Obstacle> read_obstacles(const Node& node) {
     std::vector<Obstacle> obstacles;
     const auto* items =
-        yaml::read_list(node, "world.obstacles", 0, mission_fields::kMaxObstacles, violations_);
+        yaml::read_list(node, "world.obstacles", 0, reader_bounds::kMaxObstacles, violations_);
     if (items == nullptr) return obstacles;
     for (std::size_t i = 0; i < items->size(); ++i) {
       const std::string path = fmt::format("world.obstacles[{}]", i);

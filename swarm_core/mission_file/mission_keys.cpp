@@ -11,7 +11,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "swarm_core/mission_file/mission_fields.hpp"
+#include "swarm_core/mission_file/reader_bounds.hpp"
+#include "swarmflow/mission/mission.hpp"
+#include "swarmflow/mission/section_key.hpp"
 
 namespace swarm {
 namespace {
@@ -58,7 +60,7 @@ class Page {
   }
 
   template <class Section, std::size_t N>
-  void add(std::string_view name, const std::array<mission_fields::Field<Section>, N>& fields) {
+  void add(std::string_view name, const std::array<SectionKey<Section>, N>& fields) {
     const Section defaults{};
     for (const auto& field : fields) {
       Row row{field.key, "number", range_text(field.range), {}, field.doc};
@@ -125,17 +127,17 @@ Row named(std::string_view key, const Components& components, const std::string&
 
 /// The row of a key that is a number or `auto`.
 Row automatic(std::string_view key, const Range& range, std::string_view doc) {
-  return {key, "number or auto", range_text(range), std::string(mission_fields::kAutomatic), doc};
+  return {key, "number or auto", range_text(range), std::string(reader_bounds::kAutomatic), doc};
 }
 
 void add_robots(Page& page, const Components& drivers) {
   page.heading(
       "##", "robots",
       "The robots' bodies; a group in robots.groups may set the keys of the body otherwise");
-  page.add("robots", mission_fields::kRobots);
+  page.add("robots", kRobotsKeys);
   page.add("robots", named("model", drivers, BodySpec{}.model, "the driver of the body"));
-  page.add("robots", mission_fields::kBody);
-  page.add("robots", automatic("lag_s", mission_fields::kLag_s,
+  page.add("robots", kBodyKeys);
+  page.add("robots", automatic("lag_s", reader_bounds::kLag_s,
                                "how long the body takes until it moves as commanded; auto: as its "
                                "driver declares"));
   page.add("robots", drivers);
@@ -144,17 +146,17 @@ void add_robots(Page& page, const Components& drivers) {
 void add_planner(Page& page, const Components& methods) {
   page.heading("##", "planner", "What every planning method reads");
   page.add("planner", named("method", methods, PlannerSpec{}.method, "the planning method"));
-  page.add("planner", automatic("density_cap_per_m2", mission_fields::kDensityCap_per_m2,
+  page.add("planner", automatic("density_cap_per_m2", reader_bounds::kDensityCap_per_m2,
                                 "swarmprm and rover: robots per m2 at most; 0: no cap; auto: "
                                 "swarmprm plans what the bodies can follow, rover without a cap"));
-  page.add("planner", mission_fields::kPlanner);
+  page.add("planner", kPlannerKeys);
   page.add("planner", methods);
 }
 
 void add_control(Page& page, const Components& methods) {
   page.heading("##", "control", "What every control method reads");
   page.add("control", named("method", methods, ControlSpec{}.method, "the control method"));
-  page.add("control", mission_fields::kControl);
+  page.add("control", kControlKeys);
   page.add("control", methods);
 }
 
@@ -167,19 +169,19 @@ std::string mission_keys_markdown(const Catalogue& catalogue) {
   add_planner(page, catalogue.planning_methods);
   add_control(page, catalogue.control_methods);
   page.heading("##", "safety", "The filter that no robot's command passes without");
-  page.add("safety", mission_fields::kSafety);
+  page.add("safety", kSafetyKeys);
   page.heading("##", "link", "Which states robots receive and how often they send their own");
-  page.add("link", mission_fields::kLink);
+  page.add("link", kLinkKeys);
   page.heading("##", "timing", "Heartbeats, silence and clocks");
-  page.add("timing", mission_fields::kTiming);
+  page.add("timing", kTimingKeys);
   page.heading("##", "plan_clock", "How far the plan's clock slows down when the swarm lags");
-  page.add("plan_clock", mission_fields::kPlanClock);
+  page.add("plan_clock", kPlanClockKeys);
   page.heading("##", "launcher", "Starting, waiting and starting again");
-  page.add("launcher", mission_fields::kLauncher);
+  page.add("launcher", kLauncherKeys);
   page.heading("##", "criteria",
                "What the audit demands of a run beyond arrival and no contact; a key that is left "
                "out is not judged");
-  page.add("criteria", mission_fields::kCriteria);
+  page.add("criteria", kCriteriaKeys);
   return page.take();
 }
 

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "swarm_core/mission_file/goal_shape.hpp"
-#include "swarm_core/mission_file/mission_fields.hpp"
+#include "swarm_core/mission_file/reader_bounds.hpp"
 
 namespace swarm {
 
@@ -18,10 +18,10 @@ using yaml::Range;
 
 namespace {
 
-using mission_fields::kCoordinate_m;
+using reader_bounds::kCoordinate_m;
 // A wide bound on each entry; Gaussian::make() then checks the matrix as a whole.
-constexpr Range kVariance_m2 = mission_fields::between(-1e12, 1e12);
-constexpr Range kWeight = mission_fields::positive(1);
+constexpr Range kVariance_m2 = between(-1e12, 1e12);
+constexpr Range kWeight = positive(1);
 
 }  // namespace
 
@@ -57,10 +57,10 @@ std::optional<Obstacle> ShapeReader::read_polygon(const Node& node, const std::s
   if (items == nullptr) return std::nullopt;
   // The total is bounded over all polygons of a file, since each alone may be within its own bound.
   vertices_ += items->size();
-  if (vertices_ > mission_fields::kMaxVertices) {
+  if (vertices_ > reader_bounds::kMaxVertices) {
     violations_.add(node.at, fmt::format("{}: {} vertices so far; must be <= {} in all polygons "
                                          "together",
-                                         path, vertices_, mission_fields::kMaxVertices));
+                                         path, vertices_, reader_bounds::kMaxVertices));
     return std::nullopt;
   }
   std::vector<Vec2> vertices;
@@ -85,7 +85,7 @@ std::optional<Obstacle> ShapeReader::read_circle(const Node& node, const std::st
   }
   if (const Node* value = keys.take("radius", true)) {
     radius = yaml::read_number(*value, keys.path_of("radius"),
-                               mission_fields::positive(mission_fields::kMaxExtent_m), violations_);
+                               positive(reader_bounds::kMaxExtent_m), violations_);
   }
   keys.finish();
   if (!center || !radius) return std::nullopt;
@@ -97,7 +97,7 @@ std::optional<Mixture> ShapeReader::read_mixture(const Node& node, const std::st
                                                  const MeanRule& rule,
                                                  std::shared_ptr<const ShapeField>* drawing) {
   if (node.kind == Node::Kind::kMap) return read_shape(node, path, rule, drawing);
-  const auto* items = yaml::read_list(node, path, 1, mission_fields::kMaxComponents, violations_);
+  const auto* items = yaml::read_list(node, path, 1, reader_bounds::kMaxComponents, violations_);
   if (items == nullptr) return std::nullopt;
   std::vector<WeightedGaussian> components;
   for (std::size_t i = 0; i < items->size(); ++i) {

@@ -5,10 +5,11 @@
 
 #include <fmt/format.h>
 
-#include "swarm_core/mission_file/mission_fields.hpp"
+#include "swarm_core/mission_file/reader_bounds.hpp"
 #include "swarm_core/mission_file/scene_change_file.hpp"
 #include "swarm_core/mission_file/yaml_point.hpp"
 #include "swarmflow/mission/mission_file.hpp"
+#include "swarmflow/mission/section_key.hpp"
 
 namespace swarm {
 namespace {
@@ -70,7 +71,7 @@ void write_shape(Out out, const ShapeField& shape) {
 /// side. An optional number is written only where it is set.
 template <class Section, std::size_t N>
 void write_fields(Out out, const Section& section,
-                  const std::array<mission_fields::Field<Section>, N>& fields) {
+                  const std::array<SectionKey<Section>, N>& fields) {
   for (const auto& field : fields) {
     const auto write = [&](const auto& value) {
       fmt::format_to(out, "  {}: {}\n", field.key, value);
@@ -88,7 +89,7 @@ void write_fields(Out out, const Section& section,
 }
 
 std::string or_automatic(const std::optional<double>& value) {
-  return value ? fmt::format("{}", *value) : std::string(mission_fields::kAutomatic);
+  return value ? fmt::format("{}", *value) : std::string(reader_bounds::kAutomatic);
 }
 
 /// The values of a component's own options, as checked when they were read.
@@ -99,7 +100,7 @@ void write_options(Out out, const OptionValues& options) {
 /// None of its keys need be set, but a section must not be empty: then it is left out.
 void write_criteria(Out out, const CriteriaSpec& criteria) {
   std::string keys;
-  write_fields(Out(keys), criteria, mission_fields::kCriteria);
+  write_fields(Out(keys), criteria, kCriteriaKeys);
   if (!keys.empty()) fmt::format_to(out, "criteria:\n{}", keys);
 }
 
@@ -108,15 +109,15 @@ void write_criteria(Out out, const CriteriaSpec& criteria) {
 void write_robots(Out out, const RobotsSpec& robots) {
   fmt::format_to(out, "robots:\n  model: {}\n  lag_s: {}\n", robots.model,
                  or_automatic(robots.lag_s));
-  write_fields(out, robots, mission_fields::kRobots);
-  write_fields<BodySpec>(out, robots, mission_fields::kBody);
+  write_fields(out, robots, kRobotsKeys);
+  write_fields<BodySpec>(out, robots, kBodyKeys);
   write_options(out, robots.options);
   if (robots.groups.empty()) return;
   fmt::format_to(out, "  groups:\n");
   for (const RobotGroupSpec& group : robots.groups) {
     fmt::format_to(out, "    - {{count: {}, model: {}, lag_s: {}", group.count, group.model,
                    or_automatic(group.lag_s));
-    for (const auto& field : mission_fields::kBody) {
+    for (const auto& field : kBodyKeys) {
       fmt::format_to(
           out, ", {}: {}", field.key,
           static_cast<const BodySpec&>(group).*std::get<double BodySpec::*>(field.member));
@@ -157,21 +158,21 @@ std::string to_yaml(const Mission& mission) {
   if (mission.goal_shape) write_shape(out, *mission.goal_shape);
   fmt::format_to(out, "planner:\n  method: {}\n  density_cap_per_m2: {}\n", mission.planner.method,
                  or_automatic(mission.planner.density_cap_per_m2));
-  write_fields(out, mission.planner, mission_fields::kPlanner);
+  write_fields(out, mission.planner, kPlannerKeys);
   write_options(out, mission.planner.options);
   fmt::format_to(out, "control:\n  method: {}\n", mission.control.method);
-  write_fields(out, mission.control, mission_fields::kControl);
+  write_fields(out, mission.control, kControlKeys);
   write_options(out, mission.control.options);
   fmt::format_to(out, "safety:\n");
-  write_fields(out, mission.safety, mission_fields::kSafety);
+  write_fields(out, mission.safety, kSafetyKeys);
   fmt::format_to(out, "link:\n");
-  write_fields(out, mission.link, mission_fields::kLink);
+  write_fields(out, mission.link, kLinkKeys);
   fmt::format_to(out, "timing:\n");
-  write_fields(out, mission.timing, mission_fields::kTiming);
+  write_fields(out, mission.timing, kTimingKeys);
   fmt::format_to(out, "plan_clock:\n");
-  write_fields(out, mission.plan_clock, mission_fields::kPlanClock);
+  write_fields(out, mission.plan_clock, kPlanClockKeys);
   fmt::format_to(out, "launcher:\n");
-  write_fields(out, mission.launcher, mission_fields::kLauncher);
+  write_fields(out, mission.launcher, kLauncherKeys);
   write_criteria(out, mission.criteria);
   write_script(out, mission.script);
   return text;

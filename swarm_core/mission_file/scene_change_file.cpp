@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "swarm_core/mission_file/mission_fields.hpp"
+#include "swarm_core/mission_file/reader_bounds.hpp"
 #include "swarm_core/mission_file/yaml_point.hpp"
 
 namespace swarm {
@@ -25,13 +25,12 @@ class ChangeReader {
     std::optional<std::vector<double>> by_m;
     std::optional<double> over_s = 0.0;
     if (const Node* node = keys_.take("by_m", true)) {
-      by_m = yaml::read_numbers(
-          *node, keys_.path_of("by_m"), 2,
-          mission_fields::between(-mission_fields::kMaxExtent_m, mission_fields::kMaxExtent_m),
-          violations_);
+      by_m = yaml::read_numbers(*node, keys_.path_of("by_m"), 2,
+                                between(-reader_bounds::kMaxExtent_m, reader_bounds::kMaxExtent_m),
+                                violations_);
     }
     if (const Node* node = keys_.take("over_s")) {
-      over_s = yaml::read_number(*node, keys_.path_of("over_s"), mission_fields::kScriptTime_s,
+      over_s = yaml::read_number(*node, keys_.path_of("over_s"), reader_bounds::kScriptTime_s,
                                  violations_);
     }
     if (!obstacle || !by_m || !over_s) return std::nullopt;
@@ -78,7 +77,7 @@ class ChangeReader {
     const Node* node = keys_.take("alpha", true);
     if (node == nullptr) return std::nullopt;
     const auto alpha =
-        yaml::read_number(*node, keys_.path_of("alpha"), mission_fields::kRiskAlpha, violations_);
+        yaml::read_number(*node, keys_.path_of("alpha"), kRiskAlphaRange, violations_);
     if (!alpha) return std::nullopt;
     return SetRisk{*alpha};
   }
@@ -88,8 +87,7 @@ class ChangeReader {
     const Node* node = keys_.take("robot", true);
     if (node == nullptr) return std::nullopt;
     const auto number =
-        yaml::read_count(*node, keys_.path_of("robot"),
-                         mission_fields::between(0, mission_fields::kMaxRobots - 1), violations_);
+        yaml::read_count(*node, keys_.path_of("robot"), between(0, kMaxRobots - 1), violations_);
     if (!number) return std::nullopt;
     return RobotId(*number);
   }
@@ -98,8 +96,7 @@ class ChangeReader {
   std::optional<std::uint32_t> read_obstacle_number() {
     const Node* node = keys_.take("obstacle", true);
     if (node == nullptr) return std::nullopt;
-    return yaml::read_count(*node, keys_.path_of("obstacle"), mission_fields::between(0, 1e6),
-                            violations_);
+    return yaml::read_count(*node, keys_.path_of("obstacle"), between(0, 1e6), violations_);
   }
 
   MapReader& keys_;

@@ -2,13 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "swarm_core/mission_file/script_reader.hpp"
 
+#include <array>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
 
-#include "swarm_core/mission_file/mission_fields.hpp"
+#include "swarm_core/mission_file/reader_bounds.hpp"
 #include "swarm_core/mission_file/scene_change_file.hpp"
 
 namespace swarm {
@@ -17,6 +19,11 @@ namespace {
 using yaml::MapReader;
 using yaml::Node;
 using yaml::Position;
+
+/// Values of `action` in a script: commands first, then changes of the scene.
+constexpr std::array<std::string_view, 9> kScriptActions{
+    "pause",           "resume", "stop", "add_obstacle", "move_obstacle",
+    "remove_obstacle", "goto",   "risk", "clear"};
 
 // Reads events in order and applies their changes to a scene, which shows whether each of them is
 // possible at its time.
@@ -34,10 +41,9 @@ class ScriptReader {
     MapReader keys(item, path, violations_);
     const std::optional<double> at_s = read_time(keys);
     const Node* node = keys.take("action", true);
-    const auto name = node == nullptr
-                          ? std::nullopt
-                          : yaml::read_choice(*node, keys.path_of("action"),
-                                              mission_fields::kScriptActions, violations_);
+    const auto name = node == nullptr ? std::nullopt
+                                      : yaml::read_choice(*node, keys.path_of("action"),
+                                                          kScriptActions, violations_);
     if (!name) return std::nullopt;  // the other keys depend on the action
     const auto action = read_action(*name, keys, path, item.at);
     keys.finish();
@@ -53,7 +59,7 @@ class ScriptReader {
     const Node* node = keys.take("at_s", true);
     if (node == nullptr) return std::nullopt;
     const auto at_s =
-        yaml::read_number(*node, keys.path_of("at_s"), mission_fields::kScriptTime_s, violations_);
+        yaml::read_number(*node, keys.path_of("at_s"), reader_bounds::kScriptTime_s, violations_);
     if (at_s && *at_s < previous_s_) {
       violations_.add(node->at, fmt::format("{} is {}; must be >= the one before ({})",
                                             keys.path_of("at_s"), *at_s, previous_s_));
@@ -106,7 +112,7 @@ std::vector<ScriptEvent> read_script(const Node& node, const ScriptContext& cont
                                      ShapeReader& shapes, yaml::Violations& violations) {
   std::vector<ScriptEvent> script;
   const auto* items =
-      yaml::read_list(node, "script", 0, mission_fields::kMaxScriptEvents, violations);
+      yaml::read_list(node, "script", 0, reader_bounds::kMaxScriptEvents, violations);
   if (items == nullptr) return script;
   ScriptReader reader(context, shapes, violations);
   for (std::size_t i = 0; i < items->size(); ++i) {

@@ -42,9 +42,9 @@ void SectionReader::read_planner(const Node* node, PlannerSpec& planner) {
   if (node != nullptr) {
     MapReader keys(*node, "planner", violations_);
     read_name(keys, "method", planning(), planner.method);
-    read_automatic(keys, "density_cap_per_m2", mission_fields::kDensityCap_per_m2,
+    read_automatic(keys, "density_cap_per_m2", reader_bounds::kDensityCap_per_m2,
                    planner.density_cap_per_m2);
-    read_fields(keys, planner, mission_fields::kPlanner);
+    read_fields(keys, planner, kPlannerKeys);
     read_options(keys, planning(), planner.options);
     keys.finish();
   }
@@ -55,7 +55,7 @@ void SectionReader::read_control(const Node* node, ControlSpec& control_spec) {
   if (node != nullptr) {
     MapReader keys(*node, "control", violations_);
     read_name(keys, "method", control(), control_spec.method);
-    read_fields(keys, control_spec, mission_fields::kControl);
+    read_fields(keys, control_spec, kControlKeys);
     read_options(keys, control(), control_spec.options);
     keys.finish();
   }
@@ -66,7 +66,7 @@ void SectionReader::read_control(const Node* node, ControlSpec& control_spec) {
 void SectionReader::read_robots(const Node* node, RobotsSpec& robots) {
   if (node != nullptr) {
     MapReader keys(*node, "robots", violations_);
-    read_fields(keys, robots, mission_fields::kRobots);
+    read_fields(keys, robots, kRobotsKeys);
     read_body(keys, robots);
     const Node* groups = keys.take("groups");
     keys.finish();
@@ -80,16 +80,16 @@ void SectionReader::read_robots(const Node* node, RobotsSpec& robots) {
 
 void SectionReader::read_groups(const Node& node, RobotsSpec& robots) {
   const auto* items =
-      yaml::read_list(node, "robots.groups", 0, mission_fields::kMaxRobotGroups, violations_);
+      yaml::read_list(node, "robots.groups", 0, reader_bounds::kMaxRobotGroups, violations_);
   if (items == nullptr) return;
   std::uint64_t grouped = 0;
   for (std::size_t i = 0; i < items->size(); ++i) {
     RobotGroupSpec group{robots, 0};  // keys that the group does not set are those of all robots
     MapReader keys((*items)[i], fmt::format("robots.groups[{}]", i), violations_);
     if (const Node* value = keys.take("count", true)) {
-      group.count = yaml::read_count(*value, keys.path_of("count"),
-                                     between(1, mission_fields::kMaxRobots), violations_)
-                        .value_or(0);
+      group.count =
+          yaml::read_count(*value, keys.path_of("count"), between(1, kMaxRobots), violations_)
+              .value_or(0);
     }
     read_body(keys, group);
     keys.finish();
@@ -106,8 +106,8 @@ void SectionReader::read_groups(const Node& node, RobotsSpec& robots) {
 
 void SectionReader::read_body(MapReader& keys, BodySpec& body) {
   read_name(keys, "model", drivers(), body.model);
-  read_fields(keys, body, mission_fields::kBody);
-  read_automatic(keys, "lag_s", mission_fields::kLag_s, body.lag_s);
+  read_fields(keys, body, kBodyKeys);
+  read_automatic(keys, "lag_s", reader_bounds::kLag_s, body.lag_s);
   read_options(keys, drivers(), body.options);
 }
 
@@ -123,7 +123,7 @@ void SectionReader::read_automatic(MapReader& keys, std::string_view key, const 
                                    std::optional<double>& value) {
   const Node* node = keys.take(key);
   if (node == nullptr) return;
-  if (node->kind == Node::Kind::kScalar && node->text == mission_fields::kAutomatic) {
+  if (node->kind == Node::Kind::kScalar && node->text == reader_bounds::kAutomatic) {
     value.reset();
   } else {
     value = yaml::read_number(*node, keys.path_of(key), range, violations_);

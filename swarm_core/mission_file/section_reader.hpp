@@ -12,15 +12,16 @@
 #include <variant>
 
 #include "swarm_core/mission/mission_rules.hpp"
-#include "swarm_core/mission_file/mission_fields.hpp"
 #include "swarm_core/mission_file/yaml_reader.hpp"
 #include "swarmflow/mission/catalogue.hpp"
+#include "swarmflow/mission/mission.hpp"
+#include "swarmflow/mission/section_key.hpp"
 
 namespace swarm {
 
 /// Reads the sections of a mission file that are scalar keys: those of the mission's own tables
-/// (mission_fields.hpp), and the names and keys of components, from the catalogue. It remembers the
-/// position of each key in the file, for the messages of rules between keys.
+/// (include/swarmflow/mission/sections), and the names and keys of components, from the catalogue.
+/// It remembers the position of each key in the file, for the messages of rules between keys.
 class SectionReader {
  public:
   /// Both outlive it.
@@ -30,7 +31,7 @@ class SectionReader {
   /// A section without components. A null node is a section that the file leaves out.
   template <class Section, std::size_t N>
   void read(const yaml::Node* node, const std::string& name, Section& section,
-            const std::array<mission_fields::Field<Section>, N>& fields) {
+            const std::array<SectionKey<Section>, N>& fields) {
     if (node == nullptr) return;
     yaml::MapReader keys(*node, name, violations_);
     read_fields(keys, section, fields);
@@ -63,7 +64,7 @@ class SectionReader {
   /// Reads the keys of a table that the file sets; the others keep their defaults.
   template <class Section, std::size_t N>
   void read_fields(yaml::MapReader& keys, Section& section,
-                   const std::array<mission_fields::Field<Section>, N>& fields) {
+                   const std::array<SectionKey<Section>, N>& fields) {
     for (const auto& field : fields) {
       if (const yaml::Node* value = keys.take(field.key)) read_field(*value, keys, field, section);
     }
@@ -72,7 +73,7 @@ class SectionReader {
   /// Reads one key by the type of its member and remembers where it stands.
   template <class Section>
   void read_field(const yaml::Node& value, const yaml::MapReader& keys,
-                  const mission_fields::Field<Section>& field, Section& section) {
+                  const SectionKey<Section>& field, Section& section) {
     const std::string path = keys.path_of(field.key);
     const bool good = std::visit(
         [&](auto member) {

@@ -19,12 +19,12 @@ launcher=$prefix/bin/swarm_launcher
 echo "public headers compile alone, and include nothing of a vendor's, a parser's or ours that is private"
 eigen=$(pkg-config --cflags eigen3)
 cd "$prefix/include"
-for header in swarmflow/*/*.hpp; do
+for header in $(find swarmflow -name '*.hpp'); do
   if grep -nE '#include [<"](fastdds|fastrtps|fastcdr|dds|ddsc|yaml-cpp|nlohmann|png|coin|CLI|fmt|swarm_|robot_agent|planner_service)' "$header"; then
     fail "$header includes what is not public"
   fi
   echo "$header"
-done | grep '^swarmflow/[a-z]*/[a-z_]*.hpp$' |
+done | grep '^swarmflow/[a-z_/]*\.hpp$' |
   xargs -P 2 -I{} sh -c "echo '#include <{}>' | g++ -std=c++20 -fsyntax-only -I. $eigen -x c++ - || { echo '{} does not compile alone' >&2; exit 255; }"
 
 echo "examples build against the prefix"

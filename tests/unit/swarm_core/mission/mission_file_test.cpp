@@ -8,11 +8,11 @@
 
 #include <gtest/gtest.h>
 
-#include "swarm_core/mission_file/mission_fields.hpp"
 #include "swarm_core/mission_file/scene_change_file.hpp"
 #include "swarm_core/risk/mixture_cvar.hpp"
 #include "swarm_launcher/processes/builtin_catalogue.hpp"
 #include "swarmflow/core/cvar.hpp"
+#include "swarmflow/mission/section_key.hpp"
 
 namespace swarm {
 namespace {
@@ -124,7 +124,7 @@ constexpr std::size_t members_of() {
 
 template <class Section, std::size_t N>
 void expect_same(const Section& a, const Section& b,
-                 const std::array<mission_fields::Field<Section>, N>& fields) {
+                 const std::array<SectionKey<Section>, N>& fields) {
   // The tables are all that reader and writer know: a member without a row would be lost.
   // Beside the table: texts, what may be automatic, options of components, and of robots the body
   // and the groups.
@@ -151,12 +151,12 @@ void expect_same(const Mission& a, const Mission& b) {
   EXPECT_EQ(a.planner.method, b.planner.method);
   EXPECT_EQ(a.planner.options, b.planner.options);
   EXPECT_EQ(a.planner.density_cap_per_m2, b.planner.density_cap_per_m2);
-  expect_same(a.robots, b.robots, mission_fields::kRobots);
+  expect_same(a.robots, b.robots, kRobotsKeys);
   const auto expect_same_body = [](const BodySpec& one, const BodySpec& other) {
     EXPECT_EQ(one.model, other.model);
     EXPECT_EQ(one.lag_s, other.lag_s);
     EXPECT_EQ(one.options, other.options);
-    expect_same(one, other, mission_fields::kBody);
+    expect_same(one, other, kBodyKeys);
   };
   expect_same_body(a.robots, b.robots);
   ASSERT_EQ(a.robots.groups.size(), b.robots.groups.size());
@@ -166,14 +166,14 @@ void expect_same(const Mission& a, const Mission& b) {
   }
   EXPECT_EQ(a.control.method, b.control.method);
   EXPECT_EQ(a.control.options, b.control.options);
-  expect_same(a.planner, b.planner, mission_fields::kPlanner);
-  expect_same(a.control, b.control, mission_fields::kControl);
-  expect_same(a.safety, b.safety, mission_fields::kSafety);
-  expect_same(a.link, b.link, mission_fields::kLink);
-  expect_same(a.timing, b.timing, mission_fields::kTiming);
-  expect_same(a.plan_clock, b.plan_clock, mission_fields::kPlanClock);
-  expect_same(a.launcher, b.launcher, mission_fields::kLauncher);
-  expect_same(a.criteria, b.criteria, mission_fields::kCriteria);
+  expect_same(a.planner, b.planner, kPlannerKeys);
+  expect_same(a.control, b.control, kControlKeys);
+  expect_same(a.safety, b.safety, kSafetyKeys);
+  expect_same(a.link, b.link, kLinkKeys);
+  expect_same(a.timing, b.timing, kTimingKeys);
+  expect_same(a.plan_clock, b.plan_clock, kPlanClockKeys);
+  expect_same(a.launcher, b.launcher, kLauncherKeys);
+  expect_same(a.criteria, b.criteria, kCriteriaKeys);
   ASSERT_EQ(a.script.size(), b.script.size());
   for (std::size_t i = 0; i < a.script.size(); ++i) {
     EXPECT_EQ(a.script[i].at_s, b.script[i].at_s);
@@ -203,9 +203,9 @@ TEST(MissionFile, FillsInTheDefaults) {
   const auto mission = parse(kLeast, "least");
 
   ASSERT_TRUE(mission.has_value()) << mission.error().message;
-  expect_same(mission->robots, RobotsSpec{}, mission_fields::kRobots);
-  expect_same<BodySpec>(mission->robots, BodySpec{}, mission_fields::kBody);
-  expect_same(mission->link, LinkSpec{}, mission_fields::kLink);
+  expect_same(mission->robots, RobotsSpec{}, kRobotsKeys);
+  expect_same<BodySpec>(mission->robots, BodySpec{}, kBodyKeys);
+  expect_same(mission->link, LinkSpec{}, kLinkKeys);
   EXPECT_EQ(mission->planner.method, PlannerSpec{}.method);
   EXPECT_EQ(mission->planner.options.number("samples"), 500.0);
   EXPECT_EQ(*mission->control.options.find("tracking"), "plan");

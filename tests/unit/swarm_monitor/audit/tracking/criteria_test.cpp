@@ -4,8 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include "swarm_core/mission_file/mission_fields.hpp"
-
 namespace swarm::monitor {
 namespace {
 
@@ -35,7 +33,7 @@ Tracking measured() {
 
 CriteriaSpec all_set(double bar) {
   CriteriaSpec criteria;
-  for (const auto& field : mission_fields::kCriteria) {
+  for (const auto& field : kCriteriaKeys) {
     criteria.*std::get<std::optional<double> CriteriaSpec::*>(field.member) = bar;
   }
   return criteria;
@@ -74,8 +72,8 @@ TEST(Criteria, AreEachJudgedByAQuantityOfTheirOwn) {
   for (std::size_t i = 0; i < least.size(); ++i) {
     EXPECT_NE(high[i].find(least[i]), std::string::npos) << high[i];
   }
-  EXPECT_EQ(low.size(), mission_fields::kCriteria.size() - least.size());
-  for (const auto& field : mission_fields::kCriteria) {
+  EXPECT_EQ(low.size(), kCriteriaKeys.size() - least.size());
+  for (const auto& field : kCriteriaKeys) {
     std::size_t named = 0;
     for (const Reasons& reasons : {high, low}) {
       for (const std::string& reason : reasons) {
@@ -89,7 +87,7 @@ TEST(Criteria, AreEachJudgedByAQuantityOfTheirOwn) {
 TEST(Criteria, TakeNoEvidenceForAFailure) {
   const Reasons reasons = failed_criteria(all_set(0.5), Tracking{}, std::nullopt);
 
-  EXPECT_EQ(reasons.size(), mission_fields::kCriteria.size());
+  EXPECT_EQ(reasons.size(), kCriteriaKeys.size());
   for (const std::string& reason : reasons) {
     EXPECT_NE(reason.find(": not measured: "), std::string::npos) << reason;
   }

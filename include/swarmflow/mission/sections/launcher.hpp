@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "swarmflow/mission/options.hpp"
+#include "swarmflow/mission/section_key.hpp"
+
+namespace swarm {
+
+/// Key `launcher`: start and end of a run's processes.
+struct LauncherSpec {
+  double starts_per_s = 60.0;      ///< rate of process starts
+  std::uint32_t starting_max = 8;  ///< most processes started but not received yet
+  double quorum_share = 1.0;       ///< share of robots that is enough after the timeout
+  double quorum_timeout_s = 30.0;  ///< until then all are waited for; missing ones are reported
+  double time_limit_s = 600.0;     ///< longest mission time
+  std::uint32_t respawn_planner_max = 3;  ///< most restarts of the planner
+  std::uint32_t respawn_agent_max = 0;    ///< most restarts of each agent process
+};
+
+/// Keys of the section.
+inline constexpr auto kLauncherKeys = std::to_array<SectionKey<LauncherSpec>>({
+    {"starts_per_s", &LauncherSpec::starts_per_s, positive(10'000),
+     "processes started per second at most"},
+    {"starting_max", &LauncherSpec::starting_max, between(1, 10'000),
+     "processes started and not received yet at most"},
+    {"quorum_share", &LauncherSpec::quorum_share, positive(1),
+     "after the time-out this share of robots is enough"},
+    {"quorum_timeout_s", &LauncherSpec::quorum_timeout_s, positive(3600),
+     "until then all robots are waited for; the missing are named"},
+    {"time_limit_s", &LauncherSpec::time_limit_s, positive(1e6), "of mission time"},
+    {"respawn_planner_max", &LauncherSpec::respawn_planner_max, between(0, 1000),
+     "times that a planner which ended is started again"},
+    {"respawn_agent_max", &LauncherSpec::respawn_agent_max, between(0, 1000),
+     "times that a robot's process which ended is started again"},
+});
+
+}  // namespace swarm

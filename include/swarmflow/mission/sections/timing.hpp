@@ -1,0 +1,35 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+
+#include "swarmflow/mission/options.hpp"
+#include "swarmflow/mission/section_key.hpp"
+
+namespace swarm {
+
+/// Key `timing`: timeouts between processes.
+struct TimingSpec {
+  double heartbeat_hz = 5.0;          ///< rate of the planner's heartbeats
+  double planner_silence_s = 2.0;     ///< robots hold after this time without a heartbeat
+  double neighbour_forget_s = 2.0;    ///< a neighbour is forgotten after this time without a state
+  double clock_skew_warn_s = 0.25;    ///< stamps off by more are reported
+  double clock_skew_refuse_s = 10.0;  ///< messages from further in the future are refused
+};
+
+/// Keys of the section.
+inline constexpr auto kTimingKeys = std::to_array<SectionKey<TimingSpec>>({
+    {"heartbeat_hz", &TimingSpec::heartbeat_hz, between(2, 1000),
+     "the planner's heartbeats per second"},
+    {"planner_silence_s", &TimingSpec::planner_silence_s, positive(3600),
+     "robots hold, avoidance on, without a heartbeat for this long"},
+    {"neighbour_forget_s", &TimingSpec::neighbour_forget_s, positive(60),
+     "until then the radius of a silent neighbour grows by v_max times its age"},
+    {"clock_skew_warn_s", &TimingSpec::clock_skew_warn_s, positive(3600),
+     "clocks that differ by more are warned about"},
+    {"clock_skew_refuse_s", &TimingSpec::clock_skew_refuse_s, positive(3600),
+     "messages of clocks that differ by more are refused"},
+});
+
+}  // namespace swarm
