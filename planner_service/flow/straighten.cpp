@@ -15,6 +15,7 @@
 #include "planner_service/flow/plan_density.hpp"
 #include "planner_service/roadmap/connect.hpp"
 #include "planner_service/roadmap/squeeze.hpp"
+#include "planner_service/same_gaussian.hpp"
 #include "swarm_core/base/assert.hpp"
 #include "swarm_core/gmm/wasserstein.hpp"
 
@@ -34,10 +35,6 @@ constexpr double kStraightenBelowCap = 0.999;  // leaves the check of the whole 
 Mat2 root_of(const Mat2& s) {
   const double root_det = std::sqrt(s(0, 0) * s(1, 1) - s(0, 1) * s(1, 0));
   return (s + root_det * Mat2::Identity()) / std::sqrt(s.trace() + 2.0 * root_det);
-}
-
-bool same(const Gaussian& a, const Gaussian& b) {
-  return a.mean_m() == b.mean_m() && a.covariance_m2() == b.covariance_m2();
 }
 
 // A plan with nodes in the middle of its longer legs, from `first_new` on: the same flow.

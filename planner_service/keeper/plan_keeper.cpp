@@ -8,6 +8,8 @@
 
 #include <fmt/format.h>
 
+#include "planner_service/one_line.hpp"
+
 namespace swarm::planner {
 namespace {
 
@@ -28,14 +30,6 @@ constexpr Duration kSlowFor = std::chrono::seconds(5);
 // Robots this far ahead of the clock follow the clock of an earlier planner.
 constexpr double kRobotsAhead_s = 1.0;
 constexpr std::size_t kNamed = 10;  // robots, in an event
-
-/// Replaces line breaks, since a notice is one line.
-std::string one_line(std::string text) {
-  for (std::size_t at = 0; (at = text.find('\n', at)) != std::string::npos;) {
-    text.replace(at, 1, "; ");
-  }
-  return text;
-}
 
 }  // namespace
 

@@ -9,6 +9,7 @@
 
 #include "planner_service/roadmap/connect.hpp"
 #include "planner_service/roadmap/means.hpp"
+#include "planner_service/same_gaussian.hpp"
 #include "swarm_core/gmm/wasserstein.hpp"
 
 namespace swarm::planner {
@@ -53,10 +54,6 @@ double free_area_m2(const World& world, double clearance_m) {
     }
   }
   return step.x() * step.y() * std::max(1, free);
-}
-
-bool same(const Gaussian& a, const Gaussian& b) {
-  return a.mean_m() == b.mean_m() && a.covariance_m2() == b.covariance_m2();
 }
 
 }  // namespace

@@ -13,8 +13,8 @@
 
 #include "swarm_core/metrics/geodesic_bound.hpp"
 #include "swarm_monitor/audit/fallen_bodies.hpp"
+#include "swarm_monitor/audit/quantile.hpp"
 #include "swarm_monitor/audit/tracking/criteria.hpp"
-#include "swarm_monitor/audit/tracking/quantile.hpp"
 
 namespace swarm::monitor {
 namespace {
@@ -169,14 +169,9 @@ void count_robots(const RecordedRun& run, Audit& audit) {
   if (steps > 0) audit.deadline_miss_ratio = static_cast<double>(late) / static_cast<double>(steps);
   if (recorded_s > 0.0) audit.states_hz = static_cast<double>(states_sent) / recorded_s;
   if (!stop_ms.empty()) {
-    std::sort(stop_ms.begin(), stop_ms.end());
-    const auto quantile = [&](double q) {
-      const auto rank =
-          static_cast<std::size_t>(std::ceil(q * static_cast<double>(stop_ms.size())));
-      return stop_ms[std::max<std::size_t>(rank, 1) - 1];
-    };
-    audit.stop =
-        StopLatency{.p50_ms = quantile(0.5), .p99_ms = quantile(0.99), .max_ms = stop_ms.back()};
+    audit.stop = StopLatency{.p50_ms = quantile(stop_ms, 0.5),
+                             .p99_ms = quantile(stop_ms, 0.99),
+                             .max_ms = quantile(stop_ms, 1.0)};
   }
   if (age.count() > 0) {
     const auto ms = [](std::int64_t us) { return static_cast<double>(us) / 1000.0; };

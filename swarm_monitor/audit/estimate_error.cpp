@@ -3,8 +3,9 @@
 #include "swarm_monitor/audit/estimate_error.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <vector>
+
+#include "swarm_monitor/audit/quantile.hpp"
 
 namespace swarm::monitor {
 namespace {
@@ -27,8 +28,7 @@ std::optional<Vec2> position_at(const Track& track, double time_s) {
 
 }  // namespace
 
-/// The quantiles are nearest-rank ones: the smallest error that at least a share q of the errors do
-/// not exceed. Errors are reported in cm because they are a few cm large.
+/// Errors are reported in cm because they are a few cm large.
 std::optional<EstimateError> estimate_error(std::span<const Track> tracks) {
   std::vector<double> errors_cm;
   for (const Track& track : tracks) {
@@ -39,16 +39,10 @@ std::optional<EstimateError> estimate_error(std::span<const Track> tracks) {
     }
   }
   if (errors_cm.empty()) return std::nullopt;
-  std::sort(errors_cm.begin(), errors_cm.end());
-  const auto quantile = [&](double q) {
-    const auto rank =
-        static_cast<std::size_t>(std::ceil(q * static_cast<double>(errors_cm.size())));
-    return errors_cm[std::max<std::size_t>(rank, 1) - 1];
-  };
-  return EstimateError{.p50_cm = quantile(0.5),
-                       .p99_cm = quantile(0.99),
-                       .p999_cm = quantile(0.999),
-                       .max_cm = errors_cm.back()};
+  return EstimateError{.p50_cm = quantile(errors_cm, 0.5),
+                       .p99_cm = quantile(errors_cm, 0.99),
+                       .p999_cm = quantile(errors_cm, 0.999),
+                       .max_cm = quantile(errors_cm, 1.0)};
 }
 
 }  // namespace swarm::monitor

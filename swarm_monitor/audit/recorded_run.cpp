@@ -124,7 +124,7 @@ void TrackMaker::close_incarnation() {
 /// Closes the last incarnation, whose counters no later header closes.
 Track TrackMaker::finish() {
   close_incarnation();
-  return std::move(track_);
+  return std::exchange(track_, {});
 }
 
 /// The newest scene with a goal of its own decides; without one the mission file's goal holds.

@@ -81,7 +81,7 @@ Result<RecordResult> record_bus(const RecordOptions& options) {
 }
 
 std::string to_json(const RecordResult& result) {
-  nlohmann::json topics;
+  nlohmann::json topics = nlohmann::json::object();  // also if nothing was received
   for (std::size_t i = 0; i < result.by_topic.size(); ++i) {
     if (result.by_topic[i] > 0) topics[recorded_topics()[i].name] = result.by_topic[i];
   }

@@ -104,8 +104,11 @@ std::string escape_xml(std::string_view text) {
   while (!text.empty()) {
     const std::size_t n = utf8_length(text);
     const char c = text[0];
+    // U+FFFE and U+FFFF are UTF-8, but XML allows them nowhere.
+    const std::string_view shown = text.substr(0, n);
+    const bool excluded = shown == "\xEF\xBF\xBE" || shown == "\xEF\xBF\xBF";
     const bool control = n == 1 && static_cast<unsigned char>(c) < 0x20 && c != '\n' && c != '\t';
-    if (n == 0 || control || c == 0x7F) {
+    if (n == 0 || control || excluded || c == 0x7F) {
       out += "\xEF\xBF\xBD";
     } else if (c == '&') {
       out += "&amp;";
@@ -118,7 +121,7 @@ std::string escape_xml(std::string_view text) {
     } else if (c == '\'') {
       out += "&#39;";
     } else {
-      out.append(text.substr(0, n));
+      out.append(shown);
     }
     text.remove_prefix(std::max<std::size_t>(n, 1));
   }

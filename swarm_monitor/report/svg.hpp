@@ -16,8 +16,8 @@
 
 namespace swarm::monitor {
 
-/// Text made safe for the inside of XML and HTML, attributes included; control characters and bytes
-/// that are no UTF-8 become U+FFFD.
+/// Text made safe for the inside of XML and HTML, attributes included; control characters, bytes
+/// that are no UTF-8 and characters that XML does not allow become U+FFFD.
 std::string escape_xml(std::string_view text);
 
 /// Distance of the marks of an axis: 1, 2 or 5 times a power of ten, at most `steps` times in

@@ -18,13 +18,22 @@ bool same_name(std::string_view a, std::string_view b) {
   });
 }
 
-/// "host:8080" and "[::1]:8080" without their ports.
+/// "host:8080" and "[::1]:8080" without their ports; empty if anything but a port follows the name.
 std::string_view without_port(std::string_view host) {
-  if (host.starts_with('[')) return host.substr(1, host.find(']') - 1);
-  return host.substr(0, host.find(':'));
+  const bool bracketed = host.starts_with('[');
+  const std::size_t end = host.find(bracketed ? ']' : ':');
+  if (bracketed && end == std::string_view::npos) return {};
+  const std::string_view name = host.substr(0, end);
+  std::string_view port = host.substr(std::min(host.size(), bracketed ? end + 1 : end));
+  if (!port.empty() && port.front() != ':') return {};
+  port.remove_prefix(port.empty() ? 0 : 1);
+  const bool is_number =
+      std::all_of(port.begin(), port.end(), [](unsigned char c) { return std::isdigit(c) != 0; });
+  return is_number ? name.substr(bracketed ? 1 : 0) : std::string_view{};
 }
 
 bool is_address(const std::string& text) {
+  if (text.find('\0') != std::string::npos) return false;  // inet_pton() would read only up to it
   std::array<unsigned char, sizeof(in6_addr)> address{};
   return ::inet_pton(AF_INET, text.c_str(), address.data()) == 1 ||
          ::inet_pton(AF_INET6, text.c_str(), address.data()) == 1;

@@ -27,7 +27,7 @@ constexpr double kOwnClearance = 0.99;
 constexpr std::size_t kMaxChecksBetween = 9;
 
 // Equal but for rounding, so that find() maps a mixture that a step returned back to its vertices.
-bool same(const Gaussian& a, const Gaussian& b) {
+bool same_but_for_rounding(const Gaussian& a, const Gaussian& b) {
   return (a.mean_m() - b.mean_m()).cwiseAbs().maxCoeff() < 1e-9 &&
          (a.covariance_m2() - b.covariance_m2()).cwiseAbs().maxCoeff() < 1e-9;
 }
@@ -187,7 +187,7 @@ void RiskGraph::search(std::size_t goal) {
 
 std::optional<std::uint32_t> RiskGraph::find(const Gaussian& g) const {
   for (std::uint32_t v = 0; v < vertices_.size(); ++v) {
-    if (same(vertices_[v], g)) return v;
+    if (same_but_for_rounding(vertices_[v], g)) return v;
   }
   return std::nullopt;
 }

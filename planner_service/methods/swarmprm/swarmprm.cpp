@@ -21,6 +21,7 @@
 #include "planner_service/flow/timed_flow.hpp"
 #include "planner_service/flow/transport_lp.hpp"
 #include "planner_service/methods/shared/route_plan.hpp"
+#include "planner_service/one_line.hpp"
 #include "planner_service/roadmap/connect.hpp"
 #include "planner_service/roadmap/edge_check.hpp"
 
@@ -29,13 +30,6 @@ namespace {
 
 // Ratio of a cap to the density of start and goal that leaves room for mass to move at all.
 constexpr double kAboveEnds = 1.05;
-
-std::string in_one_line(std::string text) {
-  for (std::size_t at = 0; (at = text.find('\n', at)) != std::string::npos;) {
-    text.replace(at, 1, "; ");
-  }
-  return text;
-}
 
 // The highest density of the start components together, or of the goal components.
 double density_of_ends_per_m2(const PlanRequest& request, double robots) {
@@ -220,7 +214,7 @@ PlanResult PlanInProgress::capped_where_needed(PlanResult uncapped) {
   if (!result) {
     uncapped.warnings.push_back(
         {"cap-infeasible", fmt::format("planned without a density cap: {}",
-                                       in_one_line(std::move(result.error().message)))});
+                                       one_line(std::move(result.error().message)))});
     return uncapped;
   }
   if (cap.max_per_m2 > options_.limits.cap_per_m2) {

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "swarm_monitor/audit/tracking/quantile.hpp"
+#include "swarm_monitor/audit/quantile.hpp"
 #include "swarm_monitor/audit/tracking/swarm_walk.hpp"
 
 namespace swarm::monitor {

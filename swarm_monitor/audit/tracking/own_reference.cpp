@@ -5,7 +5,7 @@
 #include <cmath>
 #include <map>
 
-#include "swarm_monitor/audit/tracking/quantile.hpp"
+#include "swarm_monitor/audit/quantile.hpp"
 #include "swarm_monitor/audit/tracking/reference_curve.hpp"
 #include "swarm_monitor/audit/tracking/swarm_walk.hpp"
 

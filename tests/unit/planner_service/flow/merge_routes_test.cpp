@@ -8,16 +8,13 @@
 #include <gtest/gtest.h>
 
 #include "planner_service/flow/build_plan.hpp"
+#include "planner_service/same_gaussian.hpp"
 #include "swarmflow/core/random.hpp"
 
 namespace swarm::planner {
 namespace {
 
 Gaussian at(double x, double y) { return Gaussian::from_parameters({x, y}, 1.0, 1.0, 0.0); }
-
-bool same(const Gaussian& a, const Gaussian& b) {
-  return a.mean_m() == b.mean_m() && a.covariance_m2() == b.covariance_m2();
-}
 
 // The node of the plan at the end of a leg from one of `nodes` whose Gaussian is `next`.
 std::vector<std::uint32_t> step(const FlowPlan& plan, const std::vector<std::uint32_t>& nodes,

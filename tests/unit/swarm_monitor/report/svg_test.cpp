@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "swarm_monitor/report/svg.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -45,6 +46,13 @@ TEST(EscapeXml, ReplacesBytesThatAreNoText) {
   EXPECT_EQ(escape_xml("\xED\xA0\x80"), replacement + replacement + replacement);  // surrogate
 }
 
+TEST(EscapeXml, ReplacesCharactersThatXmlDoesNotAllow) {
+  const std::string replacement = "\xEF\xBF\xBD";
+  EXPECT_EQ(escape_xml("a\xEF\xBF\xBE\xEF\xBF\xBF"), "a" + replacement + replacement);
+  EXPECT_EQ(escape_xml("\x1B[2J\x7F\r"), replacement + "[2J" + replacement + replacement);
+  EXPECT_EQ(escape_xml("a\tb\nc"), "a\tb\nc");
+}
+
 TEST(RoundStep, GivesAtMostTheAskedStepsOfOneTwoOrFive) {
   EXPECT_DOUBLE_EQ(round_step(200.0, 6.0), 50.0);
   EXPECT_DOUBLE_EQ(round_step(40.0, 8.0), 5.0);
@@ -72,6 +80,43 @@ TEST(Simplify, KeepsEveryPointWithinTheTolerance) {
     }
     EXPECT_LE(nearest, 0.5 + 1e-12);
   }
+}
+
+TEST(RoundStep, IsTheSmallestThatFits) {
+  Rng rng(13);
+  for (int round = 0; round < 2000; ++round) {
+    const double span = std::pow(10.0, uniform(rng, -9.0, 9.0));
+    const double steps = uniform(rng, 1.0, 20.0);
+
+    const double step = round_step(span, steps);
+
+    const double power = std::pow(10.0, std::floor(std::log10(step) + 1e-9));
+    const double factor = step / power;
+    ASSERT_TRUE(std::abs(factor - 1.0) < 1e-9 || std::abs(factor - 2.0) < 1e-9 ||
+                std::abs(factor - 5.0) < 1e-9)
+        << span << " " << steps;
+    EXPECT_GE(step * steps, span * (1.0 - 1e-12));
+    const double smaller =
+        factor > 1.5 && factor < 2.5 ? step / 2.0 : step / (factor > 4 ? 2.5 : 2.0);
+    EXPECT_LT(smaller * steps, span) << "the next smaller one would do";
+  }
+}
+
+TEST(Simplify, KeepsALoopThatEndsWhereItBegan) {
+  //  (0,2) ── (2,2)     The chord from begin to end is a point: distances are those to it.
+  //    │        │
+  //  (0,0) ── (2,0)
+  const std::vector<Vec2> loop{{0, 0}, {1, 0}, {2, 0}, {2, 2}, {0, 2}, {0, 0}};
+
+  EXPECT_EQ(simplify(loop, 0.1), (std::vector<Vec2>{{0, 0}, {2, 0}, {2, 2}, {0, 2}, {0, 0}}));
+}
+
+TEST(Simplify, LeavesShortStrokesAsTheyAre) {
+  for (const std::vector<Vec2>& stroke :
+       {std::vector<Vec2>{}, std::vector<Vec2>{{1, 2}}, std::vector<Vec2>{{1, 2}, {1, 2}}}) {
+    EXPECT_EQ(simplify(stroke, 10.0), stroke);
+  }
+  EXPECT_EQ(simplify(std::vector<Vec2>(50, Vec2(3, 4)), 0.0).size(), 2U) << "a robot at rest";
 }
 
 TEST(Simplify, ReducesAStraightLineToItsEnds) {

@@ -1,0 +1,102 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "swarm_monitor/audit/fallen_bodies.hpp"
+
+#include <gtest/gtest.h>
+
+namespace swarm::monitor {
+namespace {
+
+const UtcTime kBegin(std::chrono::seconds(1'800'000'000));
+
+/// A robot whose steps are at these times.
+Track track_of(std::uint32_t robot, std::vector<double> times_s, bool gracefully) {
+  Track track{.robot = RobotId(robot), .ended_gracefully = gracefully};
+  for (const double time_s : times_s) track.points.push_back({.time_s = time_s});
+  return track;
+}
+
+/// A run with the scenes after these changes, each at a time since the begin.
+RecordedRun run_with(std::vector<Track> tracks,
+                     const std::vector<std::pair<double, SceneChange>>& changes) {
+  RecordedRun run;
+  run.begin = kBegin;
+  run.tracks = std::move(tracks);
+  run.scenes = {first_scene(0)};
+  for (const auto& [time_s, change] : changes) {
+    auto next = after(run.scenes.back(), change, run.mission.world, kBegin + from_seconds(time_s));
+    EXPECT_TRUE(next.has_value()) << next.error().message;
+    run.scenes.push_back(*next);
+  }
+  lay_fallen_bodies(run);
+  return run;
+}
+
+AddBody falls(std::uint32_t robot) { return {RobotId(robot), Circle{{0, 0}, 0.5}}; }
+ClearBody is_cleared(std::uint32_t robot) { return {RobotId(robot)}; }
+
+bool has_body(const Track& track) { return track.body_until_s >= track.points.back().time_s; }
+
+TEST(FallenBodies, LieUntilTheEndOfTheRun) {
+  const RecordedRun run =
+      run_with({track_of(0, {0, 10, 30}, true), track_of(1, {0, 5}, false)}, {{7.0, falls(1)}});
+
+  EXPECT_EQ(run.tracks[1].body_until_s, 30.0);
+  EXPECT_FALSE(has_body(run.tracks[0])) << "it ended gracefully";
+}
+
+TEST(FallenBodies, LieAlsoIfNoSceneRecordedThem) {
+  const RecordedRun run = run_with({track_of(0, {0, 30}, true), track_of(1, {0, 5}, false)}, {});
+
+  EXPECT_EQ(run.tracks[1].body_until_s, 30.0);
+}
+
+TEST(FallenBodies, LieUntilTheyAreCleared) {
+  const RecordedRun run = run_with({track_of(0, {0, 30}, true), track_of(1, {0, 5}, false)},
+                                   {{7.0, falls(1)}, {12.5, is_cleared(1)}});
+
+  EXPECT_NEAR(run.tracks[1].body_until_s, 12.5, 1e-9);
+}
+
+TEST(FallenBodies, OfARobotThatCameBackAndFellAgainLieFromItsSecondFall) {
+  // It fell at second 5, came back at second 9 when its body was cleared, and fell at second 20.
+  const RecordedRun run = run_with({track_of(0, {0, 40}, true), track_of(1, {0, 5, 10, 20}, false)},
+                                   {{6.0, falls(1)}, {9.0, is_cleared(1)}, {22.0, falls(1)}});
+
+  EXPECT_EQ(run.tracks[1].body_until_s, 40.0) << "the first body's end is not the second one's";
+}
+
+TEST(FallenBodies, AreEachClearedByThemselves) {
+  const RecordedRun run =
+      run_with({track_of(0, {0, 40}, true), track_of(1, {0, 5}, false), track_of(2, {0, 6}, false)},
+               {{6.0, falls(1)}, {7.0, falls(2)}, {15.0, is_cleared(2)}, {30.0, is_cleared(1)}});
+
+  EXPECT_NEAR(run.tracks[1].body_until_s, 30.0, 1e-9);
+  EXPECT_NEAR(run.tracks[2].body_until_s, 15.0, 1e-9);
+}
+
+TEST(FallenBodies, ThatAreClearedAfterTheRunLieUntilItsEnd) {
+  const RecordedRun run = run_with({track_of(0, {0, 30}, true), track_of(1, {0, 5}, false)},
+                                   {{7.0, falls(1)}, {50.0, is_cleared(1)}});
+
+  EXPECT_EQ(run.tracks[1].body_until_s, 30.0);
+}
+
+TEST(FallenBodies, OfARespawnedRobotAreItsTrack) {
+  const RecordedRun run = run_with({track_of(0, {0, 40}, true), track_of(1, {0, 5, 10, 35}, true)},
+                                   {{6.0, falls(1)}, {9.0, is_cleared(1)}});
+
+  EXPECT_FALSE(has_body(run.tracks[1]));
+}
+
+TEST(FallenBodies, OfRobotsWithoutALogOrOfAnotherMissionAreNone) {
+  // Robot 1 never logged a step, robot 7 is not of this mission.
+  const RecordedRun run =
+      run_with({track_of(0, {0, 40}, true), track_of(1, {}, false)},
+               {{6.0, falls(1)}, {7.0, falls(7)}, {8.0, is_cleared(1)}, {9.0, is_cleared(7)}});
+
+  EXPECT_EQ(run.tracks[1].body_until_s, 0.0);
+}
+
+}  // namespace
+}  // namespace swarm::monitor
