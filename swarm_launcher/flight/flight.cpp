@@ -3,7 +3,6 @@
 #include "swarm_launcher/flight/flight.hpp"
 
 #include <algorithm>
-#include <csignal>
 #include <cstdio>
 #include <thread>
 
@@ -124,7 +123,7 @@ Result<std::unique_ptr<Flight>> Flight::make(FlightOptions options, FlightObserv
 
 // Only after an error are there children left: they must not outlive the launcher.
 Flight::~Flight() {
-  for (const auto& [pid, process] : children_) ::kill(pid, SIGKILL);
+  for (const auto& [pid, process] : children_) spawner_.signal(pid, EndSignal::kKill);
 }
 
 /// The endpoints of the launcher on the bus.
@@ -250,7 +249,7 @@ Result<void> Flight::start(ProcessIndex process) {
   if (!options_.how.fault.empty())
     command_line.insert(command_line.end(), {"--fault", options_.how.fault});
   command_line.insert(command_line.end(), {"--parent", fmt::format("{}", ::getpid())});
-  const auto pid = start_process(command_line, dir_ / shell::kLogsFolder / log);
+  const auto pid = spawner_.start(command_line, dir_ / shell::kLogsFolder / log);
   if (!pid) return tl::unexpected(pid.error());
   children_.emplace(*pid, process);
   return {};
@@ -284,7 +283,7 @@ Result<void> Flight::act(const Action& action) {
     }
   } else if (const auto* signal = std::get_if<SignalProcess>(&action)) {
     for (const auto& [pid, process] : children_) {
-      if (process == signal->process) ::kill(pid, number_of(signal->signal));
+      if (process == signal->process) spawner_.signal(pid, signal->signal);
     }
     if (hosts_) hosts_->end(signal->process, signal->signal);
   } else if (const auto* fallen = std::get_if<AddBodies>(&action)) {
@@ -299,7 +298,7 @@ Result<void> Flight::act(const Action& action) {
 
 // Children that are neither planner nor agent are monitors or the gateway.
 void Flight::reap(SteadyTime now) {
-  while (const auto child = reap_child()) {
+  while (const auto child = spawner_.reap()) {
     const auto known = children_.find(child->pid);
     if (known == children_.end()) {
       const auto monitor = monitors_->on_exit(child->pid);

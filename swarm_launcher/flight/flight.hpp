@@ -24,6 +24,7 @@
 #include "swarm_launcher/flight/swarm_view.hpp"
 #include "swarm_launcher/hosts/remote_hosts.hpp"
 #include "swarm_launcher/processes/channel_choice.hpp"
+#include "swarm_launcher/processes/child_process.hpp"
 #include "swarm_launcher/supervision/event_log.hpp"
 #include "swarm_launcher/supervision/fallen_body.hpp"
 #include "swarm_launcher/supervision/progress.hpp"
@@ -119,6 +120,7 @@ class Flight {
   std::uint32_t relays_;
   std::filesystem::path dir_;
   link::DomainLock lock_;
+  ChildSpawner spawner_;
   EventLog events_;
   Progress progress_;
   std::unique_ptr<link::DiscoveryServer> server_;  // none with static peers
