@@ -14,16 +14,11 @@
 #include <sys/types.h>
 
 #include "swarm_core/app/control_socket.hpp"
-#include "swarm_core/app/run_directory.hpp"
 #include "swarm_core/mission/channel.hpp"
-#include "swarm_launcher/flight/flight_choices.hpp"
 #include "swarm_launcher/flight/gateway.hpp"
-#include "swarm_launcher/flight/health_inbox.hpp"
 #include "swarm_launcher/flight/monitors.hpp"
-#include "swarm_launcher/flight/scene_keeper.hpp"
+#include "swarm_launcher/flight/prepared_run.hpp"
 #include "swarm_launcher/flight/swarm_view.hpp"
-#include "swarm_launcher/hosts/remote_hosts.hpp"
-#include "swarm_launcher/processes/channel_choice.hpp"
 #include "swarm_launcher/processes/child_process.hpp"
 #include "swarm_launcher/supervision/event_log.hpp"
 #include "swarm_launcher/supervision/fallen_body.hpp"
@@ -31,19 +26,10 @@
 #include "swarm_launcher/supervision/summary.hpp"
 #include "swarm_launcher/supervision/supervisor.hpp"
 #include "swarm_link/messages.hpp"
-#include "swarm_link/roles/domain_lock.hpp"
-#include "swarm_link/roles/join.hpp"
 #include "swarmflow/core/result.hpp"
 #include "swarmflow/mission/mission.hpp"
 
 namespace swarm::launcher {
-
-/// What to fly and how.
-struct FlightOptions {
-  Mission mission;
-  std::uint32_t per_process = 1;  ///< robots of an agent process
-  FlightChoices how{};
-};
 
 class Flight;
 
@@ -63,8 +49,7 @@ class FlightObserver {
 /// thread; the Supervisor decides, the flight acts and reports back.
 class Flight {
  public:
-  /// Checks the options, reserves a DDS domain, creates the run directory and joins the bus. \pre
-  /// the observer, if any, outlives the flight
+  /// Prepares the run, see PreparedRun. \pre the observer, if any, outlives the flight
   static Result<std::unique_ptr<Flight>> make(FlightOptions options,
                                               FlightObserver* observer = nullptr);
   ~Flight();
@@ -74,9 +59,9 @@ class Flight {
   /// Flies the whole mission, from the first process to the last. Call it once.
   Result<Measurements> fly();
 
-  const std::filesystem::path& dir() const { return dir_; }
-  Channel channel() const { return channel_.channel; }
-  std::uint32_t domain() const { return lock_.domain(); }
+  const std::filesystem::path& dir() const { return run_->dir(); }
+  Channel channel() const { return run_->channel().channel; }
+  std::uint32_t domain() const { return run_->info().domain; }
   const Supervisor& supervisor() const { return *supervisor_; }
   /// Running planner and agent processes of this host.
   const std::map<pid_t, ProcessIndex>& children() const { return children_; }
@@ -84,17 +69,16 @@ class Flight {
   std::string planner_complaint() const;
 
  private:
-  Flight(FlightOptions options, FlightObserver* observer, std::filesystem::path dir,
-         link::DomainLock lock, ChannelChoice channel, std::uint32_t relays);
+  Flight(std::unique_ptr<PreparedRun> run, FlightObserver* observer);
 
-  /// Joins the bus and creates everything that needs the bus or the run directory.
-  Result<void> join();
-  Result<void> open_endpoints();
-  void report_channel(const shell::RunInfo& run);
+  /// Creates the supervisor and starts the processes that are neither planner nor agent.
+  Result<void> begin();
+  void report_channel();
+  /// Prints where other hosts join.
+  void report_hosts();
   /// Executes one decision of the Supervisor.
   Result<void> act(const Action& action);
   Result<void> start(ProcessIndex process);
-  Result<void> open_to_hosts(const shell::RunInfo& run);
   /// Writes an event to the event log and publishes it; warnings are also printed.
   void log(const LogEvent& event);
   void note(link::Severity severity, const std::string& code, const std::string& text);
@@ -114,28 +98,15 @@ class Flight {
   void serve_control(SteadyTime now);
   void show(SteadyTime now);
 
-  FlightOptions options_;
   FlightObserver* observer_;
-  ChannelChoice channel_;
-  std::uint32_t relays_;
-  std::filesystem::path dir_;
-  link::DomainLock lock_;
+  std::unique_ptr<PreparedRun> run_;
   ChildSpawner spawner_;
   EventLog events_;
   Progress progress_;
-  std::unique_ptr<link::DiscoveryServer> server_;  // none with static peers
-  std::unique_ptr<link::Participant> participant_;
-  std::optional<HealthInbox> inbox_;
-  link::WriterPtr<link::CommandMessage> command_writer_;
-  link::WriterPtr<link::StatusMessage> status_relay_;  // for monitors
-  link::WriterPtr<link::EventMessage> event_relay_;
-  std::optional<shell::ControlServer> control_;
-  std::optional<RemoteHosts> hosts_;
   std::optional<GatewayKeeper> gateway_;
   std::optional<Monitors> monitors_;
   std::vector<shell::ControlServer::ClientId>
       stopping_;  // clients that wait for the confirmation of a stop
-  std::optional<SceneKeeper> scene_;
   std::optional<Supervisor> supervisor_;
   SwarmView view_;
   std::vector<std::optional<LastKnown>> reported_;  // by the newest status of each robot

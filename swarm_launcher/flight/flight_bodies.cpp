@@ -14,9 +14,9 @@ namespace swarm::launcher {
 /// its last status is up to a second old.
 std::optional<LastKnown> Flight::last_known_of(RobotId robot) const {
   const std::optional<LastKnown>& reported = reported_.at(robot.value());
-  const auto steps = robot_log::last_steps(robot_log::file_of(dir_, robot));
+  const auto steps = robot_log::last_steps(robot_log::file_of(run_->dir(), robot));
   if (!steps) return reported;
-  const auto logged = last_known(*steps, options_.mission);
+  const auto logged = last_known(*steps, run_->options().mission);
   return !logged || (reported && reported->at > logged->at) ? reported : logged;
 }
 
@@ -29,9 +29,10 @@ void Flight::add_bodies(std::span<const RobotId> robots) {
     const auto known = last_known_of(robot);
     (known ? added : unknown).push_back(robot);
     if (!known) continue;
-    changes.emplace_back(AddBody{robot, circle_of_fallen(*known, now, options_.mission, robot)});
+    changes.emplace_back(
+        AddBody{robot, circle_of_fallen(*known, now, run_->options().mission, robot)});
   }
-  const std::vector<Error> refused = scene_->change_all(changes, now);
+  const std::vector<Error> refused = run_->scene().change_all(changes, now);
   if (!added.empty()) {
     log({.warning = true,
          .code = "body-added",
@@ -57,12 +58,12 @@ void Flight::clear_bodies(std::span<const RobotId> robots) {
   std::vector<SceneChange> changes;
   std::vector<RobotId> cleared;
   for (const RobotId robot : robots) {
-    if (!has_body(scene_->scene(), robot)) continue;
+    if (!has_body(run_->scene().scene(), robot)) continue;
     changes.emplace_back(ClearBody{robot});
     cleared.push_back(robot);
   }
   if (changes.empty()) return;
-  scene_->change_all(changes, utc_now());
+  run_->scene().change_all(changes, utc_now());
   log({.code = "body-cleared",
        .text = fmt::format("received again, no obstacles any more: {}", describe(cleared))});
 }

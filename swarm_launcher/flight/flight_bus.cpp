@@ -9,18 +9,18 @@ namespace swarm::launcher {
 // The UTC stamp serves as the command's id, so ids increase also after a restart of the launcher.
 void Flight::send(CommandKind kind) {
   const std::int64_t stamp = utc_now().time_since_epoch().count();
-  command_writer_->write(
+  run_->bus().commands->write(
       {.kind = kind, .command_id = static_cast<std::uint64_t>(stamp), .stamp_utc_ns = stamp});
 }
 
 void Flight::note(link::Severity severity, const std::string& code, const std::string& text) {
   const UtcTime now = utc_now();
   events_.write(now, "launcher", severity, code, text);
-  event_relay_->write({.severity = severity,
-                       .source = link::kLauncherSource,
-                       .stamp_utc_ns = now.time_since_epoch().count(),
-                       .code = code,
-                       .text = text});
+  run_->bus().event_relay->write({.severity = severity,
+                                  .source = link::kLauncherSource,
+                                  .stamp_utc_ns = now.time_since_epoch().count(),
+                                  .code = code,
+                                  .text = text});
 }
 
 void Flight::log(const LogEvent& event) {
@@ -31,11 +31,11 @@ void Flight::log(const LogEvent& event) {
 // Republishes statuses and events for monitors, which do not discover the agents. Positions are
 // kept for robots that fall, and each robot's report goes to the supervisor.
 void Flight::read_bus(SteadyTime now) {
-  participant_->receive();
-  inbox_->receive(utc_now());
-  for (const link::StatusMessage& status : inbox_->statuses()) {
+  run_->bus().participant->receive();
+  run_->bus().inbox.receive(utc_now());
+  for (const link::StatusMessage& status : run_->bus().inbox.statuses()) {
     if (observer_ != nullptr) observer_->on_status(status);
-    status_relay_->write(status);
+    run_->bus().status_relay->write(status);
     const UtcTime stamp(Duration(status.stamp_utc_ns));
     // The sender's stamp on the launcher's steady clock, which the supervisor uses.
     const SteadyTime sent_at = now - (utc_now() - stamp);
@@ -43,7 +43,7 @@ void Flight::read_bus(SteadyTime now) {
       view_.take(robot);
       reported_[robot.robot_id] = {
           .at = stamp, .position_m = {robot.x_m, robot.y_m}, .at_rest = robot.settled};
-      if (hosts_) hosts_->on_status(RobotId(robot.robot_id), now);
+      if (run_->hosts() != nullptr) run_->hosts()->on_status(RobotId(robot.robot_id), now);
       supervisor_->on_status(RobotId(robot.robot_id),
                              {.has_plan = status.plan_version > 0,
                               .receives_neighbours = view_.receives_neighbours(robot.robot_id),
@@ -53,9 +53,9 @@ void Flight::read_bus(SteadyTime now) {
                               .sent_at = sent_at});
     }
   }
-  for (const link::EventMessage& event : inbox_->events()) {
+  for (const link::EventMessage& event : run_->bus().inbox.events()) {
     events_.write(event);
-    event_relay_->write(event);
+    run_->bus().event_relay->write(event);
   }
 }
 

@@ -10,6 +10,7 @@
 #include "swarm_core/mission/channel.hpp"
 #include "swarm_launcher/flight/monitors.hpp"
 #include "swarm_launcher/processes/agent_dds.hpp"
+#include "swarmflow/mission/mission.hpp"
 
 namespace swarm::launcher {
 
@@ -30,6 +31,16 @@ struct FlightChoices {
   std::uint32_t remote = 0;                 ///< the last robots, which other hosts start
   std::uint16_t join_port = 0;              ///< TCP port for those hosts; 0: a free one
   MonitorOptions monitors{};                ///< recording and view
+};
+
+/// What to fly and how.
+struct FlightOptions {
+  Mission mission;
+  std::uint32_t per_process = 1;  ///< robots of an agent process
+  FlightChoices how{};
+
+  /// Agent processes of all hosts.
+  std::uint32_t agents() const { return (mission.robots.count + per_process - 1) / per_process; }
 };
 
 }  // namespace swarm::launcher
