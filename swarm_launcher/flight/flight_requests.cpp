@@ -59,15 +59,19 @@ void FlightLoop::serve_command(CommandKind kind, ControlRequests::ClientId clien
 }
 
 // Answers waiting stop requests: when no robot is left that has not confirmed, or when the
-// supervisor gives up and ends the run.
+// supervisor gives up and ends the run. A run that ends for another reason takes no commands.
 void FlightLoop::answer_stops() {
-  if (stopping_.empty() || supervisor_.phase() != MissionPhase::kStopped) return;
+  const bool ending = supervisor_.stage() == Supervisor::Stage::kEnding;
+  const bool stopped = supervisor_.phase() == MissionPhase::kStopped;
+  if (stopping_.empty() || (!stopped && !ending)) return;
   const auto unstopped = supervisor_.unstopped();
-  if (!unstopped.empty() && supervisor_.stage() != Supervisor::Stage::kEnding) return;
-  const std::string answer =
-      unstopped.empty()
-          ? fmt::format("done: {} robots confirmed the stop", supervisor_.counts().stopped)
-          : "failed: stop not confirmed by robots " + describe(unstopped);
+  if (stopped && !unstopped.empty() && !ending) return;
+  std::string answer = "failed: the run is ending, no stop was sent";
+  if (stopped && unstopped.empty()) {
+    answer = fmt::format("done: {} robots confirmed the stop", supervisor_.counts().stopped);
+  } else if (stopped) {
+    answer = "failed: stop not confirmed by robots " + describe(unstopped);
+  }
   for (const ControlRequests::ClientId client : stopping_) ports_.control.answer(client, answer);
   stopping_.clear();
 }
