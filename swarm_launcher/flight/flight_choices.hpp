@@ -9,7 +9,7 @@
 
 #include "swarm_core/mission/channel.hpp"
 #include "swarm_launcher/flight/monitors.hpp"
-#include "swarm_launcher/processes/agent_dds.hpp"
+#include "swarm_launcher/processes/run_vendors.hpp"
 #include "swarmflow/mission/mission.hpp"
 
 namespace swarm::launcher {
@@ -23,9 +23,7 @@ struct FlightChoices {
   std::filesystem::path planner_program{};  ///< empty: planner_service of this build
   int domain = -1;                          ///< DDS domain; negative: a free one
   std::optional<Channel> channel{};         ///< empty: choose_channel() decides
-  AgentDds agent_dds = AgentDds::kFastDds;  ///< DDS implementation of the agents
-  bool cyclone_launcher = false;            ///< the launcher uses Cyclone DDS
-  bool cyclone_planner = false;             ///< the planner uses Cyclone DDS
+  RunVendors dds{};                         ///< DDS implementations
   std::uint32_t by_gateway = 0;             ///< the first agent processes, which use topics
   std::string interface = "127.0.0.1";      ///< address of the interface to the network
   std::uint32_t remote = 0;                 ///< the last robots, which other hosts start

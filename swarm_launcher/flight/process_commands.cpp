@@ -24,11 +24,6 @@ ProcessCommand complete(std::vector<std::string> line, const FlightChoices& how,
   return {.line = std::move(line), .log = dir / shell::kLogsFolder / log};
 }
 
-bool uses_cyclone(const FlightChoices& how, ProcessIndex process) {
-  return process.value() <= how.by_gateway || how.agent_dds == AgentDds::kCycloneDds ||
-         (how.agent_dds == AgentDds::kHalf && process.value() % 2 == 0);
-}
-
 }  // namespace
 
 // The topic of the plan belongs to a killed planner until its lease ends, unless its successor has
@@ -51,8 +46,12 @@ ProcessCommand agent_command(const FlightChoices& how, const std::filesystem::pa
                                    fmt::format("{}", count),
                                    "--number",
                                    fmt::format("{}", process.value() - 1)};
-  if (uses_cyclone(how, process)) line.insert(line.end(), {"--dds", "cyclonedds"});
-  if (process.value() <= how.by_gateway) line.emplace_back("--by-gateway");
+  const bool by_gateway = process.value() <= how.by_gateway;
+  const link::Vendor vendor = by_gateway ? link::Vendor::kCycloneDds : how.dds.agents;
+  if (vendor != link::Vendor::kFastDds) {
+    line.insert(line.end(), {"--dds", std::string(to_string(vendor))});
+  }
+  if (by_gateway) line.emplace_back("--by-gateway");
   return complete(std::move(line), how, dir, fmt::format("agent-{:05}.log", first.value()));
 }
 

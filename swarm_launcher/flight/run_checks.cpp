@@ -36,8 +36,7 @@ Result<void> check_remote(const FlightOptions& options) {
 // Refuses DDS implementations that the channel or this build does not support.
 Result<void> check_vendors(const FlightChoices& how, Channel channel,
                            const RunAbilities& abilities) {
-  const bool cyclone = how.agent_dds != AgentDds::kFastDds || how.cyclone_launcher ||
-                       how.cyclone_planner || how.by_gateway > 0;
+  const bool cyclone = how.dds.any(link::Vendor::kCycloneDds) || how.by_gateway > 0;
   if (cyclone && channel != Channel::kGroups) {
     return fail(ErrorCode::kBadInput,
                 "Cyclone DDS joins without a discovery server; add --channel groups");
@@ -75,8 +74,9 @@ Result<CheckedRun> check_run(FlightOptions options, const RunAbilities& abilitie
   if (how.remote > 0) how.channel = Channel::kGroups;
   // A build with Cyclone DDS only uses it for all processes.
   if (!abilities.fastdds) {
-    how.agent_dds = AgentDds::kCycloneDds;
-    how.cyclone_launcher = how.cyclone_planner = true;
+    how.dds = {.launcher = link::Vendor::kCycloneDds,
+               .planner = link::Vendor::kCycloneDds,
+               .agents = link::Vendor::kCycloneDds};
     if (!how.channel) how.channel = Channel::kGroups;
   }
   auto channel = choose_channel({.wanted = how.channel,
