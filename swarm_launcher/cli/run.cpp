@@ -8,6 +8,7 @@
 
 #include "swarm_launcher/cli/commands.hpp"
 #include "swarm_launcher/cli/shared_options.hpp"
+#include "swarm_launcher/processes/run_vendors.hpp"
 
 namespace swarm::launcher::cli {
 

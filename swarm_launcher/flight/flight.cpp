@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <sys/resource.h>
 
+#include "swarm_core/app/run_directory.hpp"
 #include "swarm_core/app/stop_signal.hpp"
 #include "swarm_core/base/clock.hpp"
 #include "swarm_core/robot_log/robot_log_file.hpp"
