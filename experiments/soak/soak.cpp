@@ -8,6 +8,7 @@
 #include "experiments/soak/soak_mission.hpp"
 #include "experiments/soak/soak_watch.hpp"
 #include "swarm_core/app/run_directory.hpp"
+#include "swarm_launcher/flight/flight.hpp"
 #include "swarm_launcher/processes/child_process.hpp"
 #include "swarm_monitor/audit/audit.hpp"
 

@@ -63,7 +63,7 @@ void SoakWatch::on_status(const link::StatusMessage& status) {
 
 /// Called by the flight at every step: marks begin and end of the measurement, and takes a sample
 /// when one is due.
-void SoakWatch::on_step(const Flight& flight, SteadyTime now) {
+void SoakWatch::on_step(const FlightLoop& flight, SteadyTime now) {
   const bool running = flight.supervisor().stage() == Supervisor::Stage::kRunning;
   if (running && !running_) {
     drops_before_ = udp_receive_drops();
@@ -77,7 +77,7 @@ void SoakWatch::on_step(const Flight& flight, SteadyTime now) {
 
 /// Rates are differences to the last sample. CPU counts all processes of the run, memory and
 /// threads the agents alone.
-void SoakWatch::sample(const Flight& flight, SteadyTime now) {
+void SoakWatch::sample(const FlightLoop& flight, SteadyTime now) {
   SoakSample s{.time_s = flight.supervisor().mission_time(now).count()};
   double cpu_s = 0.0;
   std::uint64_t switches = 0;

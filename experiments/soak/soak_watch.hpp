@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "experiments/soak/soak_measurements.hpp"
-#include "swarm_launcher/flight/flight.hpp"
+#include "swarm_launcher/flight/flight_loop.hpp"
 #include "swarm_link/channels/groups/group_tap.hpp"
 
 namespace swarm::launcher {
@@ -30,7 +30,7 @@ class SoakWatch final : public FlightObserver {
   void listen(std::unique_ptr<link::GroupTap> tap);
 
   void on_status(const link::StatusMessage& status) override;
-  void on_step(const Flight& flight, SteadyTime now) override;
+  void on_step(const FlightLoop& flight, SteadyTime now) override;
   std::string describe() override;
 
   /// The measurements so far.
@@ -40,7 +40,7 @@ class SoakWatch final : public FlightObserver {
   /// The loop of the listener's thread.
   void receive_all();
   /// Takes one sample of all processes.
-  void sample(const Flight& flight, SteadyTime now);
+  void sample(const FlightLoop& flight, SteadyTime now);
 
   /// Counters of a robot when the mission began and now.
   struct Robot {

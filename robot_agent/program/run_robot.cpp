@@ -3,7 +3,6 @@
 #include "swarmflow/robot/run_robot.hpp"
 
 #include <cstdio>
-#include <map>
 #include <string>
 
 #include <CLI/CLI.hpp>
@@ -11,6 +10,7 @@
 #include "robot_agent/program/agent_process.hpp"
 #include "swarm_core/app/program.hpp"
 #include "swarm_core/app/stop_signal.hpp"
+#include "swarm_core/app/vendor_option.hpp"
 
 namespace swarm::agent {
 namespace {
@@ -24,16 +24,13 @@ struct CommandLine {
 };
 
 void add_options(CLI::App& app, CommandLine& line) {
-  static const std::map<std::string, link::Vendor> kVendors = {
-      {"fastdds", link::Vendor::kFastDds}, {"cyclonedds", link::Vendor::kCycloneDds}};
   app.add_option("--run", line.options.run_dir, "Run directory made by the launcher");
   app.add_option("--ids", line.first, "First robot of this process");
   app.add_option("--count", line.options.count, "Number of robots in this process");
   app.add_option("--number", line.options.number, "Of this agent process in the run, from 0");
   app.add_option("--parent", line.options.parent_pid,
                  "End when this process is no longer our parent");
-  app.add_option("--dds", line.options.vendor, "Whose DDS it speaks")
-      ->transform(CLI::CheckedTransformer(kVendors));
+  shell::add_vendor_option(app, line.options.vendor, "DDS vendor of this process");
   app.add_flag("--by-gateway", line.options.by_gateway,
                "Its states go by topics through the gateway, where the others' go by groups");
   app.add_option("--fault", line.fault, "A bad network for what this process receives");

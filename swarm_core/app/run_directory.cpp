@@ -61,8 +61,8 @@ Result<void> write_run_info(const std::filesystem::path& run_dir, const RunInfo&
                                {"discovery_port", info.discovery_port},
                                {"agents", info.agents},
                                {"hubs", info.relays},
-                               {"cyclone_launcher", info.cyclone_launcher},
-                               {"cyclone_planner", info.cyclone_planner},
+                               {"cyclone_launcher", info.launcher == link::Vendor::kCycloneDds},
+                               {"cyclone_planner", info.planner == link::Vendor::kCycloneDds},
                                {"host", info.host},
                                {"interface", info.interface},
                                {"channel", to_string(info.channel)},
@@ -78,13 +78,16 @@ Result<RunInfo> read_run_info(const std::filesystem::path& run_dir) {
   if (!text) return tl::unexpected(text.error());
   try {
     const auto json = nlohmann::json::parse(*text);
+    const auto vendor = [&json](const char* is_cyclone) {
+      return json.at(is_cyclone).get<bool>() ? link::Vendor::kCycloneDds : link::Vendor::kFastDds;
+    };
     return RunInfo{.domain = json.at("domain").get<std::uint32_t>(),
                    .discovery_host = json.at("discovery_host").get<std::string>(),
                    .discovery_port = json.at("discovery_port").get<std::uint16_t>(),
                    .agents = json.at("agents").get<std::uint32_t>(),
                    .relays = json.at("hubs").get<std::uint32_t>(),
-                   .cyclone_launcher = json.at("cyclone_launcher").get<bool>(),
-                   .cyclone_planner = json.at("cyclone_planner").get<bool>(),
+                   .launcher = vendor("cyclone_launcher"),
+                   .planner = vendor("cyclone_planner"),
                    .host = json.at("host").get<std::string>(),
                    .interface = json.at("interface").get<std::string>(),
                    .channel = json.at("channel").get<std::string>() == to_string(Channel::kGroups)

@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "swarm_core/mission/channel.hpp"
+#include "swarm_core/mission/vendor.hpp"
 #include "swarmflow/core/result.hpp"
 #include "swarmflow/core/time.hpp"
 
@@ -37,9 +38,9 @@ struct RunInfo {
   std::uint32_t agents = 0;  ///< number of agent processes
   /// Relay participants of launcher and planner each; 0: all use the discovery server.
   std::uint32_t relays = 0;
-  bool cyclone_launcher = false;        ///< whether the launcher uses Cyclone DDS
-  bool cyclone_planner = false;         ///< whether the planner uses Cyclone DDS
-  std::string host = "127.0.0.1";       ///< address of the host of launcher and planner
+  link::Vendor launcher = link::Vendor::kFastDds;  ///< DDS of the launcher
+  link::Vendor planner = link::Vendor::kFastDds;   ///< DDS of the planner
+  std::string host = "127.0.0.1";                  ///< address of the host of launcher and planner
   std::string interface = "127.0.0.1";  ///< address of the interface that robots of this host use
   Channel channel = Channel::kTopics;
   std::uint64_t seed = 0;

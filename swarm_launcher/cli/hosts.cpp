@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <memory>
 
+#include "swarm_core/app/vendor_option.hpp"
 #include "swarm_launcher/cli/commands.hpp"
 #include "swarm_launcher/cli/shared_options.hpp"
 #include "swarm_launcher/flight/gateway.hpp"
@@ -22,7 +23,7 @@ Command add_join(CLI::App& program) {
   join->add_option("--interface", o->interface,
                    "IPv4 address of our interface (default: the one on the route to the launcher)")
       ->check(CLI::ValidIPV4);
-  join->add_flag("--cyclonedds", o->cyclone, "The agents use Cyclone DDS");
+  shell::add_vendor_option(*join, o->dds, "DDS vendor of the agents");
   join->add_option("--out", o->out, "Run directory (default: runs/joined-<time>)");
   return {join, [o] { return join_host(*o); }};
 }

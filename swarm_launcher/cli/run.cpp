@@ -2,38 +2,36 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "swarm_launcher/commands/run.hpp"
 
-#include <map>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "swarm_launcher/cli/commands.hpp"
 #include "swarm_launcher/cli/shared_options.hpp"
+#include "swarm_launcher/processes/run_vendors.hpp"
 
 namespace swarm::launcher::cli {
 
 namespace {
 
-/// Options that choose the DDS of each program.
+/// Options that choose the DDS of each program. A refused value is reported with the option's name.
 void add_dds(CLI::App& run, const std::shared_ptr<RunOptions>& o) {
-  // The transformer maps the names to the enumeration while parsing.
-  const std::map<std::string, AgentDds> agent_dds = {{"fastdds", AgentDds::kFastDds},
-                                                     {"cyclonedds", AgentDds::kCycloneDds},
-                                                     {"half", AgentDds::kHalf}};
-  run.add_option("--agent-dds", o->how.agent_dds, "DDS of the agents (groups channel)")
-      ->transform(CLI::CheckedTransformer(agent_dds));
+  run.add_option_function<std::vector<std::string>>(
+         "--dds",
+         [o](const std::vector<std::string>& choices) {
+           for (const std::string& choice : choices) {
+             if (const auto applied = apply_vendor(choice, o->how.dds); !applied) {
+               throw CLI::ValidationError("--dds", applied.error().message);
+             }
+           }
+         },
+         "DDS vendor, fastdds or cyclonedds (groups channel), of the launcher, planner or agents;\n"
+         "without ROLE of all three; repeat it for several roles, the last one counts")
+      ->allow_extra_args(false)
+      ->type_name("[ROLE=]VENDOR");
   run.add_option("--by-gateway", o->how.by_gateway,
                  "The first N agent processes use Cyclone DDS and publish their states on\n"
                  "topics; a gateway connects them with the groups of the others");
-  run.add_option_function<std::string>(
-         "--launcher-dds",
-         [o](const std::string& name) { o->how.cyclone_launcher = name == "cyclonedds"; },
-         "DDS of the launcher (groups channel)")
-      ->check(CLI::IsMember({"fastdds", "cyclonedds"}));
-  run.add_option_function<std::string>(
-         "--planner-dds",
-         [o](const std::string& name) { o->how.cyclone_planner = name == "cyclonedds"; },
-         "DDS of the planner (groups channel)")
-      ->check(CLI::IsMember({"fastdds", "cyclonedds"}));
 }
 
 }  // namespace

@@ -49,9 +49,9 @@ Result<HostOffer> ask(LineSocket& socket, std::uint32_t robots) {
 /// times, and killed when the object is destroyed.
 class HostProcesses {
  public:
-  HostProcesses(const HostOffer& offer, std::filesystem::path dir, bool cyclone,
+  HostProcesses(const HostOffer& offer, std::filesystem::path dir, link::Vendor dds,
                 std::uint32_t respawns)
-      : offer_(offer), dir_(std::move(dir)), cyclone_(cyclone), respawns_(respawns) {
+      : offer_(offer), dir_(std::move(dir)), dds_(dds), respawns_(respawns) {
     for (std::uint32_t robot = 0; robot < offer.robots; robot += offer.per_process) {
       waiting_.push_back(robot);
     }
@@ -101,7 +101,9 @@ class HostProcesses {
         "--parent",
         fmt::format("{}", ::getpid())};
     if (!offer_.fault.empty()) command_line.insert(command_line.end(), {"--fault", offer_.fault});
-    if (cyclone_) command_line.insert(command_line.end(), {"--dds", "cyclonedds"});
+    if (dds_ != link::Vendor::kFastDds) {
+      command_line.insert(command_line.end(), {"--dds", std::string(to_string(dds_))});
+    }
     const auto pid =
         start_process(command_line, dir_ / shell::kLogsFolder / fmt::format("agent-{:05}.log", id));
     if (!pid) return tl::unexpected(pid.error());
@@ -111,7 +113,7 @@ class HostProcesses {
 
   const HostOffer& offer_;
   std::filesystem::path dir_;
-  bool cyclone_;
+  link::Vendor dds_;
   std::uint32_t respawns_;
   std::vector<std::uint32_t> waiting_;  // first robot of each process, counted from our first
   std::map<pid_t, std::uint32_t> children_;
@@ -224,7 +226,7 @@ Result<ExitCode> join_host(const JoinOptions& options) {
                offer->first_robot + offer->robots - 1, offer->run.interface.c_str());
   Progress progress;
   {
-    HostProcesses processes(*offer, *dir, options.cyclone, mission->launcher.respawn_agent_max);
+    HostProcesses processes(*offer, *dir, options.dds, mission->launcher.respawn_agent_max);
     if (auto flown = fly(processes, *socket, progress); !flown)
       return tl::unexpected(flown.error());
   }

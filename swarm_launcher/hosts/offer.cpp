@@ -20,8 +20,8 @@ std::string to_line(const HostOffer& offer) {
                         {"domain", offer.run.domain},
                         {"hubs", offer.run.relays},
                         {"host", offer.run.host},
-                        {"cyclone_launcher", offer.run.cyclone_launcher},
-                        {"cyclone_planner", offer.run.cyclone_planner},
+                        {"cyclone_launcher", offer.run.launcher == link::Vendor::kCycloneDds},
+                        {"cyclone_planner", offer.run.planner == link::Vendor::kCycloneDds},
                         {"seed", offer.run.seed},
                         {"began_utc_ns", offer.run.began.time_since_epoch().count()},
                         {"first_robot", offer.first_robot},
@@ -48,11 +48,14 @@ Result<HostOffer> parse_offer(const std::string& line) {
                               "use the same release on all hosts",
                               version, kVersion));
     }
+    const auto vendor = [&json](const char* is_cyclone) {
+      return json.at(is_cyclone).get<bool>() ? link::Vendor::kCycloneDds : link::Vendor::kFastDds;
+    };
     HostOffer offer{
         .run = {.domain = json.at("domain").get<std::uint32_t>(),
                 .relays = json.at("hubs").get<std::uint32_t>(),
-                .cyclone_launcher = json.at("cyclone_launcher").get<bool>(),
-                .cyclone_planner = json.at("cyclone_planner").get<bool>(),
+                .launcher = vendor("cyclone_launcher"),
+                .planner = vendor("cyclone_planner"),
                 .host = json.at("host").get<std::string>(),
                 .channel = Channel::kGroups,
                 .seed = json.at("seed").get<std::uint64_t>(),

@@ -101,6 +101,8 @@ std::optional<ExitedChild> reap_child() {
                      .max_rss_mb = static_cast<double>(usage.ru_maxrss) / 1024.0};
 }
 
+void ChildSpawner::signal(pid_t pid, EndSignal signal) { ::kill(pid, number_of(signal)); }
+
 // By the running executable, so that a build or installation uses its own programs.
 std::filesystem::path sibling_program(const std::string& name) {
   return std::filesystem::read_symlink("/proc/self/exe").parent_path() / name;

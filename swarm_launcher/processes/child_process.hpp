@@ -9,7 +9,7 @@
 
 #include <sys/types.h>
 
-#include "swarm_launcher/supervision/supervisor.hpp"
+#include "swarm_launcher/processes/spawner.hpp"
 #include "swarmflow/core/result.hpp"
 
 namespace swarm::launcher {
@@ -32,16 +32,20 @@ Result<pid_t> start_process(const std::vector<std::string>& command_line,
 /// The kernel's number of a signal.
 int number_of(EndSignal signal);
 
-/// A child that has ended, with its resource usage.
-struct ExitedChild {
-  pid_t pid = 0;
-  ProcessExit exit;
-  double cpu_s = 0.0;       ///< user + system
-  double max_rss_mb = 0.0;  ///< largest resident memory
-};
-
 /// The next child that has ended, if any; never blocks.
 std::optional<ExitedChild> reap_child();
+
+/// Real processes.
+class ChildSpawner final : public Spawner {
+ public:
+  /// As start_process(), including its demand on the calling thread.
+  Result<pid_t> start(const std::vector<std::string>& command_line,
+                      const std::filesystem::path& log) override {
+    return start_process(command_line, log);
+  }
+  std::optional<ExitedChild> reap() override { return reap_child(); }
+  void signal(pid_t pid, EndSignal signal) override;
+};
 
 /// Path of a program that lies beside the running one, e.g. "robot_agent".
 std::filesystem::path sibling_program(const std::string& name);

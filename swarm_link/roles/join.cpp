@@ -62,11 +62,12 @@ CycloneOptions cyclone_relay(const Meeting& meeting, std::string name, std::uint
           .interface = meeting.interface};
 }
 
-tl::unexpected<Error> no_server_for_cyclone(const char* option) {
-  return fail(ErrorCode::kBadInput,
-              fmt::format("{} cyclonedds: a discovery server of Fast DDS is not for Cyclone DDS; "
-                          "use --channel groups, whose processes meet without one",
-                          option));
+tl::unexpected<Error> no_server_for_cyclone(const char* role) {
+  return fail(
+      ErrorCode::kBadInput,
+      fmt::format("--dds {}cyclonedds: a discovery server of Fast DDS is not for Cyclone DDS; "
+                  "use --channel groups, whose processes meet without one",
+                  role));
 }
 
 }  // namespace
@@ -89,7 +90,7 @@ bool built_with(Vendor vendor) {
 // to its relay participants.
 Result<std::unique_ptr<Participant>> join_as_launcher(const Meeting& meeting) {
   if (meeting.launcher == Vendor::kCycloneDds) {
-    if (meeting.relays == 0) return no_server_for_cyclone("--launcher-dds");
+    if (meeting.relays == 0) return no_server_for_cyclone("launcher=");
     return make_cyclone_participant(cyclone_relay(
         meeting, "swarm_launcher", launcher_index(meeting, 0), planner_index(meeting, 0)));
   }
@@ -107,7 +108,7 @@ Result<std::unique_ptr<Participant>> join_as_launcher(const Meeting& meeting) {
 Result<std::unique_ptr<Participant>> join_as_planner(const Meeting& meeting,
                                                      std::uint32_t ownership_strength) {
   if (meeting.planner == Vendor::kCycloneDds) {
-    if (meeting.relays == 0) return no_server_for_cyclone("--planner-dds");
+    if (meeting.relays == 0) return no_server_for_cyclone("planner=");
     CycloneOptions options = cyclone_relay(meeting, "planner_service", planner_index(meeting, 0),
                                            launcher_index(meeting, 0));
     options.ownership_strength = ownership_strength;
@@ -173,7 +174,7 @@ Result<std::unique_ptr<Participant>> join_as_agent(const Meeting& meeting, std::
     if (by_gateway) relays.push_back(gateway_index(meeting));
   }
   if (vendor == Vendor::kCycloneDds) {
-    if (relays.empty()) return no_server_for_cyclone("--dds");
+    if (relays.empty()) return no_server_for_cyclone("");
     CycloneOptions options{.name = name,
                            .domain = meeting.domain,
                            .peer_host = meeting.host,

@@ -13,12 +13,11 @@ namespace swarm::link {
 /// participants exclude each other: `relays` is 0 in a run with a server. `faults`: simulated for
 /// the process that joins, not part of the file.
 inline Meeting meeting_of(const shell::RunInfo& run, ReceptionFaults faults = {}) {
-  const auto vendor = [](bool cyclone) { return cyclone ? Vendor::kCycloneDds : Vendor::kFastDds; };
   return {.domain = run.domain,
           .server = {run.discovery_host, run.discovery_port},
           .relays = run.relays,
-          .launcher = vendor(run.cyclone_launcher),
-          .planner = vendor(run.cyclone_planner),
+          .launcher = run.launcher,
+          .planner = run.planner,
           .host = run.host,
           .interface = run.interface,
           .faults = std::move(faults)};

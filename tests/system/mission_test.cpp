@@ -44,8 +44,7 @@ TEST(Mission, FliesAndIsAudited) {
 
 // By default Cyclone numbers the participants of a machine up to ten only.
 TEST(Mission, IsFlownByMoreCycloneProcessesThanItsDefaultsAllow) {
-  FlownRun run({"--channel", "groups", "--agent-dds", "cyclonedds", "--planner-dds", "cyclonedds",
-                "--launcher-dds", "cyclonedds"});
+  FlownRun run({"--channel", "groups", "--dds", "cyclonedds"});
 
   ASSERT_EQ(run.launcher().wait(), 0) << run.launcher().err();
 

@@ -1,0 +1,77 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "swarm_launcher/flight/fallen_robots.hpp"
+
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "swarm_core/mission/scene_bodies.hpp"
+
+namespace swarm::launcher {
+
+FallenRobots::FallenRobots(const Mission& mission, SceneKeeper& scene, FlightLog& log,
+                           LoggedPosition logged)
+    : mission_(mission),
+      scene_(scene),
+      log_(log),
+      logged_(std::move(logged)),
+      reported_(mission.robots.count) {}
+
+/// The newest known position of a robot. Its log, on this host only, has its last control period;
+/// its last status is up to a second old.
+std::optional<LastKnown> FallenRobots::last_known_of(RobotId robot) const {
+  const std::optional<LastKnown>& reported = reported_.at(robot.value());
+  const std::optional<LastKnown> logged = logged_(robot);
+  return !logged || (reported && reported->at > logged->at) ? reported : logged;
+}
+
+// All bodies in one change of the scene, since each change causes a new plan.
+void FallenRobots::add(std::span<const RobotId> robots, UtcTime now) {
+  std::vector<SceneChange> changes;
+  std::vector<RobotId> added, unknown;
+  for (const RobotId robot : robots) {
+    const auto known = last_known_of(robot);
+    (known ? added : unknown).push_back(robot);
+    if (!known) continue;
+    changes.emplace_back(AddBody{robot, circle_of_fallen(*known, now, mission_, robot)});
+  }
+  const std::vector<Error> refused = scene_.change_all(changes, now);
+  if (!added.empty()) {
+    log_.log(now, {.warning = true,
+                   .code = "body-added",
+                   .text = fmt::format(
+                       "robots not received any more stay where they are, as obstacles: {}",
+                       describe(added))});
+  }
+  if (!unknown.empty()) {
+    log_.log(now, {.warning = true,
+                   .code = "body-unknown",
+                   .text = fmt::format("robots at unknown positions, others may touch them: {}",
+                                       describe(unknown))});
+  }
+  if (!refused.empty()) {
+    log_.log(now, {.warning = true,
+                   .code = "body-refused",
+                   .text = fmt::format("{} of them cannot be obstacles: {}", refused.size(),
+                                       refused.front().message)});
+  }
+}
+
+/// Robots that report again. The operator may have cleared the body of some already.
+void FallenRobots::clear(std::span<const RobotId> robots, UtcTime now) {
+  std::vector<SceneChange> changes;
+  std::vector<RobotId> cleared;
+  for (const RobotId robot : robots) {
+    if (!has_body(scene_.scene(), robot)) continue;
+    changes.emplace_back(ClearBody{robot});
+    cleared.push_back(robot);
+  }
+  if (changes.empty()) return;
+  scene_.change_all(changes, now);
+  log_.log(now,
+           {.code = "body-cleared",
+            .text = fmt::format("received again, no obstacles any more: {}", describe(cleared))});
+}
+
+}  // namespace swarm::launcher

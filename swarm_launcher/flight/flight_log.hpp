@@ -1,0 +1,33 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "swarm_launcher/supervision/event_log.hpp"
+#include "swarm_launcher/supervision/progress.hpp"
+#include "swarm_link/endpoints.hpp"
+
+namespace swarm::launcher {
+
+/// Writes events to the event log and publishes them for monitors. Not thread-safe.
+class FlightLog {
+ public:
+  /// \pre all three outlive the log
+  FlightLog(EventLog& file, link::Writer<link::EventMessage>& relay, Display& display)
+      : file_(file), relay_(relay), display_(display) {}
+
+  /// An event of the launcher.
+  void note(UtcTime now, link::Severity severity, const std::string& code, const std::string& text);
+  /// As note(); a warning is also displayed.
+  void log(UtcTime now, const LogEvent& event);
+  /// An event of a robot or the planner.
+  void forward(const link::EventMessage& event);
+
+ private:
+  EventLog& file_;
+  link::Writer<link::EventMessage>& relay_;
+  Display& display_;
+};
+
+}  // namespace swarm::launcher

@@ -1,0 +1,197 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "swarm_launcher/flight/flight_loop.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "swarm_core/mission_file/scene_change_file.hpp"
+#include "swarm_launcher/flight/process_commands.hpp"
+
+namespace swarm::launcher {
+namespace {
+
+// More often is hard to read, and describing the swarm sums over all robots.
+constexpr Duration kShowEvery = std::chrono::milliseconds(250);
+
+SupervisorOptions supervision_of(const FlightOptions& options) {
+  return {.robots = options.mission.robots.count,
+          .per_process = options.per_process,
+          .remote_processes = (options.how.remote + options.per_process - 1) / options.per_process,
+          .launcher = options.mission.launcher,
+          .script = options.mission.script};
+}
+
+}  // namespace
+
+FlightLoop::FlightLoop(const FlightOptions& options, const std::filesystem::path& dir,
+                       FlightPorts ports, SteadyTime now)
+    : options_(options),
+      dir_(dir),
+      ports_(std::move(ports)),
+      supervisor_(supervision_of(options), now),
+      view_(options.mission.robots.count, options.mission.link.communication_radius_m),
+      fallen_(options.mission, ports_.scene, ports_.log, ports_.logged_position) {}
+
+FlightLoop::~FlightLoop() {
+  for (const auto& [pid, process] : children_) ports_.spawner.signal(pid, EndSignal::kKill);
+}
+
+// Ended children, bus, other hosts and requests come first; then the supervisor decides on what
+// they reported, and its actions are executed.
+Result<void> FlightLoop::step(const FlightTime& now) {
+  reap(now);
+  read_bus(now);
+  if (ports_.hosts != nullptr) {
+    for (const LogEvent& event : ports_.hosts->step(supervisor_, now.steady)) {
+      ports_.log.log(now.utc, event);
+    }
+  }
+  serve_requests(now);
+  for (const Action& action : supervisor_.step(now.steady)) {
+    if (auto done = act(action, now.utc); !done) return done;
+  }
+  if (const auto message = ports_.helpers.message()) ports_.display.print(*message);
+  if (ports_.observer != nullptr) ports_.observer->on_step(*this, now.steady);
+  show(now.steady);
+  return {};
+}
+
+// Children that are neither planner nor agent are helpers.
+void FlightLoop::reap(const FlightTime& now) {
+  while (const auto child = ports_.spawner.reap()) {
+    const auto known = children_.find(child->pid);
+    if (known == children_.end()) {
+      if (const auto event = ports_.helpers.on_exit(child->pid)) ports_.log.log(now.utc, *event);
+      continue;
+    }
+    measurements_.cpu_s += child->cpu_s;
+    measurements_.max_rss_mb = std::max(measurements_.max_rss_mb, child->max_rss_mb);
+    supervisor_.on_exit(known->second, child->exit, now.steady);
+    children_.erase(known);
+  }
+}
+
+// Republishes statuses and events for monitors, which do not discover the agents.
+void FlightLoop::read_bus(const FlightTime& now) {
+  ports_.bus.participant->receive();
+  ports_.bus.inbox.receive(now.utc);
+  for (const link::StatusMessage& status : ports_.bus.inbox.statuses()) {
+    if (ports_.observer != nullptr) ports_.observer->on_status(status);
+    ports_.bus.status_relay->write(status);
+    on_status(status, now);
+  }
+  for (const link::EventMessage& event : ports_.bus.inbox.events()) ports_.log.forward(event);
+}
+
+// Positions are kept for robots that fall, and each robot's report goes to the supervisor.
+void FlightLoop::on_status(const link::StatusMessage& status, const FlightTime& now) {
+  const UtcTime stamp(Duration(status.stamp_utc_ns));
+  for (const link::RobotStatusMessage& robot : status.robots) {
+    const RobotId id(robot.robot_id);
+    view_.take(robot);
+    fallen_.on_status(
+        id, {.at = stamp, .position_m = {robot.x_m, robot.y_m}, .at_rest = robot.settled});
+    if (ports_.hosts != nullptr) ports_.hosts->on_status(id, now.steady);
+    supervisor_.on_status(id, {.has_plan = status.plan_version > 0,
+                               .receives_neighbours = view_.receives_neighbours(robot.robot_id),
+                               .mode = robot.mode,
+                               .settled = robot.settled,
+                               .scene_version = status.plan_scene_version,
+                               // On the launcher's steady clock, which the supervisor uses.
+                               .sent_at = now.steady - (now.utc - stamp)});
+  }
+}
+
+// Everything that fails here is logged, except for the start of a process.
+Result<void> FlightLoop::act(const Action& action, UtcTime now) {
+  if (const auto* to_start = std::get_if<StartProcess>(&action)) return start(to_start->process);
+  if (const auto* command = std::get_if<SendCommand>(&action)) {
+    send(command->kind, now);
+  } else if (const auto* scene = std::get_if<ChangeScene>(&action)) {
+    if (const auto changed = change(scene->change, now); !changed) {
+      ports_.display.print("the script's change was refused: " + changed.error().message);
+    }
+  } else if (const auto* to_signal = std::get_if<SignalProcess>(&action)) {
+    signal(*to_signal);
+  } else if (const auto* fallen = std::get_if<AddBodies>(&action)) {
+    fallen_.add(fallen->robots, now);
+  } else if (const auto* risen = std::get_if<ClearBodies>(&action)) {
+    fallen_.clear(risen->robots, now);
+  } else if (const auto* event = std::get_if<LogEvent>(&action)) {
+    ports_.log.log(now, *event);
+  }
+  return {};
+}
+
+// Starts the planner or an agent process and remembers its pid. Which robots an agent process hosts
+// follows from its index.
+Result<void> FlightLoop::start(ProcessIndex process) {
+  const auto [first, count] = supervisor_.robots_of(process);
+  const ProcessCommand command = process == kPlanner
+                                     ? planner_command(options_.how, dir_, planner_starts_++)
+                                     : agent_command(options_.how, dir_, process, first, count);
+  const auto pid = ports_.spawner.start(command.line, command.log);
+  if (!pid) return tl::unexpected(pid.error());
+  children_.emplace(*pid, process);
+  return {};
+}
+
+void FlightLoop::signal(const SignalProcess& action) {
+  for (const auto& [pid, process] : children_) {
+    if (process == action.process) ports_.spawner.signal(pid, action.signal);
+  }
+  if (ports_.hosts != nullptr) ports_.hosts->end(action.process, action.signal);
+}
+
+// The UTC stamp serves as the command's id, so ids increase also after a restart of the launcher.
+// Two commands of one step have the same time; robots refuse an id that they know, so the second
+// one is stamped a nanosecond later.
+void FlightLoop::send(CommandKind kind, UtcTime now) {
+  last_command_ns_ = std::max(last_command_ns_ + 1, now.time_since_epoch().count());
+  ports_.bus.commands->write({.kind = kind,
+                              .command_id = static_cast<std::uint64_t>(last_command_ns_),
+                              .stamp_utc_ns = last_command_ns_});
+}
+
+// Changes the scene and logs it. The supervisor must know of a new goal, so that robots at the old
+// one do not count as arrived.
+Result<std::string> FlightLoop::change(const SceneChange& change, UtcTime now) {
+  const std::string what = fmt::format("{} {}", name_of(change), keys_of(change));
+  auto changed = ports_.scene.change(change, now);
+  if (!changed) {
+    ports_.log.note(now, link::Severity::kWarning, "scene-refused",
+                    fmt::format("{}: {}", what, changed.error().message));
+    return changed;
+  }
+  if (std::holds_alternative<GoTo>(change)) {
+    supervisor_.on_new_goal(ports_.scene.scene().version);
+  }
+  ports_.log.note(now, link::Severity::kInfo, "scene", what);
+  return changed;
+}
+
+void FlightLoop::show(SteadyTime now) {
+  if (now - shown_at_ < kShowEvery) return;
+  shown_at_ = now;
+  const Supervisor::Counts c = supervisor_.counts();
+  const std::uint32_t n = options_.mission.robots.count;
+  std::string details = fmt::format("t {:.0f} s  ready {}/{}  arrived {}/{}  lost {}  {}",
+                                    supervisor_.mission_time(now).count(), c.ready, n, c.arrived, n,
+                                    c.lost, view_.describe(now));
+  if (ports_.observer != nullptr) details += "  " + ports_.observer->describe();
+  ports_.display.show(headline_of(supervisor_), details);
+}
+
+Measurements FlightLoop::measurements() const {
+  Measurements m = measurements_;
+  m.outcome = supervisor_.outcome();
+  m.discovery_s = supervisor_.discovery_s();
+  m.neighbour_discovery_s = supervisor_.neighbour_discovery_s();
+  m.refused_by_launcher = ports_.bus.inbox.refused().total();
+  return m;
+}
+
+}  // namespace swarm::launcher

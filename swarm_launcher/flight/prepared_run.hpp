@@ -1,0 +1,59 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include "swarm_core/app/control_socket.hpp"
+#include "swarm_core/app/run_directory.hpp"
+#include "swarm_launcher/flight/launcher_bus.hpp"
+#include "swarm_launcher/flight/run_checks.hpp"
+#include "swarm_launcher/flight/scene_keeper.hpp"
+#include "swarm_launcher/hosts/remote_hosts.hpp"
+#include "swarm_link/roles/domain_lock.hpp"
+#include "swarm_link/roles/join.hpp"
+
+namespace swarm::launcher {
+
+/// A run that is ready to fly: options checked, DDS domain reserved, run directory made, bus
+/// joined, control socket and port for other hosts open. No process has been started.
+class PreparedRun {
+ public:
+  /// All errors that a user can cause come from here. What it reserved is released when it fails,
+  /// except for the run directory.
+  static Result<std::unique_ptr<PreparedRun>> make(FlightOptions options);
+
+  const FlightOptions& options() const { return checked_.options; }
+  const ChannelChoice& channel() const { return checked_.channel; }
+  const std::filesystem::path& dir() const { return dir_; }
+  /// As in `run.json`.
+  const shell::RunInfo& info() const { return info_; }
+
+  LauncherBus& bus() { return *bus_; }
+  SceneKeeper& scene() { return *scene_; }
+  shell::ControlServer& control() { return *control_; }
+  /// Null if all robots are on this host.
+  RemoteHosts* hosts() { return hosts_ ? &*hosts_ : nullptr; }
+
+ private:
+  PreparedRun(CheckedRun checked, link::DomainLock lock, std::filesystem::path dir);
+  /// Writes `run.json` and joins the bus.
+  Result<void> join();
+  /// Listens for other hosts, if some robots are theirs.
+  Result<void> open_to_hosts();
+
+  CheckedRun checked_;
+  link::DomainLock lock_;
+  std::filesystem::path dir_;
+  shell::RunInfo info_;
+  std::unique_ptr<link::DiscoveryServer> server_;  // none with static peers
+  std::unique_ptr<link::Participant> participant_;
+  std::optional<LauncherBus> bus_;
+  std::optional<SceneKeeper> scene_;
+  std::optional<shell::ControlServer> control_;
+  std::optional<RemoteHosts> hosts_;
+};
+
+}  // namespace swarm::launcher

@@ -1,0 +1,33 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "swarm_launcher/flight/flight_choices.hpp"
+#include "swarm_launcher/flight/flight_ports.hpp"
+#include "swarm_launcher/flight/gateway.hpp"
+#include "swarm_launcher/flight/monitors.hpp"
+
+namespace swarm::launcher {
+
+/// The monitors and the gateway that a user chose for a run.
+class RunHelpers final : public HelperProcesses {
+ public:
+  RunHelpers(const FlightChoices& how, const std::filesystem::path& run_dir);
+
+  Result<void> start();
+  std::optional<LogEvent> on_exit(pid_t pid) override;
+  /// The address of the view, as soon as it is known.
+  std::optional<std::string> message() override;
+  /// Ends the monitors, see Monitors::finish(). The gateway ends with the object.
+  void finish() { monitors_.finish(); }
+
+ private:
+  Monitors monitors_;
+  std::optional<GatewayKeeper> gateway_;
+};
+
+}  // namespace swarm::launcher

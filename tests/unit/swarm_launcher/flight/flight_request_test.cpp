@@ -1,0 +1,132 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+// Requests of users, and what the script changes.
+#include "tests/unit/swarm_launcher/flight/flight_bench.hpp"
+
+namespace swarm::launcher {
+namespace {
+
+class FlightLoopRequest : public FlightBench {
+ protected:
+  /// The answer to a request, a second later.
+  std::string answer_to(const std::string& line) {
+    const auto client = requests.send(line);
+    run_for(seconds(1));
+    return requests.answer_to(client);
+  }
+  /// The newest scene that was published.
+  link::SceneMessage published() {
+    std::vector<link::SceneMessage> scenes;
+    others.scenes->take(scenes);
+    return scenes.empty() ? link::SceneMessage{} : scenes.back();
+  }
+};
+
+TEST_F(FlightLoopRequest, PausesAndResumes) {
+  ASSERT_TRUE(run_to_phase(MissionPhase::kRunning));
+  EXPECT_EQ(answer_to("pause"), "done: pause sent to 1 robots");
+  EXPECT_EQ(loop->supervisor().phase(), MissionPhase::kPaused);
+  EXPECT_EQ(answer_to("resume"), "done: resume sent to 1 robots");
+  EXPECT_EQ(loop->supervisor().phase(), MissionPhase::kRunning);
+}
+
+TEST_F(FlightLoopRequest, AnswersAStopWhenAllRobotsHaveConfirmed) {
+  ASSERT_TRUE(run_to_phase(MissionPhase::kRunning));
+  const auto client = requests.send("stop");
+  step();
+  EXPECT_EQ(requests.answer_to(client), "");
+
+  ASSERT_TRUE(run_to_the_end());
+  EXPECT_EQ(requests.answer_to(client), "done: 3 robots confirmed the stop");
+  EXPECT_EQ(outcome(), Outcome::kStopped);
+  EXPECT_EQ(sent(CommandKind::kStop), 15U);
+}
+
+TEST_F(FlightLoopRequest, AnswersAStopWithTheRobotsThatDidNotConfirm) {
+  robots[1].ignores_stop = true;
+  ASSERT_TRUE(run_to_phase(MissionPhase::kRunning));
+  const auto client = requests.send("stop");
+  ASSERT_TRUE(run_to_the_end());
+  EXPECT_EQ(requests.answer_to(client), "failed: stop not confirmed by robots 1");
+  EXPECT_TRUE(is_logged("stop-unconfirmed"));
+}
+
+TEST_F(FlightLoopRequest, StopsBeforeTheStart) {
+  robots[2].silent = true;
+  run_for(seconds(1));
+  const auto client = requests.send("stop");
+  ASSERT_TRUE(run_to_the_end());
+  EXPECT_EQ(requests.answer_to(client), "failed: stop not confirmed by robots 2");
+  EXPECT_EQ(sent(CommandKind::kStart), 0U);
+}
+
+TEST_F(FlightLoopRequest, RefusesAStopWhenTheRunIsEnding) {
+  spawner.obedient = false;
+  ASSERT_TRUE(run_to_phase(MissionPhase::kRunning));
+  loop->interrupt();
+  run_for(milliseconds(100));
+  const auto client = requests.send("stop");
+  step();
+  EXPECT_EQ(requests.answer_to(client), "failed: the run is ending, no stop was sent");
+  ASSERT_TRUE(run_to_the_end());
+  EXPECT_EQ(sent(CommandKind::kStop), 0U);
+  EXPECT_EQ(outcome(), Outcome::kInterrupted);
+}
+
+TEST_F(FlightLoopRequest, PublishesAnAcceptedChangeOfTheScene) {
+  ASSERT_TRUE(run_to_phase(MissionPhase::kRunning));
+  EXPECT_EQ(answer_to("add_obstacle circle_m: {center: [30, 15], radius: 1}"),
+            "done: obstacle 2 added");
+  const link::SceneMessage scene_now = published();
+  EXPECT_EQ(scene_now.version, scene->scene().version);
+  EXPECT_EQ(scene_now.obstacles.size(), 1U);
+  EXPECT_TRUE(is_logged("scene"));
+}
+
+TEST_F(FlightLoopRequest, RefusesAChangeOfTheSceneAndChangesNothing) {
+  ASSERT_TRUE(run_to_phase(MissionPhase::kRunning));
+  const std::uint64_t before = published().version;
+  const std::string answer = answer_to("remove_obstacle obstacle: 99");
+  EXPECT_NE(answer.find("there is no obstacle 99"), std::string::npos) << answer;
+  EXPECT_TRUE(answer.ends_with("failed: nothing changed")) << answer;
+  EXPECT_EQ(scene->scene().version, before);
+  EXPECT_TRUE(is_logged("scene-refused"));
+}
+
+TEST_F(FlightLoopRequest, RefusesBodiesOfUsersAndUnknownRequests) {
+  ASSERT_TRUE(run_to_phase(MissionPhase::kRunning));
+  for (const char* line :
+       {"add_body robot: 1, circle_m: {center: [30, 15], radius: 1}", "fly", ""}) {
+    EXPECT_TRUE(answer_to(line).ends_with("failed: nothing changed")) << line;
+  }
+}
+
+TEST_F(FlightLoopRequest, CountsArrivalForTheNewestGoalOnly) {
+  ASSERT_TRUE(run_to_phase(MissionPhase::kRunning));
+  arrive();
+  run_for(milliseconds(500));
+  EXPECT_EQ(loop->supervisor().counts().arrived, kRobots);
+  const auto client =
+      requests.send("goto goal: [{mean_m: [20, 15], covariance_m2: [[4, 0], [0, 4]], weight: 1}]");
+  step();
+  EXPECT_EQ(requests.answer_to(client), "done: goto");
+  EXPECT_EQ(loop->supervisor().counts().arrived, 0U);
+}
+
+TEST_F(FlightLoopRequest, DisplaysAChangeOfTheScriptThatIsRefused) {
+  options.mission.script = {{1.0, SceneChange(RemoveObstacle{99})}};
+  ASSERT_TRUE(run_to_phase(MissionPhase::kRunning));
+  run_for(seconds(2));
+  EXPECT_NE(display.printed.find("the script's change was refused: there is no obstacle 99"),
+            std::string::npos);
+  EXPECT_TRUE(is_logged("scene-refused"));
+}
+
+TEST_F(FlightLoopRequest, PrintsMessagesOfHelpersOnce) {
+  helpers.next_message = "view: http://127.0.0.1:8000/";
+  run_for(seconds(1));
+  EXPECT_EQ(display.printed, "view: http://127.0.0.1:8000/\n");
+}
+
+}  // namespace
+}  // namespace swarm::launcher
