@@ -41,6 +41,9 @@ std::string_view take_until(std::string_view& text, char separator) {
   return part;
 }
 
+/// Whether a part ends with a separator: take_until() finds nothing behind it, as at a proper end.
+bool is_unfinished(std::string_view part) { return part.ends_with(',') || part.ends_with(':'); }
+
 /// `x0:y0:x1:y1` with x0 < x1 and y0 < y1.
 std::optional<Box> read_box(std::string_view text) {
   std::array<double, 4> numbers{};
@@ -64,7 +67,7 @@ Result<Kill> parse_kill(std::string_view text) {
   std::string_view rest = text;
   std::string_view whom = take_until(rest, '@');
   const auto at_s = number<double>(take_until(rest, ','));
-  if (!at_s || *at_s < 0.0) return refuse(text);
+  if (!at_s || *at_s < 0.0 || is_unfinished(text) || is_unfinished(whom)) return refuse(text);
   kill.at_s = *at_s;
   if (whom.starts_with(kIds)) {
     for (whom.remove_prefix(kIds.size()); !whom.empty();) {

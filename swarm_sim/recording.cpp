@@ -2,12 +2,24 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "swarm_sim/recording.hpp"
 
+#include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "swarm_core/base/assert.hpp"
 #include "swarm_core/robot_log/robot_log_file.hpp"
 
 namespace swarm::launcher {
+namespace {
+
+/// The counters of a log have 32 bits, enough for one robot. Those of all robots of a large swarm
+/// stop at the largest number instead of starting over.
+std::uint32_t at_most_32_bits(std::uint64_t count) {
+  return static_cast<std::uint32_t>(
+      std::min<std::uint64_t>(count, std::numeric_limits<std::uint32_t>::max()));
+}
+
+}  // namespace
 
 Recording::Recording(const Mission& mission, UtcTime begin, std::uint64_t keeps_every)
     : mission_(mission),
@@ -48,6 +60,7 @@ void Recording::replay(std::uint32_t robot, Take take) const {
   const auto last_note = notes_[robot].end();
   auto estimate = estimates_[robot].begin();
   const auto last_estimate = estimates_[robot].end();
+  UtcTime last_step = begin_;
   for (const std::vector<robot_log::Step>& period : periods_) {
     const robot_log::Step& step = period[robot];
     if (step.stamp == kNever) continue;
@@ -57,13 +70,15 @@ void Recording::replay(std::uint32_t robot, Take take) const {
     };
     for (; note != last_note && comes_first(*note); ++note) take(note->note);
     take(step);
+    last_step = step.stamp;
     for (; estimate != last_estimate && estimate->stamp <= step.stamp; ++estimate) take(*estimate);
   }
-  // The link's counters belong to all robots: the first log has them, before the last notes.
+  // The link's counters belong to all robots: the first log has them, before the last notes, with
+  // the stamp of its last step, which a robot that died took before the last period.
   if (robot == 0) {
-    take(robot_log::LinkStats{.stamp = periods_.empty() ? begin_ : periods_.back()[robot].stamp,
-                              .states_sent = static_cast<std::uint32_t>(link_.states_sent),
-                              .states_received = static_cast<std::uint32_t>(link_.states_received),
+    take(robot_log::LinkStats{.stamp = last_step,
+                              .states_sent = at_most_32_bits(link_.states_sent),
+                              .states_received = at_most_32_bits(link_.states_received),
                               .refused = link_.refused,
                               .state_age = link_.state_age});
   }

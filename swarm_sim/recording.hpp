@@ -32,7 +32,7 @@ class Recording {
     ++begun_;
   }
   void step(RobotId robot, const robot_log::Step& step) { periods_.back()[robot.value()] = step; }
-  /// A robot's estimate of a neighbour; kept if the step of the period is.
+  /// A robot's estimate of a neighbour; kept in every n-th period, from the first one on.
   void estimate(RobotId robot, const robot_log::Estimate& estimate) {
     if ((begun_ - 1) % keeps_every_ == 0) estimates_[robot.value()].push_back(estimate);
   }

@@ -70,6 +70,42 @@ TEST(PassageTimes, AreThoseOfEachGroup) {
   EXPECT_NEAR(groups[1].waits_on_average.count(), 70.0 - path_m / 1.25, 1e-9);
 }
 
+TEST(PassageTimes, AreATableWithALineForEachGroup) {
+  const Passage door{{30, 17}, {30, 23}};
+  const FlowPlan plan = through_a_door();
+
+  EXPECT_EQ(to_table(group_times(plan, door, 1.25), door, 40.0),
+            "narrowest passage: 6.0 m between (30.0, 17.0) and (30.0, 23.0) m\n"
+            "times in s: first, half, last\n"
+            "group robots |        leaves        |        passes        |       arrives        | "
+            "waits\n"
+            "    0     30 |    0.0    0.0    0.0 |   32.5   32.5   32.5 |   70.0   70.0   70.0 |  "
+            "20.1\n"
+            "    1     10 |   10.0   10.0   10.0 |   40.0   40.0   40.0 |   70.0   70.0   70.0 |  "
+            "20.1\n");
+}
+
+TEST(PassageTimes, OfAGroupThatPassesNothingAreNotGiven) {
+  // Group 1 stays on its side.
+  const auto plan = FlowPlan::make({{at(0, 10), MissionTime(0), 0.5},
+                                    {at(0, 30), MissionTime(0), 0.5},
+                                    {at(60, 20), MissionTime(50), 0.5},
+                                    {at(10, 30), MissionTime(20), 0.5}},
+                                   {{0, 2, 0.5}, {1, 3, 0.5}})
+                        .value();
+
+  const auto groups = group_times(plan, Passage{{30, 10}, {30, 23}}, 1.25);
+  const auto without = group_times(plan, std::nullopt, 1.25);
+
+  ASSERT_EQ(groups.size(), 2U);
+  ASSERT_TRUE(groups[0].passes.has_value());
+  EXPECT_DOUBLE_EQ(groups[0].passes->half.count(), 25.0);
+  EXPECT_FALSE(groups[1].passes.has_value());
+  EXPECT_FALSE(without[0].passes.has_value());
+  EXPECT_TRUE(
+      to_table(without, std::nullopt, 10.0).starts_with("no passage between two obstacles"));
+}
+
 double speed_mps(const Mission& mission) {
   return testing::planner_of(mission).method().traits().speed_mps;
 }

@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "swarm_sim/kills.hpp"
 
+#include <algorithm>
 #include <set>
+#include <string>
 
 #include <gtest/gtest.h>
 
@@ -42,6 +44,50 @@ TEST(ParseKill, ReportsHowItIsWritten) {
     ASSERT_FALSE(kill.has_value()) << bad;
     EXPECT_NE(kill.error().message.find("10@60"), std::string::npos) << bad;
   }
+}
+
+// A list or a box that goes on after its last part is a typing error, not a shorter one.
+TEST(ParseKill, RefusesSeparatorsWithNothingBehindThem) {
+  for (const char* bad : {"10@60,", "ids:3@60,", "ids:3,@60", "ids:,3@60", "ids:3,,7@60",
+                          "10@60,in=0:0:1:1:", "10@60,in=:0:0:1:1", "10@60,in="}) {
+    const auto kill = parse_kill(bad);
+    ASSERT_FALSE(kill.has_value()) << bad;
+    EXPECT_EQ(kill.error().code, ErrorCode::kBadInput);
+    EXPECT_EQ(kill.error().message, "--kill: '" + std::string(bad) +
+                                        "'; write it like 10@60 or ids:3,7@60 or "
+                                        "10@60,in=90:40:110:60 (the robots inside x0:y0:x1:y1)");
+  }
+}
+
+TEST(ParseKill, ReadsNumbersUpToTheirLimits) {
+  EXPECT_EQ(parse_kill("4294967295@0").value().count, 4294967295U);
+  EXPECT_FALSE(parse_kill("4294967296@0").has_value());
+  EXPECT_EQ(parse_kill("ids:4294967295@1e3").value().robots.at(0), RobotId(4294967295U));
+  EXPECT_EQ(parse_kill("1@1e3").value().at_s, 1000.0);
+  for (const char* bad : {"ids:4294967296@1", "1@1e999", "1@inf", "+1@1", "1@+1", " 1@1", "1@1 ",
+                          "1@60@61", "0x10@1", "1@1,in=0:0:inf:1", "1@1,in=0:0:0:1"}) {
+    EXPECT_FALSE(parse_kill(bad).has_value()) << bad;
+  }
+}
+
+// Which others may die changes whether a robot is among the chosen, but not its rank.
+TEST(ChooseKilled, RanksEachRobotByItselfAndTheSeed) {
+  for (std::uint64_t seed = 0; seed < 50; ++seed) {
+    const auto all = choose({.count = 8}, row(20), seed);
+    std::vector<Candidate> some = row(20);
+    std::erase_if(some, [](const Candidate& c) { return c.robot.value() % 3 == 0; });
+    const auto of_some = choose({.count = 8}, some, seed);
+    for (const RobotId robot : all) {
+      if (robot.value() % 3 == 0) continue;
+      EXPECT_NE(std::find(of_some.begin(), of_some.end(), robot), of_some.end());
+    }
+  }
+}
+
+TEST(ChooseKilled, TakesAllWhereThereAreFewer) {
+  EXPECT_EQ(choose({.count = 9}, row(3), 1), std::vector({RobotId(0), RobotId(1), RobotId(2)}));
+  EXPECT_TRUE(choose({.count = 9}, {}, 1).empty());
+  EXPECT_TRUE(choose({.robots = {RobotId(1)}}, {}, 1).empty());
 }
 
 TEST(ChooseKilled, DrawsBySeedAndEachRobotAtMostOnce) {

@@ -1,0 +1,101 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+// What the keeper does with scenes and statuses that arrive late, twice or out of order.
+#include <gtest/gtest.h>
+
+#include "swarmflow/mission/scene.hpp"
+#include "tests/unit/planner_service/keeper_bench.hpp"
+
+namespace swarm::planner {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+using testing::KeeperBench;
+
+Scene version(const KeeperBench& bench, std::uint64_t number) {
+  Scene scene = bench.scene;
+  scene.version = number;
+  return scene;
+}
+
+TEST(PlanKeeperScene, TakesEachVersionOnceAndNoneThatIsOlder) {
+  KeeperBench bench;  // took version 0
+
+  EXPECT_FALSE(bench.keeper.take_scene(version(bench, 0)));
+  EXPECT_TRUE(bench.keeper.take_scene(version(bench, 7)));
+  EXPECT_FALSE(bench.keeper.take_scene(version(bench, 7)));
+  EXPECT_FALSE(bench.keeper.take_scene(version(bench, 6)));
+  EXPECT_EQ(bench.keeper.scene().version, 7U);
+  EXPECT_TRUE(bench.keeper.take_scene(version(bench, 8)));
+}
+
+TEST(PlanKeeperScene, PublishesTheFirstPlanOnceForTheSceneOfTheMission) {
+  KeeperBench bench;
+  EXPECT_EQ(bench.keeper.version(), 0U);
+
+  EXPECT_TRUE(bench.step_after(milliseconds(50)).publish);
+  for (int i = 0; i < 20; ++i) EXPECT_FALSE(bench.step_after(milliseconds(50)).publish);
+
+  EXPECT_EQ(bench.keeper.version(), 1U);
+  EXPECT_EQ(bench.keeper.planned_scene(), 0U);
+}
+
+TEST(PlanKeeperScene, WaitsThreeSecondsForASceneThatDoesNotCome) {
+  const Mission mission = KeeperBench::small_mission();
+  PlanKeeper keeper(mission, testing::planner_of(mission), 1, &testing::no_time);
+  ASSERT_TRUE(keeper.plan_first().has_value());
+  const SteadyTime begin{seconds(50)};
+  const UtcTime utc{seconds(50)};
+  keeper.begin(begin);
+
+  EXPECT_FALSE(keeper.step(begin, utc).publish);
+  EXPECT_FALSE(keeper.step(begin + milliseconds(2999), utc).publish);
+  EXPECT_TRUE(keeper.step(begin + milliseconds(3000), utc).publish);
+}
+
+TEST(PlanKeeperScene, PlansOnceForEachChangeAndOnlyWhenItChanges) {
+  KeeperBench bench;
+  bench.step_after(milliseconds(50));
+  const std::uint64_t first = bench.keeper.newest().planned.plan.digest();
+
+  const auto step = bench.step_after(GoTo{.goal = bench.mission.start});
+
+  EXPECT_TRUE(step.publish);
+  EXPECT_EQ(bench.keeper.version(), 2U);
+  EXPECT_EQ(bench.keeper.planned_scene(), bench.scene.version);
+  EXPECT_NE(bench.keeper.newest().planned.plan.digest(), first);
+  for (int i = 0; i < 5; ++i) EXPECT_FALSE(bench.step_after(milliseconds(500)).publish);
+}
+
+TEST(PlanKeeperScene, KeepsThePlanInForceWhereThereIsNoneForTheScene) {
+  KeeperBench bench;
+  bench.step_after(milliseconds(50));
+  const std::uint64_t first = bench.keeper.newest().planned.plan.digest();
+  // A goal on an obstacle of the mission.
+  const Obstacle& obstacle = bench.mission.world.obstacles().at(0);
+  const Vec2 inside = std::holds_alternative<Circle>(obstacle)
+                          ? std::get<Circle>(obstacle).center_m
+                          : bench.mission.world.convex_obstacles()[0].box.min_m +
+                                0.5 * (bench.mission.world.convex_obstacles()[0].box.max_m -
+                                       bench.mission.world.convex_obstacles()[0].box.min_m);
+  const GoTo buried{.goal =
+                        Mixture::make({{1.0, Gaussian::from_parameters(inside, 1, 1, 0)}}).value()};
+
+  const auto step = bench.step_after(buried);
+
+  EXPECT_FALSE(step.publish);
+  ASSERT_EQ(step.notices.size(), 1U);
+  EXPECT_TRUE(step.notices[0].warning);
+  EXPECT_EQ(step.notices[0].code, "replan-failed");
+  EXPECT_EQ(step.notices[0].text.find('\n'), std::string::npos) << "one line";
+  EXPECT_EQ(bench.keeper.version(), 1U);
+  EXPECT_EQ(bench.keeper.newest().planned.plan.digest(), first);
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_TRUE(bench.step_after(seconds(2)).notices.empty()) << "reported once for a scene";
+  }
+  EXPECT_TRUE(bench.step_after(GoTo{.goal = bench.mission.goal}).publish) << "and forgotten then";
+}
+
+}  // namespace
+}  // namespace swarm::planner
