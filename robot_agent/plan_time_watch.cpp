@@ -41,12 +41,16 @@ void PlanTimeWatch::on_heartbeat(const Beat& beat, SteadyTime now) {
   (beat.version == version_ ? received_ : other_) = received;
 }
 
-/// The same flow keeps the highest plan time, so that it does not go back.
+/// The same flow keeps the highest plan time, so that it does not go back. Another flow starts over
+/// even under the same version: a restarted planner numbers its plans from 1 again, and its
+/// predecessor's last heartbeat has the plan time of the flow before.
 void PlanTimeWatch::on_plan(std::uint32_t version, bool same_flow) {
-  if (!same_flow) highest_s_ = 0.0;
+  if (!same_flow) {
+    highest_s_ = 0.0;
+    received_.reset();
+  }
   if (version == version_) return;
   version_ = version;
-  if (!same_flow) received_.reset();
   if (other_ && other_->version == version) received_ = other_;
   other_.reset();
 }

@@ -7,6 +7,8 @@
 #include <limits>
 #include <string>
 
+#include "robot_agent/safety/fault_text.hpp"
+
 namespace swarm::agent {
 namespace {
 
@@ -112,7 +114,7 @@ void RobotLoop::update_fault(bool has_position, const Driver& driver) {
     fault_.clear();
   } else if (ticks_ % kTicksPerHealth == 0) {
     const DriverHealth health = driver.health();
-    fault_ = health.level == DriverHealth::Level::kGood ? std::string() : health.text;
+    fault_ = health.level == DriverHealth::Level::kGood ? std::string() : fault_text(health.text);
   }
 }
 

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <exception>
 
+#include "robot_agent/safety/fault_text.hpp"
+
 namespace swarm::agent {
 
 /// Calls the method unless it has failed before. The first exception is kept as the fault; from
@@ -15,7 +17,7 @@ T GuardedMethod::guarded(T otherwise, Call call) const {
   try {
     return call(*method_);
   } catch (const std::exception& e) {
-    fault_ = std::string("the control method threw: ") + e.what();
+    fault_ = fault_text(std::string("the control method threw: ") + e.what());
   } catch (...) {
     fault_ = "the control method threw what is no std::exception";
   }
@@ -27,6 +29,13 @@ Vec2 GuardedMethod::checked(const Vec2& velocity_mps) {
   if (std::isfinite(velocity_mps.x()) && std::isfinite(velocity_mps.y())) return velocity_mps;
   fault_ = "the control method returned a velocity that is not finite";
   return Vec2::Zero();
+}
+
+/// The bus refuses a status with a number that is not finite, and a status is that of many robots.
+double GuardedMethod::checked(double value, const char* name) const {
+  if (std::isfinite(value)) return value;
+  fault_ = std::string("the control method returned a ") + name + " that is not finite";
+  return 0.0;
 }
 
 /// Goals first: a method may need them to begin a route.
@@ -56,16 +65,22 @@ std::uint32_t GuardedMethod::goal(const Vec2& position_m) const {
 }
 
 std::optional<TimeTracking> GuardedMethod::tracking() const {
-  return guarded(std::optional<TimeTracking>{},
-                 [](const ControlMethod& m) { return m.tracking(); });
+  auto tracking =
+      guarded(std::optional<TimeTracking>{}, [](const ControlMethod& m) { return m.tracking(); });
+  if (tracking && !(std::isfinite(tracking->plan_time_s) && tracking->reference_m.allFinite())) {
+    fault_ = "the control method returned a reference that is not finite";
+    tracking.reset();
+  }
+  return tracking;
 }
 
 double GuardedMethod::lag_s() const {
-  return guarded(0.0, [](const ControlMethod& m) { return m.lag_s(); });
+  return checked(guarded(0.0, [](const ControlMethod& m) { return m.lag_s(); }), "lag");
 }
 
 double GuardedMethod::remaining_m() const {
-  return guarded(0.0, [](const ControlMethod& m) { return m.remaining_m(); });
+  return checked(guarded(0.0, [](const ControlMethod& m) { return m.remaining_m(); }),
+                 "remaining length");
 }
 
 std::uint32_t GuardedMethod::escapes() const {

@@ -10,8 +10,8 @@
 
 namespace swarm::agent {
 
-/// Isolates the robot from faults of its control method: exceptions end here, and a velocity that
-/// is not finite is not passed on. After either the method is not called again and fault() has the
+/// Isolates the robot from faults of its control method: exceptions end here, and a result that is
+/// not finite is not passed on. After either the method is not called again and fault() has the
 /// reason; the results are then those of a robot that stays where it is.
 class GuardedMethod {
  public:
@@ -27,13 +27,14 @@ class GuardedMethod {
   double remaining_m() const;
   std::uint32_t escapes() const;
 
-  /// Empty while the method works.
+  /// Empty while the method works; else one line that fits into an event.
   const std::string& fault() const { return fault_; }
 
  private:
   template <class T, class Call>
   T guarded(T otherwise, Call call) const;
   Vec2 checked(const Vec2& velocity_mps);
+  double checked(double value, const char* name) const;
 
   ControlSlot method_;
   mutable std::string fault_;

@@ -35,16 +35,37 @@ class Rules {
   std::vector<BrokenRule> broken;
 };
 
+/// A body that some robots have, with its path in the mission file.
+struct BodyInUse {
+  std::string path;
+  const BodySpec* spec;
+};
+
+std::vector<BodyInUse> bodies_in_use(const RobotsSpec& robots) {
+  std::vector<BodyInUse> bodies;
+  std::uint64_t grouped = 0;
+  for (std::size_t i = 0; i < robots.groups.size(); ++i) {
+    bodies.push_back({fmt::format("robots.groups[{}]", i), &robots.groups[i]});
+    grouped += robots.groups[i].count;
+  }
+  if (grouped < robots.count) bodies.push_back({"robots", &robots});
+  return bodies;
+}
+
 constexpr double kGroupCellsMax = 4.0;  // per communication radius: at most 100 cells per robot
 
 }  // namespace
 
-/// Surface gap m + 2 v_max (dt/γ + send_interval_max_s) plus two radii; the factor 2 covers two
-/// robots that drive towards each other at full speed.
-double least_communication_radius_m(const Mission& mission) {
+/// Surface gap m + (v + v′)(dt/γ + send_interval_max_s) plus both radii: the two robots drive
+/// towards each other at full speed.
+double least_communication_radius_m(const Mission& mission, const BodySpec& body) {
   const double braking_s = 1.0 / (mission.control.rate_hz * mission.safety.gap_share);
-  return 2.0 * mission.robots.radius_m + mission.safety.neighbour_margin_m +
-         2.0 * mission.robots.speed_max_mps * (braking_s + mission.link.send_interval_max_s);
+  double speed_max_mps = 0.0;
+  for (const BodyInUse& other : bodies_in_use(mission.robots)) {
+    speed_max_mps = std::max(speed_max_mps, other.spec->speed_max_mps);
+  }
+  return body.radius_m + largest_radius_m(mission.robots) + mission.safety.neighbour_margin_m +
+         (body.speed_max_mps + speed_max_mps) * (braking_s + mission.link.send_interval_max_s);
 }
 
 /// The rules that the option tables declare by OptionSpec::at_most.
@@ -69,6 +90,43 @@ std::vector<BrokenRule> broken_rules(const std::string& section, const Component
   }
   return std::move(rules.broken);
 }
+
+namespace {
+
+/// A radius below the least one of a body, which has its own radius or that of the link.
+BrokenRule radius_too_small(const std::string& key, double radius_m, double least_m,
+                            const std::string& body) {
+  // Groups take the keys that they do not set from all robots.
+  return {
+      {key, body + ".radius_m", body + ".speed_max_mps", "robots.radius_m", "robots.speed_max_mps",
+       "control.rate_hz", "safety.gap_share", "safety.neighbour_margin_m",
+       "link.send_interval_max_s"},
+      fmt::format("{} is {}; must be >= {:.4g}, from where on the safety filter needs to know a "
+                  "robot",
+                  key, radius_m, least_m)};
+}
+
+/// One rule for each radius: that of the link suits all bodies without one of their own.
+void add_communication_radii(const Mission& mission, Rules& rules) {
+  const double link_m = mission.link.communication_radius_m;
+  double link_least_m = 0.0;
+  std::string of;
+  for (const BodyInUse& body : bodies_in_use(mission.robots)) {
+    const double own_m = body.spec->communication_radius_m;
+    const double least_m = least_communication_radius_m(mission, *body.spec);
+    if (own_m > 0.0) {
+      const std::string key = body.path + ".communication_radius_m";
+      if (own_m < least_m) rules.broken.push_back(radius_too_small(key, own_m, least_m, body.path));
+    } else if (least_m > link_least_m) {
+      link_least_m = least_m;
+      of = body.path;
+    }
+  }
+  if (link_m >= link_least_m) return;
+  rules.broken.push_back(radius_too_small("link.communication_radius_m", link_m, link_least_m, of));
+}
+
+}  // namespace
 
 /// The structured binding names every member, so that a new section of Mission does not compile
 /// until someone has looked at its rules.
@@ -115,16 +173,7 @@ std::vector<BrokenRule> broken_rules(const Mission& mission) {
               fmt::format("timing.planner_silence_s is {}; must be >= {}, two heartbeats",
                           timing.planner_silence_s, 2.0 / timing.heartbeat_hz));
   }
-  if (const double least_m = least_communication_radius_m(mission);
-      link.communication_radius_m < least_m) {
-    rules.add({"link.communication_radius_m", "robots.radius_m", "robots.speed_max_mps",
-               "control.rate_hz", "safety.gap_share", "safety.neighbour_margin_m",
-               "link.send_interval_max_s"},
-              fmt::format(
-                  "link.communication_radius_m is {}; must be >= {:.4g}, from where on the safety "
-                  "filter needs to know a robot",
-                  link.communication_radius_m, least_m));
-  }
+  add_communication_radii(mission, rules);
   return std::move(rules.broken);
 }
 

@@ -16,10 +16,11 @@ struct BrokenRule {
   std::string message;            ///< the wrong value and the values that would be right
 };
 
-/// Least communication radius of robots, between their centres [m]: the safety filter begins to
-/// brake at a surface gap of m + 2·v_max·dt/γ, and until its next state update
-/// (send_interval_max_s) a pair of robots may approach at 2·v_max.
-double least_communication_radius_m(const Mission& mission);
+/// Least communication radius of the robots with this body, between centres [m]: the safety filter
+/// begins to brake at a surface gap of m + (v + v′)·dt/γ, and until its next state update
+/// (send_interval_max_s) a pair of robots may approach at v + v′. v is the body's largest speed, v′
+/// that of the fastest robot; the other robot is as large as the largest one.
+double least_communication_radius_m(const Mission& mission, const BodySpec& body);
 
 /// All rules between keys that `mission` violates. Each single value must be in its range.
 std::vector<BrokenRule> broken_rules(const Mission& mission);

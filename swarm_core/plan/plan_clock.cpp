@@ -4,11 +4,23 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <iterator>
+#include <utility>
 
 #include <nlohmann/json.hpp>
 
 namespace swarm {
+namespace {
+
+/// Whether a value is an integer that T can hold; a larger one would be cut to another number.
+template <class T>
+bool fits(const nlohmann::json& value) {
+  if (value.is_number_unsigned()) return std::in_range<T>(value.get<std::uint64_t>());
+  return value.is_number_integer() && std::in_range<T>(value.get<std::int64_t>());
+}
+
+}  // namespace
 
 std::string plan_clock_line(const PlanClock& clock) {
   const nlohmann::ordered_json json = {{"utc_ns", clock.stamp.time_since_epoch().count()},
@@ -30,8 +42,8 @@ std::vector<PlanClock> read_plan_clock(std::string_view lines) {
     const auto version = json.find("plan_version");
     const auto plan_time = json.find("plan_time_s");
     const auto rate = json.find("rate");
-    if (stamp == json.end() || !stamp->is_number_integer()) continue;
-    if (version == json.end() || !version->is_number_unsigned()) continue;
+    if (stamp == json.end() || !fits<std::int64_t>(*stamp)) continue;
+    if (version == json.end() || !fits<std::uint32_t>(*version)) continue;
     if (plan_time == json.end() || !plan_time->is_number()) continue;
     if (rate == json.end() || !rate->is_number()) continue;
     const PlanClock reading{.stamp = UtcTime(Duration(stamp->get<std::int64_t>())),

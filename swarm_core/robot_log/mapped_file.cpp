@@ -14,13 +14,14 @@
 namespace swarm::mcap {
 
 // Maps instead of reading, so that a recording larger than memory can be searched. An empty file
-// cannot be mapped and has no bytes. The mapping outlives the descriptor.
+// cannot be mapped and has no bytes. The mapping outlives the descriptor. Without O_NONBLOCK a pipe
+// would block until a writer opens it.
 Result<MappedFile> MappedFile::open(const std::filesystem::path& file) {
   const auto error = [&](const char* what) {
     return fail(ErrorCode::kEnvironment,
                 fmt::format("{}: {}: {}", file.string(), what, std::strerror(errno)));
   };
-  const int fd = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
+  const int fd = ::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (fd < 0) return error("cannot be opened");
   struct stat status {};
   if (::fstat(fd, &status) != 0 || !S_ISREG(status.st_mode)) {

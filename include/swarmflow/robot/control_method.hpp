@@ -59,7 +59,7 @@ struct TimeTracking {
 /// hold() may come before begin(), while the robot waits for a plan. A method must be a function of
 /// its inputs and the generator alone, so that a run can be repeated; it should not allocate after
 /// begin(), and a tick of all robots of a process must fit into a control period: commands run out
-/// after two periods (event `tick-overrun`). An exception, or a velocity that is not finite, stops
+/// after two periods (event `tick-overrun`). An exception, or a result that is not finite, stops
 /// the robot for good (mode kStopped, event `robot-fault`) and the method is not called again.
 /// Methods of different robots must not share data that changes: a simulation runs them in
 /// parallel.

@@ -118,5 +118,22 @@ TEST(PlanTimeWatch, StartsOverWithAnotherFlow) {
   EXPECT_NEAR(sut.at(at_s(51.2))->plan_time_s, 0.7, 1e-6);
 }
 
+// A planner that is restarted while robots are under way plans again from where they are: another
+// flow, under version 1 as the first one was.
+TEST(PlanTimeWatch, StartsOverWithAnotherFlowUnderTheSameVersion) {
+  PlanTimeWatch sut(std::chrono::seconds(2));
+  sut.on_plan(1, false);
+  sut.on_heartbeat(beat(50, 0), at_s(50));
+  EXPECT_NEAR(sut.at(at_s(50))->plan_time_s, 50.0, 1e-6);
+
+  sut.on_plan(1, false);
+  EXPECT_FALSE(sut.at(at_s(53)));
+  auto fresh = beat(53, 0);
+  fresh.plan_time_s = 0.5;
+  sut.on_heartbeat(fresh, at_s(53));
+  EXPECT_NEAR(sut.at(at_s(53.2))->plan_time_s, 0.7, 1e-6);
+  EXPECT_EQ(sut.at(at_s(53.2))->rate, 1.0);
+}
+
 }  // namespace
 }  // namespace swarm::agent

@@ -1,0 +1,54 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "robot_agent/program/plan_intake.hpp"
+
+#include <gtest/gtest.h>
+
+namespace swarm::agent {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+NewPlan new_plan(double x_m) {
+  return {.flow = FlowPlan::make(
+                      {{Gaussian::from_parameters({x_m, 0}, 1, 1, 0), MissionTime(0), 1}}, {})
+                      .value(),
+          .entries = {}};
+}
+
+TEST(PlanIntake, HandsAPlanOnOnceAndAtOnceWhereItDoesNotWait) {
+  PlanIntake sut(false);
+  const SteadyTime now{seconds(5)};
+  EXPECT_FALSE(sut.take(now, true).has_value());
+  sut.receive(new_plan(8), now);
+  sut.receive(std::nullopt, now);
+
+  EXPECT_TRUE(sut.take(now, false).has_value());
+  EXPECT_FALSE(sut.take(now, false).has_value());
+}
+
+TEST(PlanIntake, HoldsAPlanBackUntilItsClockIsKnownOrASecondIsOver) {
+  for (const bool clock_comes : {true, false}) {
+    PlanIntake sut(true);
+    const SteadyTime now{seconds(5)};
+    sut.receive(new_plan(8), now);
+
+    EXPECT_FALSE(sut.take(now, false).has_value());
+    EXPECT_FALSE(sut.take(now + milliseconds(999), false).has_value());
+    EXPECT_TRUE(sut.take(now + milliseconds(clock_comes ? 999 : 1000), clock_comes).has_value());
+  }
+}
+
+TEST(PlanIntake, ReplacesAPlanThatWaits) {
+  PlanIntake sut(true);
+  const SteadyTime now{seconds(5)};
+  sut.receive(new_plan(8), now);
+  sut.receive(new_plan(9), now + milliseconds(500));
+
+  EXPECT_EQ(sut.take(now + milliseconds(500), true).value().flow.digest(),
+            new_plan(9).flow.digest());
+}
+
+}  // namespace
+}  // namespace swarm::agent

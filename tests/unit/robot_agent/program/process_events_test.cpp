@@ -1,0 +1,131 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "robot_agent/program/process_events.hpp"
+
+#include <string>
+#include <variant>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "tests/unit/robot_agent/program/process_bench.hpp"
+
+namespace swarm::agent {
+namespace {
+
+class ProcessEventsTest : public ProcessBench {
+ protected:
+  ProcessEventsTest() : ProcessBench(3) {}
+
+  /// The events of the next tick, as "code: text".
+  std::vector<std::string> tick(Duration later = milliseconds(100)) {
+    receive(later);
+    events_.on_tick(steady(), utc(), sut_, ages_);
+    std::vector<std::string> texts;
+    for (const link::EventMessage& event : writer_.take()) {
+      EXPECT_EQ(event.source, 0U);
+      EXPECT_EQ(event.stamp_utc_ns, utc_ns());
+      texts.push_back(event.code + ": " + event.text);
+      severity_ = event.severity;
+    }
+    return texts;
+  }
+  /// The records of a kind in a robot's log.
+  template <class Kind>
+  std::vector<Kind> logged(std::uint32_t robot) const {
+    std::vector<Kind> records;
+    const auto read =
+        robot_log::read_records(log_of(RobotId(robot)), [&](const robot_log::Record& record) {
+          if (const auto* one = std::get_if<Kind>(&record)) records.push_back(*one);
+        });
+    EXPECT_TRUE(read.has_value());
+    return records;
+  }
+
+  using Texts = std::vector<std::string>;
+  KeepingWriter<link::EventMessage> writer_;
+  ProcessEvents events_{robots_, writer_};
+  link::Severity severity_ = link::Severity::kInfo;
+};
+
+TEST_F(ProcessEventsTest, AnnounceEachLossAndReturnOfThePlannerOnce) {
+  EXPECT_EQ(tick(), Texts{});
+  send_heartbeat(1, 0.0);
+  EXPECT_EQ(tick(), Texts{"planner-heard: receives the planner"});
+  EXPECT_EQ(tick(seconds(2)), Texts{});
+  EXPECT_EQ(tick(), Texts{"planner-silent: planner silent: holds with avoidance on"});
+  EXPECT_EQ(severity_, link::Severity::kWarning);
+  EXPECT_EQ(tick(seconds(9)), Texts{});
+  send_heartbeat(1, 9.0);
+  EXPECT_EQ(tick(), Texts{"planner-heard: receives the planner"});
+
+  // The audit reads logs alone.
+  ASSERT_EQ(logged<robot_log::Note>(0).size(), 3U);
+  EXPECT_EQ(logged<robot_log::Note>(0)[1].code, "planner-silent");
+  EXPECT_TRUE(logged<robot_log::Note>(1).empty());
+}
+
+TEST_F(ProcessEventsTest, AnnounceAFaultWhenItBeginsAndWhenItEnds) {
+  driver(2).is_valid = false;
+  step(2);
+  EXPECT_EQ(tick(), Texts{"robot-fault: robot 2: the driver has no position; the robot holds"});
+  EXPECT_EQ(severity_, link::Severity::kError);
+  step(2);
+  EXPECT_EQ(tick(), Texts{});
+  driver(2).is_valid = true;
+  step(2);
+  EXPECT_EQ(tick(), Texts{"robot-fault: robot 2: works again"});
+  EXPECT_EQ(severity_, link::Severity::kInfo);
+  EXPECT_EQ(tick(), Texts{});
+}
+
+TEST_F(ProcessEventsTest, AnnounceRefusalsByReasonOnceASecond) {
+  EXPECT_EQ(tick(), Texts{});
+  send_state(8, utc_ns());
+  send_state(9, utc_ns());
+  send_state(3, utc_ns());     // under our own id
+  EXPECT_EQ(tick(), Texts{});  // not before the second is over
+  send_state(8, utc_ns());
+  EXPECT_EQ(tick(seconds(1)),
+            (Texts{"refused: 3 message(s): out-of-range", "refused: 1 message(s): forged"}));
+  EXPECT_EQ(tick(seconds(1)), Texts{});
+  send_state(8, utc_ns());
+  EXPECT_EQ(tick(seconds(1)), Texts{"refused: 1 message(s): out-of-range"});
+}
+
+TEST_F(ProcessEventsTest, AnnounceClocksThatDiffer) {
+  tick();
+  send_state(1, utc_ns(-seconds(3)));
+  send_state(2, utc_ns(-seconds(3)));
+  EXPECT_EQ(tick(seconds(1)), Texts{"clock-skew: 2 state(s) from a clock that differs from ours"});
+  EXPECT_EQ(tick(seconds(1)), Texts{});
+}
+
+TEST_F(ProcessEventsTest, NameTheRobotsThatATickOverrunStopped) {
+  events_.on_overrun(utc(), milliseconds(1260));
+
+  ASSERT_EQ(writer_.written.size(), 1U);
+  EXPECT_EQ(writer_.written[0].severity, link::Severity::kError);
+  EXPECT_EQ(writer_.written[0].code, "tick-overrun");
+  EXPECT_EQ(writer_.written[0].text,
+            "robots 0 to 2: a tick took 1.3 s; their commands ran out, so their bodies stopped "
+            "meanwhile");
+}
+
+// Each robot has its own counters once a second; those of the process are in the first log alone.
+TEST_F(ProcessEventsTest, RecordTheCountersOfTheLink) {
+  ages_.add(5);
+  send_state(8, utc_ns());
+  for (int k = 0; k < 25; ++k) tick();
+
+  for (std::uint32_t robot = 0; robot < 3; ++robot) {
+    const auto stats = logged<robot_log::LinkStats>(robot);
+    ASSERT_EQ(stats.size(), 3U) << robot;  // at 0.1, 1.1 and 2.1 s
+    EXPECT_EQ(stats[1].stamp - stats[0].stamp, seconds(1));
+    EXPECT_EQ(stats[0].state_age.count(), robot == 0 ? 1U : 0U);
+    EXPECT_EQ(stats[0].refused.empty(), robot != 0);
+  }
+}
+
+}  // namespace
+}  // namespace swarm::agent
