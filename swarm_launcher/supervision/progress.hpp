@@ -8,8 +8,9 @@
 
 namespace swarm::launcher {
 
-/// One live line on a terminal, rewritten in place. Without a terminal (or with NO_COLOR set) each
-/// change of `headline` is printed as a line and the details are omitted. Writes to stderr.
+/// One live line on a terminal, rewritten in place and cut to the terminal's width. Without a
+/// terminal (or with NO_COLOR set) each change of `headline` is printed as a line and the details
+/// are omitted. Writes to stderr.
 class Progress {
  public:
   Progress();
