@@ -78,7 +78,8 @@ Result<ControlServer> ControlServer::listen(const std::filesystem::path& run_dir
 ControlServer::ControlServer(ControlServer&& other) noexcept
     : listen_fd_(std::exchange(other.listen_fd_, -1)),
       socket_(std::move(other.socket_)),
-      clients_(std::exchange(other.clients_, {})) {}
+      clients_(std::exchange(other.clients_, {})),
+      next_id_(other.next_id_) {}
 
 ControlServer::~ControlServer() {
   for (const Client& client : clients_) ::close(client.fd);
@@ -109,9 +110,10 @@ std::vector<ControlServer::Request> ControlServer::poll() {
     const std::size_t end = client.input.find('\n');
     // A complete request is served even if its sender has closed its side: the command may be a
     // stop.
-    if (!client.asked && end != std::string::npos) {
+    if (!client.asked && end <= kMaxLine) {
       client.asked = true;
       requests.push_back({client.id, client.input.substr(0, end)});
+      client.input.clear();  // what follows is no request and does not count as a long line
       continue;
     }
     if (client.input.size() > kMaxLine) {

@@ -160,10 +160,9 @@ void LineSocket::receive(std::size_t held) {
 // A too long line is recognised before its end arrives, so buffers stay bounded.
 std::optional<std::string> LineSocket::line(std::size_t most) {
   const std::size_t end = in_.find('\n', read_);
-  if (end == std::string::npos) {
-    gone_ = gone_ || in_.size() - read_ > most;
-    return std::nullopt;
-  }
+  const std::size_t size = std::min(end, in_.size()) - read_;  // so far, if it has no end yet
+  gone_ = gone_ || size > most;
+  if (end == std::string::npos || size > most) return std::nullopt;
   std::string out = in_.substr(read_, end - read_);
   read_ = end + 1;
   return out;

@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "swarm_launcher/hosts/offer.hpp"
 
+#include <stdexcept>
+#include <utility>
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -11,6 +14,23 @@ namespace {
 // Raise it with every change of the offer or of the lines between the hosts.
 constexpr int kVersion = 2;
 constexpr std::uint32_t kMaxRobots = 20'000;
+
+/// A field that is a whole number and fits into T. The JSON library would convert a fraction, a
+/// truth value, a negative number or one that is too large without a complaint.
+template <class T>
+T whole(const nlohmann::json& json, const char* key) {
+  const nlohmann::json& field = json.at(key);
+  if (field.is_number_unsigned()) {
+    if (const auto value = field.get<std::uint64_t>(); std::in_range<T>(value)) {
+      return static_cast<T>(value);
+    }
+  } else if (field.is_number_integer()) {
+    if (const auto value = field.get<std::int64_t>(); std::in_range<T>(value)) {
+      return static_cast<T>(value);
+    }
+  }
+  throw std::out_of_range(fmt::format("'{}' is no whole number of its range", key));
+}
 
 }  // namespace
 
@@ -33,8 +53,8 @@ std::string to_line(const HostOffer& offer) {
       .dump();
 }
 
-// Any missing field or wrong type throws in the JSON library and becomes an error here. Ranges are
-// checked last: the values become ports, sizes and loop bounds.
+// Any missing field or wrong type throws, here or in the JSON library, and becomes an error. Ranges
+// are checked last: the values become ports, sizes and loop bounds.
 Result<HostOffer> parse_offer(const std::string& line) {
   try {
     const auto json = nlohmann::json::parse(line);
@@ -42,7 +62,7 @@ Result<HostOffer> parse_offer(const std::string& line) {
       return fail(ErrorCode::kEnvironment,
                   "the launcher refused: " + json.at("refused").get<std::string>());
     }
-    if (const int version = json.at("version").get<int>(); version != kVersion) {
+    if (const int version = whole<int>(json, "version"); version != kVersion) {
       return fail(ErrorCode::kEnvironment,
                   fmt::format("the launcher speaks version {} of this protocol, this program {}: "
                               "use the same release on all hosts",
@@ -51,28 +71,28 @@ Result<HostOffer> parse_offer(const std::string& line) {
     const auto vendor = [&json](const char* is_cyclone) {
       return json.at(is_cyclone).get<bool>() ? link::Vendor::kCycloneDds : link::Vendor::kFastDds;
     };
-    HostOffer offer{
-        .run = {.domain = json.at("domain").get<std::uint32_t>(),
-                .relays = json.at("hubs").get<std::uint32_t>(),
-                .launcher = vendor("cyclone_launcher"),
-                .planner = vendor("cyclone_planner"),
-                .host = json.at("host").get<std::string>(),
-                .channel = Channel::kGroups,
-                .seed = json.at("seed").get<std::uint64_t>(),
-                .began = UtcTime(Duration(json.at("began_utc_ns").get<std::int64_t>()))},
-        .first_robot = json.at("first_robot").get<std::uint32_t>(),
-        .robots = json.at("robots").get<std::uint32_t>(),
-        .per_process = json.at("per_process").get<std::uint32_t>(),
-        .first_process = json.at("first_process").get<std::uint32_t>(),
-        .fault = json.at("fault").get<std::string>(),
-        .mission_yaml = json.at("mission").get<std::string>()};
-    const bool plausible = offer.run.domain < 230 && offer.run.relays >= 1 &&
-                           offer.run.relays <= 1000 && offer.robots >= 1 &&
-                           offer.robots <= kMaxRobots && offer.first_robot <= kMaxRobots &&
-                           offer.per_process >= 1 && offer.first_process <= kMaxRobots;
+    HostOffer offer{.run = {.domain = whole<std::uint32_t>(json, "domain"),
+                            .relays = whole<std::uint32_t>(json, "hubs"),
+                            .launcher = vendor("cyclone_launcher"),
+                            .planner = vendor("cyclone_planner"),
+                            .host = json.at("host").get<std::string>(),
+                            .channel = Channel::kGroups,
+                            .seed = whole<std::uint64_t>(json, "seed"),
+                            .began = UtcTime(Duration(whole<std::int64_t>(json, "began_utc_ns")))},
+                    .first_robot = whole<std::uint32_t>(json, "first_robot"),
+                    .robots = whole<std::uint32_t>(json, "robots"),
+                    .per_process = whole<std::uint32_t>(json, "per_process"),
+                    .first_process = whole<std::uint32_t>(json, "first_process"),
+                    .fault = json.at("fault").get<std::string>(),
+                    .mission_yaml = json.at("mission").get<std::string>()};
+    const bool plausible =
+        offer.run.domain < 230 && offer.run.relays >= 1 && offer.run.relays <= 1000 &&
+        offer.robots >= 1 && offer.robots <= kMaxRobots && offer.first_robot <= kMaxRobots &&
+        offer.first_robot + offer.robots <= kMaxRobots && offer.per_process >= 1 &&
+        offer.per_process <= kMaxRobots && offer.first_process <= kMaxRobots;
     if (plausible) return offer;
     return fail(ErrorCode::kBadInput, "what answered is no launcher: its offer makes no sense");
-  } catch (const nlohmann::json::exception& e) {
+  } catch (const std::exception& e) {
     return fail(
         ErrorCode::kBadInput,
         fmt::format("what answered is no launcher: its offer cannot be read: {}", e.what()));

@@ -7,6 +7,7 @@
 #include <csignal>
 #include <cstring>
 #include <string>
+#include <thread>
 #include <utility>
 
 #include <fcntl.h>
@@ -24,13 +25,10 @@ extern char** environ;
 namespace swarm::launcher {
 namespace {
 
-// Far longer than --describe needs: it only prints tables.
-constexpr Duration kTimeout = std::chrono::seconds(10);
 constexpr std::size_t kMostBytes = 4U << 20U;
 
 /// Reads until the other end closes; false if the time is over or the output is too long.
-bool read_all(int pipe, std::string& text) {
-  const SteadyTime deadline = std::chrono::steady_clock::now() + kTimeout;
+bool read_all(int pipe, SteadyTime deadline, std::string& text) {
   std::array<char, 4096> piece;
   for (;;) {
     const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(
@@ -41,6 +39,16 @@ bool read_all(int pipe, std::string& text) {
     if (size < 0 || text.size() > kMostBytes) return false;
     if (size == 0) return true;
     text.append(piece.data(), static_cast<std::size_t>(size));
+  }
+}
+
+/// Waits until the process ends; false if the time is over. A program that closes its output need
+/// not end.
+bool wait_for(pid_t pid, SteadyTime deadline, int& status) {
+  for (;;) {
+    if (::waitpid(pid, &status, WNOHANG) != 0) return true;
+    if (std::chrono::steady_clock::now() >= deadline) return false;
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
 }
 
@@ -60,7 +68,8 @@ int spawn(const std::filesystem::path& program, int out, pid_t& pid) {
 }  // namespace
 
 // The program may be anything that the user named: it is killed when it does not end in time.
-Result<Catalogue> describe_program(const std::filesystem::path& program) {
+Result<Catalogue> describe_program(const std::filesystem::path& program, Duration timeout) {
+  const SteadyTime deadline = std::chrono::steady_clock::now() + timeout;
   std::array<int, 2> ends{};
   if (::pipe2(ends.data(), O_CLOEXEC) != 0) {
     return fail(ErrorCode::kEnvironment, fmt::format("pipe: {}", std::strerror(errno)));
@@ -72,9 +81,11 @@ Result<Catalogue> describe_program(const std::filesystem::path& program) {
   bool ended = false;
   int status = 0;
   if (error == 0) {
-    ended = read_all(ends[0], text);
-    if (!ended) ::kill(pid, SIGKILL);
-    ::waitpid(pid, &status, 0);
+    ended = read_all(ends[0], deadline, text) && wait_for(pid, deadline, status);
+    if (!ended) {
+      ::kill(pid, SIGKILL);
+      ::waitpid(pid, &status, 0);
+    }
   }
   ::close(ends[0]);
   if (error != 0) {
@@ -82,11 +93,12 @@ Result<Catalogue> describe_program(const std::filesystem::path& program) {
                 fmt::format("{}: cannot be started: {}", program.string(), std::strerror(error)));
   }
   if (!ended || status != 0) {
-    return fail(ErrorCode::kBadInput,
-                fmt::format("{} --describe: {}; is it a program that calls run_robot() or "
-                            "run_planner()?",
-                            program.string(),
-                            ended ? "ended with an error" : "did not end in ten seconds"));
+    return fail(
+        ErrorCode::kBadInput,
+        fmt::format("{} --describe: {}; is it a program that calls run_robot() or "
+                    "run_planner()?",
+                    program.string(),
+                    ended ? "ended with an error" : "did not end in time, or printed too much"));
   }
   return catalogue_from_json(text, program.string());
 }

@@ -2,13 +2,37 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "swarm_launcher/supervision/progress.hpp"
 
+#include <cstddef>
 #include <cstdio>
 #include <cstdlib>
+#include <limits>
 
 #include <fmt/format.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 namespace swarm::launcher {
+namespace {
+
+/// Characters of the live line: one less than the terminal is wide, since some terminals begin the
+/// next row with the last column. A terminal that does not know its width has no limit.
+std::size_t room() {
+  winsize size{};
+  const bool known = ::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
+  return known ? size.ws_col - 1U : std::numeric_limits<std::size_t>::max();
+}
+
+/// The first characters of a text in UTF-8.
+std::string first_of(const std::string& text, std::size_t characters) {
+  std::size_t end = 0;
+  for (; end < text.size(); ++end) {
+    const bool begins = (static_cast<unsigned char>(text[end]) & 0xC0U) != 0x80U;
+    if (begins && characters-- == 0) break;
+  }
+  return text.substr(0, end);
+}
+
+}  // namespace
 
 // Control sequences are written to terminals only, and not if the user set NO_COLOR.
 Progress::Progress() : live_(::isatty(STDERR_FILENO) == 1 && std::getenv("NO_COLOR") == nullptr) {}
@@ -23,11 +47,12 @@ void Progress::clear() {
   shown_ = false;
 }
 
-// Without a terminal only changes of the headline are printed, so that logs stay short.
+// A line that is wrapped could not be rewritten: only its last row would be erased. Without a
+// terminal only changes of the headline are printed, so that logs stay short.
 void Progress::show(const std::string& headline, const std::string& details) {
   if (live_) {
     clear();
-    std::fprintf(stderr, "%s  %s", headline.c_str(), details.c_str());
+    std::fputs(first_of(headline + "  " + details, room()).c_str(), stderr);
     std::fflush(stderr);
     shown_ = true;
   } else if (headline != headline_) {

@@ -17,8 +17,9 @@ class Display {
   virtual void print(const std::string& line) = 0;
 };
 
-/// One live line on a terminal, rewritten in place. Without a terminal (or with NO_COLOR set) each
-/// change of `headline` is printed as a line and the details are omitted. Writes to stderr.
+/// One live line on a terminal, rewritten in place and cut to the terminal's width. Without a
+/// terminal (or with NO_COLOR set) each change of `headline` is printed as a line and the details
+/// are omitted. Writes to stderr.
 class Progress final : public Display {
  public:
   Progress();

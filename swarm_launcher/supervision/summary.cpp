@@ -58,11 +58,13 @@ PlansExcess plans_excess(const std::filesystem::path& run_dir) {
 Json empty_summary(const Json& own, const std::string& why) {
   Json summary = {
       {"outcome", nullptr}, {"reasons", {why}}, {"arrived", 0}, {"lost", Json::array()}};
-  for (const char* key :
-       {"robots", "processes", "collisions_robot", "collisions_obstacle", "collisions_fallen",
-        "min_robot_gap_m", "min_obstacle_gap_m", "mean_path_m", "geodesic_bound_m", "path_ratio",
-        "mission_s", "stop_latency_ms", "state_age_ms", "belief_error_cm", "states_hz",
-        "deadline_miss_ratio", "refused_messages", "tracking"}) {
+  for (const char* key : {"robots",           "processes",           "arrived_per_goal",
+                          "collisions_robot", "collisions_obstacle", "collisions_fallen",
+                          "min_robot_gap_m",  "min_obstacle_gap_m",  "mean_path_m",
+                          "geodesic_bound_m", "path_ratio",          "mission_s",
+                          "stop_latency_ms",  "state_age_ms",        "belief_error_cm",
+                          "states_hz",        "deadline_miss_ratio", "refused_messages",
+                          "outside_bounds",   "damaged_records",     "tracking"}) {
     summary[key] = nullptr;
   }
   summary.update(own);

@@ -1,0 +1,85 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "swarm_core/app/stop_signal.hpp"
+
+#include <array>
+#include <atomic>
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <thread>
+
+#include <gtest/gtest.h>
+#include <pthread.h>
+#include <sys/socket.h>
+#include <time.h>
+#include <unistd.h>
+
+namespace swarm::shell {
+namespace {
+
+/// Restores the signal actions after a test, so that Ctrl-C ends the test program again.
+class StopSignals : public testing::Test {
+ protected:
+  StopSignals() {
+    for (std::size_t i = 0; i < kSignals.size(); ++i) sigaction(kSignals[i], nullptr, &before_[i]);
+    catch_stop_signals();
+  }
+  ~StopSignals() override {
+    for (std::size_t i = 0; i < kSignals.size(); ++i) sigaction(kSignals[i], &before_[i], nullptr);
+  }
+
+ private:
+  static constexpr std::array kSignals = {SIGINT, SIGTERM, SIGPIPE, SIGXFSZ};
+  std::array<struct sigaction, kSignals.size()> before_{};
+};
+
+TEST_F(StopSignals, AreCountedAndDoNotEndTheProgram) {
+  const int before = stop_requests();
+  for (const int signal : {SIGINT, SIGTERM, SIGTERM, SIGINT, SIGINT}) ::raise(signal);
+  EXPECT_EQ(stop_requests() - before, 5);
+}
+
+TEST_F(StopSignals, AreCountedOverTwoInstallations) {
+  const int before = stop_requests();
+  ::raise(SIGINT);
+  catch_stop_signals();
+  ::raise(SIGINT);
+  EXPECT_EQ(stop_requests() - before, 2);
+}
+
+TEST_F(StopSignals, DoNotIncludeAPeerThatClosedItsSocketNorAFullDisk) {
+  const int before = stop_requests();
+  std::array<int, 2> ends{};
+  ASSERT_EQ(::socketpair(AF_UNIX, SOCK_STREAM, 0, ends.data()), 0);
+  ::close(ends[1]);
+
+  EXPECT_EQ(::write(ends[0], "x", 1), -1);
+  EXPECT_EQ(errno, EPIPE);
+  ::raise(SIGXFSZ);
+
+  ::close(ends[0]);
+  EXPECT_EQ(stop_requests(), before);
+}
+
+// The signal is repeated, because the first one may arrive before the thread sleeps.
+TEST_F(StopSignals, EndASleep) {
+  std::atomic<bool> awake = false;
+  int slept = 0;
+  std::thread sleeper([&] {
+    const timespec day{.tv_sec = 86'400, .tv_nsec = 0};
+    slept = ::nanosleep(&day, nullptr);
+    awake = true;
+  });
+
+  while (!awake) {
+    ::pthread_kill(sleeper.native_handle(), SIGTERM);
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  sleeper.join();
+
+  EXPECT_EQ(slept, -1) << "it did not sleep to its end";
+}
+
+}  // namespace
+}  // namespace swarm::shell
