@@ -7,8 +7,8 @@
 #include <gtest/gtest.h>
 
 #include "swarm_link/channels/state_channel.hpp"
-#include "swarm_link/inproc/inproc_bus.hpp"
 #include "swarmflow/core/random.hpp"
+#include "tests/support/inproc/inproc_bus.hpp"
 
 namespace swarm::link {
 namespace {

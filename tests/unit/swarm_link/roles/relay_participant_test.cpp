@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "swarm_link/inproc/inproc_bus.hpp"
+#include "tests/support/inproc/inproc_bus.hpp"
 
 namespace swarm::link {
 namespace {
