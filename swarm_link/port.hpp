@@ -11,10 +11,10 @@
 #include "swarm_link/topics.hpp"
 #include "swarmflow/core/result.hpp"
 
-/// The bus as the programs use it: a participant makes writers and readers. Three backends
-/// implement it, on bytes: the adapters of Fast DDS and Cyclone DDS, and the in-process bus. No
-/// vendor type and no vendor exception passes this interface, and no vendor thread runs domain
-/// code: readers are polled.
+/// The bus as the programs use it: a participant makes writers and readers. The
+/// adapters of Fast DDS and Cyclone DDS implement it, on bytes; tests have a bus in memory
+/// (tests/support/inproc). No vendor type and no vendor exception passes this interface, and no
+/// vendor thread runs domain code: readers are polled.
 namespace swarm::link {
 
 /// One DDS participant of a process (or several combined). It makes endpoints and must outlive

@@ -16,8 +16,8 @@ void StreamMeter::receive(const RobotStateMessage& state, UtcTime at) {
   }
   Stream& stream = streams_[state.robot_id];
   const std::uint32_t number = state.sequence_number;
-  if (stream.highest == 0 || number + kWindow < stream.highest) {
-    stream = {.highest = number, .received = 1};
+  if (stream.highest == 0 || (number < stream.highest && stream.highest - number >= kWindow)) {
+    stream = {.first = number, .highest = number, .received = 1};
   } else if (number > stream.highest) {
     const std::uint32_t skipped = number - stream.highest - 1;
     stream.received = skipped + 1 < kWindow ? stream.received << (skipped + 1) | 1U : 1U;
@@ -25,15 +25,14 @@ void StreamMeter::receive(const RobotStateMessage& state, UtcTime at) {
     counts_.lost += skipped;
     counts_.gaps += skipped > 0 ? 1 : 0;
   } else {
-    const std::uint32_t back = stream.highest - number;
-    const std::uint64_t bit = std::uint64_t{1} << (back % kWindow);
-    if (back >= kWindow || (stream.received & bit) != 0) {
+    const std::uint64_t bit = std::uint64_t{1} << (stream.highest - number);
+    if ((stream.received & bit) != 0) {
       ++counts_.duplicates;
       return;
     }
     stream.received |= bit;
     ++counts_.reordered;
-    if (counts_.lost > 0) --counts_.lost;
+    if (number > stream.first) --counts_.lost;  // one before the first was never counted as lost
   }
   ++counts_.received;
   const std::int64_t age_us = (at.time_since_epoch().count() - state.stamp_utc_ns) / 1000;

@@ -52,6 +52,7 @@ class StreamMeter {
 
   /// Per robot: the highest number and which of the 64 numbers up to it arrived.
   struct Stream {
+    std::uint32_t first = 0;     // with which it began; earlier ones are not missing
     std::uint32_t highest = 0;   // 0: never received
     std::uint64_t received = 0;  // bit k: highest − k
   };

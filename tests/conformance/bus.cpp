@@ -12,7 +12,7 @@
 #include "swarm_core/base/assert.hpp"
 #include "swarm_link/adapters/cyclone/cyclone_participant.hpp"
 #include "swarm_link/channels/groups/group_channel.hpp"
-#include "swarm_link/inproc/inproc_bus.hpp"
+#include "tests/support/inproc/inproc_bus.hpp"
 
 namespace swarm::link::conformance {
 

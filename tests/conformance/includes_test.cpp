@@ -146,6 +146,16 @@ TEST(Includes, OfExperimentsAreUsedByNoOtherFolder) {
   }
 }
 
+// Such as the bus in memory, which no program has.
+TEST(Includes, OfTestsAreUsedByNoOtherFolder) {
+  for (const std::string& folder : kSources) {
+    if (folder == "tests") continue;
+    for_each_include({folder}, [](const auto& file, const auto& include) {
+      EXPECT_FALSE(include.starts_with("tests/")) << file << " includes " << include;
+    });
+  }
+}
+
 // So that it can be used, and tested, without a bus.
 TEST(Includes, OfTheGateKnowMessagesAndTheCoreAlone) {
   const int files =

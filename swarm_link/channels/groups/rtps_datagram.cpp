@@ -16,6 +16,8 @@ constexpr std::size_t kHeaderBytes = 20;      // magic, version, vendor, GUID pr
 constexpr std::size_t kSubHeaderBytes = 4;    // kind, flags, octets to the next one
 constexpr std::size_t kDataHeaderBytes = 20;  // extra flags, to inline QoS, reader, writer, number
 constexpr std::size_t kWriterIdAt = 8;
+constexpr std::uint8_t kPad = 0x01;
+constexpr std::uint8_t kInfoTimestamp = 0x09;
 constexpr std::uint8_t kData = 0x15;
 constexpr std::uint8_t kLittleEndian = 0x01;
 constexpr std::uint8_t kInlineQos = 0x02;
@@ -68,7 +70,9 @@ void encode_rtps(const GuidPrefix& writer, std::uint64_t sequence_number,
   out.insert(out.end(), payload.begin(), payload.end());
 }
 
-// Walks over the submessages up to the first DATA. Each length is checked before it is used.
+// Walks over the submessages up to the first DATA. Each length is checked before it is used. Length
+// 0 means up to the end of the message, except in the two kinds that may be empty [DDSI-RTPS,
+// 9.4.5.1.3].
 std::optional<std::span<std::byte>> decode_rtps(std::span<std::byte> datagram) {
   if (datagram.size() < kHeaderBytes || !equal(datagram, kMagic)) return std::nullopt;
   if (byte_at(datagram, kMagic.size()) != kMajor) return std::nullopt;
@@ -81,7 +85,7 @@ std::optional<std::span<std::byte>> decode_rtps(std::span<std::byte> datagram) {
     const std::size_t high = byte_at(rest, little ? 3 : 2);
     std::size_t length = high << 8U | low;
     rest = rest.subspan(kSubHeaderBytes);
-    if (length == 0) length = rest.size();
+    if (length == 0 && kind != kPad && kind != kInfoTimestamp) length = rest.size();
     if (length > rest.size()) return std::nullopt;
     if (kind == kData) return sample_of(rest.first(length), flags);
     rest = rest.subspan(length);

@@ -16,10 +16,10 @@
 
 #include "robot_agent/program/process_loop.hpp"
 #include "swarm_core/robot_log/robot_log_file.hpp"
-#include "swarm_link/inproc/inproc_bus.hpp"
 #include "swarm_link/to_message.hpp"
 #include "swarm_sim/simulation.hpp"
 #include "swarmflow/mission/mission_file.hpp"
+#include "tests/support/inproc/inproc_bus.hpp"
 
 namespace swarm::agent {
 namespace {

@@ -88,5 +88,70 @@ TEST(FaultyPath, DoesTheSameForTheSameSeed) {
   EXPECT_NEAR(static_cast<double>(survivors(7).size()), 50.0, 20.0);
 }
 
+TEST(FaultyPath, DeliversInTheOrderOfDueTimesAndOfArrivalAmongEqualOnes) {
+  FaultyPath path({.faults = {.delay = milliseconds(40)}, .run_began = kBegan});
+  Received received;
+  receive(path, 3, 1, kBegan + milliseconds(20));
+  receive(path, 3, 2, kBegan);
+  receive(path, 3, 3, kBegan + milliseconds(20));
+  receive(path, 3, 4, kBegan + milliseconds(10));
+
+  path.hand_due(3, kBegan + seconds(1), received);
+
+  EXPECT_EQ(received.numbers, std::vector({2, 4, 1, 3}));
+}
+
+// The fates are those of fate(), by the count of what arrived while faults were in force.
+TEST(FaultyPath, DrawsTheSameFatesWhateverCameBeforeTheFaults) {
+  const LinkFaults faults{.loss = 0.4, .delay = milliseconds(5), .from = seconds(10)};
+  for (const int before : {0, 1, 17}) {
+    FaultyPath path({.faults = faults, .seed = 9, .run_began = kBegan});
+    Received received;
+    for (int i = 0; i < before; ++i) receive(path, 3, 255, kBegan);
+    path.hand_due(3, kBegan + seconds(1), received);
+    EXPECT_EQ(received.numbers, std::vector<int>(static_cast<std::size_t>(before), 255));
+    received.numbers.clear();
+    std::vector<int> expected;
+    for (int i = 0; i < 60; ++i) {
+      receive(path, 3, i, kBegan + seconds(10));
+      if (fate(faults, 9, static_cast<std::uint64_t>(i))) expected.push_back(i);
+    }
+
+    path.hand_due(3, kBegan + seconds(20), received);
+
+    EXPECT_EQ(received.numbers, expected);
+  }
+}
+
+TEST(FaultyPath, LosesWhatDoesNotFitIntoItsQueue) {
+  FaultyPath path({.faults = {.delay = seconds(1)}, .run_began = kBegan});
+  for (int i = 0; i < 8192 + 100; ++i) receive(path, 3, i < 8192 ? 1 : 2, kBegan);
+  Received received;
+
+  path.hand_due(3, kBegan + seconds(2), received);
+
+  EXPECT_EQ(received.numbers, std::vector<int>(8192, 1)) << "the first ones stay";
+  receive(path, 3, 3, kBegan + seconds(2));
+  received.numbers.clear();
+  path.hand_due(3, kBegan + seconds(4), received);
+  EXPECT_EQ(received.numbers, std::vector({3})) << "there is room again";
+}
+
+TEST(FaultyPath, KeepsTheSenderOfADatagram) {
+  struct Sender final : DatagramSink {
+    void datagram(std::span<std::byte>, const sockaddr_in& sender) override {
+      port = sender.sin_port;
+    }
+    in_port_t port = 0;
+  } sink;
+  FaultyPath path({.faults = {.delay = milliseconds(1)}, .run_began = kBegan});
+  path.receive(3, {}, {.sin_family = AF_INET, .sin_port = 4711, .sin_addr = {}, .sin_zero = {}},
+               kBegan);
+
+  path.hand_due(3, kBegan + seconds(1), sink);
+
+  EXPECT_EQ(sink.port, 4711);
+}
+
 }  // namespace
 }  // namespace swarm::link

@@ -7,8 +7,8 @@
 #include <gtest/gtest.h>
 
 #include "swarm_link/channels/state_channel.hpp"
-#include "swarm_link/inproc/inproc_bus.hpp"
 #include "swarmflow/core/random.hpp"
+#include "tests/support/inproc/inproc_bus.hpp"
 
 namespace swarm::link {
 namespace {
@@ -144,6 +144,67 @@ TEST_F(TopicChannelTest, LeavesEveryCellWithTheLastRobot) {
   channel->listen_around({&p, 1});
   channel->listen_around({});
   for (const auto& [cell, writer] : writers) EXPECT_FALSE(listens_to(cell));
+}
+
+TEST_F(TopicChannelTest, ReceivesItsOwnStatesOverTheBus) {
+  const Vec2 p(30.0, 30.0);
+  const RobotStateMessage state{.robot_id = 4, .x_m = p.x(), .y_m = p.y()};
+  channel->listen_around({&p, 1});
+  channel->publish({&state, 1});
+
+  std::vector<CellStatesMessage> received;
+  EXPECT_EQ(channel->take(received), 1U);
+  EXPECT_EQ(received.at(0).states, std::vector{state});
+  EXPECT_EQ(channel->take(received), 0U);
+}
+
+TEST_F(TopicChannelTest, CountsUndecodableSamplesAlsoOfCellsThatItLeft) {
+  const Vec2 p(25.0, 25.0), elsewhere(55.0, 55.0);
+  channel->listen_around({&p, 1});
+  const auto raw = probe->make_writer(raw_topic(cell_topic({2, 2}))).value();
+  const std::vector<std::byte> rubbish(9, std::byte{0xAB});
+  EXPECT_TRUE(raw->write(rubbish));
+  EXPECT_TRUE(raw->write(rubbish));
+
+  std::vector<CellStatesMessage> received;
+  EXPECT_EQ(channel->take(received), 0U);
+  EXPECT_EQ(channel->undecodable(), 2U);
+  channel->listen_around({&elsewhere, 1});
+  EXPECT_EQ(channel->undecodable(), 2U);
+}
+
+/// Refuses every endpoint while `refuses` is set.
+struct ReluctantParticipant final : Participant {
+  Result<RawWriterPtr> make_writer(const RawTopic& topic) override {
+    if (refuses) return fail(ErrorCode::kEnvironment, "not now");
+    return bus->make_writer(topic);
+  }
+  Result<RawReaderPtr> make_reader(const RawTopic& topic) override {
+    if (refuses) return fail(ErrorCode::kEnvironment, "not now");
+    return bus->make_reader(topic);
+  }
+  void receive() override {}
+  Result<void> self_check() const override { return {}; }
+
+  explicit ReluctantParticipant(std::unique_ptr<Participant> of_bus) : bus(std::move(of_bus)) {}
+  std::unique_ptr<Participant> bus;
+  bool refuses = true;
+};
+
+TEST_F(TopicChannelTest, TriesEndpointsThatTheBusRefusedAtTheNextCall) {
+  ReluctantParticipant reluctant(bus.make_participant());
+  const auto sut = make_topic_channel(reluctant, kOptions);
+  const Vec2 p(25.0, 25.0);
+  const RobotStateMessage state{.x_m = p.x(), .y_m = p.y()};
+  sut->listen_around({&p, 1});
+  EXPECT_EQ(sut->publish({&state, 1}), 0U) << "what was not sent does not count as sent";
+  EXPECT_FALSE(listens_to({2, 2}));
+
+  reluctant.refuses = false;
+  sut->listen_around({&p, 1});
+
+  EXPECT_TRUE(listens_to({2, 2}));
+  EXPECT_EQ(sut->publish({&state, 1}), 1U);
 }
 
 }  // namespace

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "swarm_link/inproc/inproc_bus.hpp"
+#include "tests/support/inproc/inproc_bus.hpp"
 
 namespace swarm::link {
 namespace {
@@ -54,6 +54,49 @@ TEST_F(RelayParticipant, ReceivesFromBothParticipantsWhichDoNotReceiveEachOther)
   EXPECT_EQ(received, (std::vector<EventMessage>{{.source = 1}, {.source = 2}}));
   EXPECT_EQ(reader->matched(), 2);
   EXPECT_EQ(reader->undecodable(), 0U);
+}
+
+/// A participant of a vendor in trouble.
+struct FailingParticipant final : Participant {
+  Result<RawWriterPtr> make_writer(const RawTopic&) override {
+    return fail(ErrorCode::kEnvironment, "no writer");
+  }
+  Result<RawReaderPtr> make_reader(const RawTopic&) override {
+    return fail(ErrorCode::kEnvironment, "no reader");
+  }
+  void receive() override { ++*received; }
+  Result<void> self_check() const override {
+    return fail(ErrorCode::kEnvironment, "cannot receive");
+  }
+  explicit FailingParticipant(int& calls) : received(&calls) {}
+  int* received;
+};
+
+TEST(RelayParticipantOfAFailingOne, FailsWithItsReason) {
+  InprocBus bus;
+  int received = 0;
+  std::vector<std::unique_ptr<Participant>> members;
+  members.push_back(bus.make_participant());
+  members.push_back(std::make_unique<FailingParticipant>(received));
+  members.push_back(std::make_unique<FailingParticipant>(received));
+  const auto relay = make_relay_participant(std::move(members));
+
+  EXPECT_EQ(relay->make_writer(raw_topic(event_topic())).error().message, "no writer");
+  EXPECT_EQ(relay->make_reader(raw_topic(event_topic())).error().message, "no reader");
+  EXPECT_EQ(relay->self_check().error().message, "cannot receive");
+  relay->receive();
+  EXPECT_EQ(received, 2) << "each participant receives";
+  const auto probe = bus.make_participant();
+  EXPECT_EQ(probe->make_reader(event_topic()).value()->matched(), 0)
+      << "no half of a writer is left";
+}
+
+TEST(RelayParticipantOfOne, IsThatOne) {
+  InprocBus bus;
+  std::vector<std::unique_ptr<Participant>> members;
+  members.push_back(bus.make_participant());
+  const Participant* only = members.front().get();
+  EXPECT_EQ(make_relay_participant(std::move(members)).get(), only);
 }
 
 }  // namespace

@@ -79,6 +79,48 @@ TEST(RtpsDatagram, RefusesWhatIsNotOurs) {
   EXPECT_TRUE(refused(kHeaderBytes + 12, 0x00));  // another writer
 }
 
+// An INFO_TS that takes the time back, or a PAD, has no content: its length 0 does not mean the
+// rest of the message.
+TEST(RtpsDatagram, SkipsEmptySubmessagesBeforeTheSample) {
+  for (const int kind : {0x01, 0x09}) {
+    Bytes sent = message(bytes_of({0, 1, 0, 0, 42}));
+    const Bytes empty = bytes_of({kind, 0x03, 0, 0});
+    sent.insert(sent.begin() + kHeaderBytes, empty.begin(), empty.end());
+
+    const auto received = decode_rtps(sent);
+
+    ASSERT_TRUE(received) << kind;
+    EXPECT_EQ(received->size(), 5U);
+  }
+}
+
+TEST(RtpsDatagram, HoldsTheSampleOfAStatedLengthAlone) {
+  Bytes sent = message(bytes_of({0, 1, 0, 0, 42}));
+  sent[kHeaderBytes + 2] = std::byte{20 + 5};  // octets to the next submessage
+  const Bytes next = bytes_of({0x01, 1, 0, 0});
+  sent.insert(sent.end(), next.begin(), next.end());
+
+  const auto received = decode_rtps(sent);
+
+  ASSERT_TRUE(received);
+  EXPECT_EQ(Bytes(received->begin(), received->end()), bytes_of({0, 1, 0, 0, 42}));
+}
+
+TEST(RtpsDatagram, RefusesEveryTruncationWithinItsHeaders) {
+  const Bytes good = message({});
+  ASSERT_EQ(good.size(), 44U);  // "adds 44 bytes to the sample"
+  for (std::size_t size = 0; size < good.size(); ++size) {
+    Bytes cut(good.begin(), good.begin() + static_cast<std::ptrdiff_t>(size));
+    EXPECT_FALSE(decode_rtps(cut)) << size;
+  }
+}
+
+TEST(RtpsDatagram, DoesNotDependOnWhatItsMemoryHeldBefore) {
+  Bytes used(500, std::byte{0xAB});
+  encode_rtps(kWriter, 0x0000'0001'0000'0002ULL, bytes_of({0, 1, 0, 0}), used);
+  EXPECT_EQ(used, message(bytes_of({0, 1, 0, 0})));
+}
+
 // Under the sanitizers this proves that nothing beyond the bytes is read.
 TEST(RtpsDatagram, SurvivesNoise) {
   Rng rng(1);

@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-#include "swarm_link/inproc/inproc_bus.hpp"
+#include "tests/support/inproc/inproc_bus.hpp"
 
 #include <map>
 #include <string>
 #include <utility>
 
-#include "swarm_link/inproc/inproc_channel.hpp"
+#include "tests/support/inproc/inproc_channel.hpp"
 
 namespace swarm::link {
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-#include "swarm_link/inproc/inproc_channel.hpp"
+#include "tests/support/inproc/inproc_channel.hpp"
 
 namespace swarm::link::inproc {
 

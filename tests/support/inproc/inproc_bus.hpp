@@ -7,8 +7,7 @@
 #include "swarm_link/port.hpp"
 
 /// The in-process backend: a bus in memory with the semantics of the DDS adapters (keep-last
-/// histories, transient-local, exclusive ownership), deterministic and without threads. For tests
-/// and lock-step simulation.
+/// histories, transient-local, exclusive ownership), deterministic and without threads.
 namespace swarm::link {
 
 /// Owns the channels of all topics. Participants of one bus communicate; two buses are separate.

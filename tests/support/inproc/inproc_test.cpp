@@ -3,7 +3,7 @@
 // Behaviour specific to the in-process bus; what it has in common with DDS is in tests/conformance.
 #include <gtest/gtest.h>
 
-#include "swarm_link/inproc/inproc_bus.hpp"
+#include "tests/support/inproc/inproc_bus.hpp"
 
 namespace swarm::link {
 namespace {
