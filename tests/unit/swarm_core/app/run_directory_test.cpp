@@ -22,8 +22,8 @@ RunInfo unusual_run() {
           .discovery_port = 65'535,
           .agents = 20'000,
           .relays = 17,
-          .cyclone_launcher = true,
-          .cyclone_planner = true,
+          .launcher = link::Vendor::kCycloneDds,
+          .planner = link::Vendor::kCycloneDds,
           .host = "10.1.2.4",
           .interface = "10.1.2.5",
           .channel = Channel::kGroups,
@@ -44,8 +44,8 @@ TEST(RunInfo, ComesBackFromItsFileAsItWas) {
   EXPECT_EQ(read->discovery_port, wrote.discovery_port);
   EXPECT_EQ(read->agents, wrote.agents);
   EXPECT_EQ(read->relays, wrote.relays);
-  EXPECT_EQ(read->cyclone_launcher, wrote.cyclone_launcher);
-  EXPECT_EQ(read->cyclone_planner, wrote.cyclone_planner);
+  EXPECT_EQ(read->launcher, wrote.launcher);
+  EXPECT_EQ(read->planner, wrote.planner);
   EXPECT_EQ(read->host, wrote.host);
   EXPECT_EQ(read->interface, wrote.interface);
   EXPECT_EQ(read->channel, wrote.channel);

@@ -19,8 +19,8 @@ using nlohmann::json;
 HostOffer offer() {
   return {.run = {.domain = 7,
                   .relays = 2,
-                  .cyclone_launcher = true,
-                  .cyclone_planner = false,
+                  .launcher = link::Vendor::kCycloneDds,
+                  .planner = link::Vendor::kFastDds,
                   .host = "10.0.0.1",
                   .channel = Channel::kGroups,
                   .seed = std::numeric_limits<std::uint64_t>::max(),
@@ -47,8 +47,8 @@ TEST(HostOffer, KeepsEveryField) {
   const auto back = parse_offer(line);
 
   ASSERT_TRUE(back) << back.error().message;
-  EXPECT_TRUE(back->run.cyclone_launcher);
-  EXPECT_FALSE(back->run.cyclone_planner);
+  EXPECT_EQ(back->run.launcher, link::Vendor::kCycloneDds);
+  EXPECT_EQ(back->run.planner, link::Vendor::kFastDds);
   EXPECT_EQ(back->run.channel, Channel::kGroups);
   EXPECT_EQ(back->run.seed, std::numeric_limits<std::uint64_t>::max());
   EXPECT_EQ(back->run.began, offer().run.began);
