@@ -150,7 +150,7 @@ TEST_F(DrainTest, PassesTheLargestDatagramWhole) {
   EXPECT_EQ(received.datagrams[0], largest);
 }
 
-TEST_F(DrainTest, LosesAndDelaysWhatItIsToldTo) {
+TEST_F(DrainTest, LosesAndDelaysByItsFaults) {
   const UtcTime now = utc_now();
   DatagramDrain loses({.faults = {.loss = 1.0}, .run_began = now});
   DatagramDrain delays({.faults = {.delay = std::chrono::hours(1)}, .run_began = now});
