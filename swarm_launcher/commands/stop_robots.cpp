@@ -14,7 +14,7 @@
 #include "swarm_core/app/control_socket.hpp"
 #include "swarm_core/app/run_directory.hpp"
 #include "swarm_core/base/clock.hpp"
-#include "swarm_launcher/supervision/stop_order.hpp"
+#include "swarm_launcher/flight/stop_order.hpp"
 #include "swarmflow/mission/mission_file.hpp"
 
 namespace swarm::launcher {

@@ -44,6 +44,13 @@ LoggedPosition positions_in_logs(const PreparedRun& run) {
   };
 }
 
+std::optional<StopOrder> make_stop_order(const PreparedRun& run) {
+  auto sender = link::StopSender::open(
+      {.domain = run.info().domain, .interface = run.options().how.interface});
+  if (!sender) return std::nullopt;
+  return StopOrder(std::move(*sender), run.options().mission.robots.count);
+}
+
 // CPU time of the launcher itself, including the discovery server.
 double own_cpu_s() {
   rusage own = {};
@@ -59,7 +66,8 @@ Flight::Flight(std::unique_ptr<PreparedRun> run, FlightObserver* observer)
       events_(run_->dir() / shell::kEventsFile),
       log_(events_, *run_->bus().event_relay, progress_),
       requests_(std::make_unique<SocketRequests>(run_->control())),
-      helpers_(run_->options().how, run_->dir()) {
+      helpers_(run_->options().how, run_->dir()),
+      stop_(make_stop_order(*run_)) {
   loop_.emplace(run_->options(), run_->dir(),
                 FlightPorts{.spawner = spawner_,
                             .bus = run_->bus(),
@@ -70,7 +78,8 @@ Flight::Flight(std::unique_ptr<PreparedRun> run, FlightObserver* observer)
                             .display = progress_,
                             .logged_position = positions_in_logs(*run_),
                             .hosts = run_->hosts(),
-                            .observer = observer},
+                            .observer = observer,
+                            .stop = stop_ ? &*stop_ : nullptr},
                 steady_now());
 }
 

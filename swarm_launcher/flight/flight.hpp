@@ -50,6 +50,7 @@ class Flight {
   std::unique_ptr<ControlRequests> requests_;
   ChildSpawner spawner_;
   RunHelpers helpers_;
+  std::optional<StopOrder> stop_;
   std::optional<FlightLoop> loop_;
 };
 

@@ -71,6 +71,7 @@ class FlightLoop {
   Result<void> start(ProcessIndex process);
   void signal(const SignalProcess& action);
   void send(CommandKind kind, UtcTime now);
+  void send_stop(const FlightTime& now);
   Result<std::string> change(const SceneChange& change, UtcTime now);
 
   const FlightOptions& options_;

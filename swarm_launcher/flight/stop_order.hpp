@@ -13,8 +13,8 @@
 
 namespace swarm::launcher {
 
-/// An emergency stop that a process sends to the robots itself, on the stop channel, and the robots
-/// that have confirmed it. Single thread; told the time.
+/// An emergency stop that a process sends to the robots on the stop channel, and the robots that
+/// have confirmed it. Single thread; told the time.
 class StopOrder {
  public:
   /// `robots`: number of robots of the run, if it is known.
@@ -24,6 +24,8 @@ class StopOrder {
   /// the confirmations.
   void step(SteadyTime now, UtcTime utc_now);
 
+  /// Robots that confirmed in the last step, each once.
+  const std::vector<RobotId>& newly_confirmed() const { return newly_; }
   /// Number of robots that have confirmed.
   std::uint32_t confirmed() const { return confirmed_; }
   /// Whether all robots have; false if their number is not known.
@@ -41,6 +43,7 @@ class StopOrder {
   std::int64_t stamp_utc_ns_ = 0;
   std::vector<bool> has_confirmed_;  // by robot
   std::uint32_t confirmed_ = 0;
+  std::vector<RobotId> newly_;
   std::vector<link::StopConfirmation> received_;
 };
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-#include "swarm_launcher/supervision/stop_order.hpp"
+#include "swarm_launcher/flight/stop_order.hpp"
 
 #include <utility>
 
@@ -27,6 +27,7 @@ void StopOrder::step(SteadyTime now, UtcTime utc_now) {
                    .stamp_utc_ns = stamp_utc_ns_});
     if (now - *begin_ >= kBurst) next_ = now + kRepeat;
   }
+  newly_.clear();
   received_.clear();
   sender_->take(received_);
   for (const link::StopConfirmation& some : received_) {
@@ -34,8 +35,10 @@ void StopOrder::step(SteadyTime now, UtcTime utc_now) {
     if (end > robots_.value_or(kMaxRobots)) continue;  // of no robot of the run
     if (has_confirmed_.size() < end) has_confirmed_.resize(end);
     for (std::uint64_t id = some.first_robot_id; id < end; ++id) {
-      if (!has_confirmed_[id]) ++confirmed_;
+      if (has_confirmed_[id]) continue;
       has_confirmed_[id] = true;
+      newly_.emplace_back(static_cast<std::uint32_t>(id));
+      ++confirmed_;
     }
   }
 }
