@@ -51,6 +51,7 @@ class Flight {
   ChildSpawner spawner_;
   RunHelpers helpers_;
   std::optional<StopOrder> stop_;
+  std::unique_ptr<link::StopReceiver> stops_;
   std::optional<FlightLoop> loop_;
 };
 

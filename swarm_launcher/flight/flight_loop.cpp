@@ -85,6 +85,16 @@ void FlightLoop::read_bus(const FlightTime& now) {
     on_status(status, now);
   }
   for (const link::EventMessage& event : ports_.bus.inbox.events()) ports_.log.forward(event);
+  read_stops(now.steady);
+}
+
+// A command sends its stop to the robots, too, past a launcher that may have been suspended: what
+// the robots obey holds for the run.
+void FlightLoop::read_stops(SteadyTime now) {
+  if (ports_.stops == nullptr || !ports_.stops->take()) return;
+  if (supervisor_.phase() == MissionPhase::kStopped) return;
+  supervisor_.on_command(CommandKind::kStop, now);
+  if (ports_.hosts != nullptr) ports_.hosts->on_user_command(CommandKind::kStop);
 }
 
 // Positions are kept for robots that fall, and each robot's report goes to the supervisor.

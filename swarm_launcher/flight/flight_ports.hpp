@@ -74,6 +74,7 @@ struct FlightPorts {
   RemoteHosts* hosts = nullptr;        ///< null if all robots are on this host
   FlightObserver* observer = nullptr;  ///< null if there is none
   StopOrder* stop = nullptr;           ///< null if the interface carries no multicast
+  link::StopReceiver* stops = nullptr;  ///< stops that commands send; null like `stop`
 };
 
 }  // namespace swarm::launcher
