@@ -66,17 +66,19 @@ void Inbox::receive_heartbeats(SteadyTime now, UtcTime utc_now) {
 }
 
 /// The stamp of the stop command is kept for the log: it measures how long a stop takes.
+void Inbox::receive(const link::CommandMessage& command, UtcTime utc_now) {
+  if (!gate_.command(command, utc_now)) return;
+  const MissionPhase before = mission_.phase();
+  mission_.on_command(command.kind);
+  if (mission_.phase() == MissionPhase::kStopped && before != MissionPhase::kStopped) {
+    stop_stamp_utc_ns_ = command.stamp_utc_ns;
+  }
+}
+
 void Inbox::receive_commands(UtcTime utc_now) {
   commands_.clear();
   readers_.command->take(commands_);
-  for (const link::CommandMessage& command : commands_) {
-    if (!gate_.command(command, utc_now)) continue;
-    const MissionPhase before = mission_.phase();
-    mission_.on_command(command.kind);
-    if (mission_.phase() == MissionPhase::kStopped && before != MissionPhase::kStopped) {
-      stop_stamp_utc_ns_ = command.stamp_utc_ns;
-    }
-  }
+  for (const link::CommandMessage& command : commands_) receive(command, utc_now);
 }
 
 /// Plans before heartbeats, so that a heartbeat of a plan received at the same tick counts at once.

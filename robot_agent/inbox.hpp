@@ -67,6 +67,9 @@ class Inbox {
     received_cells_.sort(received_);
   }
 
+  /// A command that arrived by another path than the topic: the stop channel.
+  void receive(const link::CommandMessage& command, UtcTime utc_now);
+
   /// The states received at the last tick, to be visited by position.
   const ReceivedCells& received() const { return received_cells_; }
 

@@ -73,6 +73,11 @@ Result<BusAccess> join_bus(const ProcessOptions& options, const shell::RunInfo& 
   if (!participant) return tl::unexpected(participant.error());
   auto access = open_endpoints(std::move(*participant));
   if (!access) return access;
+  // Topics do without multicast, and then the reliable command alone stops the robots.
+  if (auto stops = link::StopReceiver::open(
+          {.domain = run.domain, .interface = run.interface, .faults = faults})) {
+    access->stops = std::move(*stops);
+  }
   if (run.channel == Channel::kGroups && !options.by_gateway) {
     auto states = make_group_channel(mission.link, run, faults);
     if (!states) return tl::unexpected(states.error());

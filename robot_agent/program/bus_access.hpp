@@ -8,6 +8,7 @@
 #include "robot_agent/program/process_options.hpp"
 #include "swarm_core/app/run_directory.hpp"
 #include "swarm_link/channels/state_channel.hpp"
+#include "swarm_link/channels/stop_channel.hpp"
 #include "swarm_link/port.hpp"
 #include "swarmflow/core/result.hpp"
 #include "swarmflow/mission/mission.hpp"
@@ -18,6 +19,7 @@ namespace swarm::agent {
 struct BusAccess {
   std::unique_ptr<link::Participant> participant;  // first: it outlives its endpoints
   std::unique_ptr<link::StateChannel> states;
+  std::unique_ptr<link::StopReceiver> stops;  // null: the interface carries no multicast
   Readers readers;
   link::WriterPtr<link::StatusMessage> status;
   link::WriterPtr<link::EventMessage> event;

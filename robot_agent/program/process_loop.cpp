@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "robot_agent/program/process_loop.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include <fmt/format.h>
@@ -68,6 +69,9 @@ void ProcessLoop::tick(const Time& time) {
     const std::uint32_t offset = id.value() - robots.front().loop.id().value();
     return offset < robots.size() ? &robots[offset].echo : nullptr;
   });
+  if (bus_.stops) {
+    if (const auto stop = bus_.stops->take()) inbox_.receive(*stop, time.utc_now);
+  }
   follow_scene(time.utc_now);
   const std::optional<PlanTime> plan_time = inbox_.plan_time(time.now);
   plans_.receive(inbox_.take_plan(), time.now);
@@ -90,6 +94,7 @@ void ProcessLoop::tick(const Time& time) {
     bus_.states->publish(published_);
     bus_.states->listen_around(positions_m_);
   }
+  confirm_stop();
   status_.on_tick(source(time));
   events_.on_tick(time.now, time.utc_now, inbox_, state_age_);
 }
@@ -109,6 +114,17 @@ void ProcessLoop::step_robots(RobotTick tick, const std::optional<NewPlan>& new_
         bus);
     positions_m_.push_back(robot.loop.position_m());
   }
+}
+
+/// Answers those who have sent a stop, once all robots of the process have stopped.
+void ProcessLoop::confirm_stop() {
+  if (!bus_.stops || inbox_.mission().phase() != MissionPhase::kStopped) return;
+  const auto has_stopped = [](const LocalRobot& robot) {
+    return robot.loop.mode() == RobotMode::kStopped;
+  };
+  if (!std::ranges::all_of(local_.robots, has_stopped)) return;
+  bus_.stops->confirm({.first_robot_id = local_.robots.front().loop.id().value(),
+                       .robots = static_cast<std::uint32_t>(local_.robots.size())});
 }
 
 /// Rebuilds the map when the scene has changed, and at every tick while an obstacle moves.

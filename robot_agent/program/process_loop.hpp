@@ -47,6 +47,7 @@ class ProcessLoop {
   void end(const Time& time);
 
  private:
+  void confirm_stop();
   void follow_scene(UtcTime utc_now);
   void step_robots(RobotTick tick, const std::optional<NewPlan>& new_plan);
   const PlannedDensity* planned_density(const std::optional<NewPlan>& new_plan,

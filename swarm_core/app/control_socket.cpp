@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 #include <optional>
 #include <utility>
@@ -18,12 +19,14 @@
 #include <unistd.h>
 
 #include "swarm_core/app/run_directory.hpp"
+#include "swarmflow/core/time.hpp"
 
 namespace swarm::shell {
 namespace {
 
 /// A client gives up when the launcher sends nothing for this long.
-constexpr int kAnswerTimeout_ms = 15'000;
+constexpr Duration kAnswerTimeout = std::chrono::seconds(15);
+constexpr int kWait_ms = 20;  // between two calls of on_wait
 constexpr std::size_t kMaxLine = 256 * 1024;  // a polygon of 4096 corners
 
 /// Socket addresses hold 107 characters; a path through /proc/self/fd is short for any directory.
@@ -139,8 +142,10 @@ void ControlServer::answer(ClientId id, const std::string& text) {
 /// Blocks until the launcher closes the connection, which it does after the last line of its
 /// answer. The result is decided by that last line.
 Result<bool> send_command(const std::filesystem::path& run_dir, const std::string& line,
-                          const std::function<void(const std::string&)>& on_line) {
-  const int fd = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
+                          const std::function<void(const std::string&)>& on_line,
+                          const std::function<bool()>& on_wait) {
+  // Not blocking: a launcher that hangs does not accept, and its queue may be full.
+  const int fd = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
   const ShortAddress address(run_dir);
   if (::connect(fd, address.get(), sizeof(sockaddr_un)) != 0) {
     const int error = errno;
@@ -157,8 +162,12 @@ Result<bool> send_command(const std::filesystem::path& run_dir, const std::strin
   std::string input;
   std::string last;
   // The answer may arrive in pieces of any length; each complete line is passed on at once.
-  for (pollfd waiting{.fd = fd, .events = POLLIN, .revents = 0};
-       ::poll(&waiting, 1, kAnswerTimeout_ms) > 0;) {
+  const SteadyTime until = std::chrono::steady_clock::now() + kAnswerTimeout;
+  while (std::chrono::steady_clock::now() < until && (!on_wait || on_wait())) {
+    pollfd waiting{.fd = fd, .events = POLLIN, .revents = 0};
+    const int ready = ::poll(&waiting, 1, kWait_ms);
+    if (ready < 0 && errno != EINTR) break;
+    if (ready <= 0) continue;
     std::array<char, 4096> buffer;
     const ssize_t n = ::recv(fd, buffer.data(), buffer.size(), 0);
     if (n <= 0) break;

@@ -57,9 +57,11 @@ class ControlServer {
   ClientId next_id_ = 0;
 };
 
-/// Sends a line and calls `on_line` for every line of the answer. True when the last one starts
-/// with "done".
+/// Sends a line and calls `on_line` for every line of the answer, and `on_wait`, if there is one,
+/// every 20 ms meanwhile; it returns false to give up waiting. Waits 15 s at most. True when the
+/// last line starts with "done"; kEnvironment if no launcher listens or none answers.
 Result<bool> send_command(const std::filesystem::path& run_dir, const std::string& line,
-                          const std::function<void(const std::string&)>& on_line);
+                          const std::function<void(const std::string&)>& on_line,
+                          const std::function<bool()>& on_wait = {});
 
 }  // namespace swarm::shell

@@ -44,6 +44,22 @@ LoggedPosition positions_in_logs(const PreparedRun& run) {
   };
 }
 
+link::StopChannelOptions stop_channel_of(const PreparedRun& run) {
+  return {.domain = run.info().domain, .interface = run.options().how.interface};
+}
+
+// Without multicast the reliable command topic alone stops the robots.
+std::optional<StopOrder> make_stop_order(const PreparedRun& run) {
+  auto sender = link::StopSender::open(stop_channel_of(run));
+  if (!sender) return std::nullopt;
+  return StopOrder(std::move(*sender), run.options().mission.robots.count);
+}
+
+std::unique_ptr<link::StopReceiver> make_stop_receiver(const PreparedRun& run) {
+  auto receiver = link::StopReceiver::open(stop_channel_of(run));
+  return receiver ? std::move(*receiver) : nullptr;
+}
+
 // CPU time of the launcher itself, including the discovery server.
 double own_cpu_s() {
   rusage own = {};
@@ -59,7 +75,9 @@ Flight::Flight(std::unique_ptr<PreparedRun> run, FlightObserver* observer)
       events_(run_->dir() / shell::kEventsFile),
       log_(events_, *run_->bus().event_relay, progress_),
       requests_(std::make_unique<SocketRequests>(run_->control())),
-      helpers_(run_->options().how, run_->dir()) {
+      helpers_(run_->options().how, run_->dir()),
+      stop_(make_stop_order(*run_)),
+      stops_(make_stop_receiver(*run_)) {
   loop_.emplace(run_->options(), run_->dir(),
                 FlightPorts{.spawner = spawner_,
                             .bus = run_->bus(),
@@ -70,7 +88,9 @@ Flight::Flight(std::unique_ptr<PreparedRun> run, FlightObserver* observer)
                             .display = progress_,
                             .logged_position = positions_in_logs(*run_),
                             .hosts = run_->hosts(),
-                            .observer = observer},
+                            .observer = observer,
+                            .stop = stop_ ? &*stop_ : nullptr,
+                            .stops = stops_.get()},
                 steady_now());
 }
 

@@ -50,6 +50,8 @@ class Flight {
   std::unique_ptr<ControlRequests> requests_;
   ChildSpawner spawner_;
   RunHelpers helpers_;
+  std::optional<StopOrder> stop_;
+  std::unique_ptr<link::StopReceiver> stops_;
   std::optional<FlightLoop> loop_;
 };
 

@@ -53,6 +53,7 @@ Result<void> FlightLoop::step(const FlightTime& now) {
   for (const Action& action : supervisor_.step(now.steady)) {
     if (auto done = act(action, now.utc); !done) return done;
   }
+  send_stop(now);
   if (const auto message = ports_.helpers.message()) ports_.display.print(*message);
   if (ports_.observer != nullptr) ports_.observer->on_step(*this, now.steady);
   show(now.steady);
@@ -84,6 +85,16 @@ void FlightLoop::read_bus(const FlightTime& now) {
     on_status(status, now);
   }
   for (const link::EventMessage& event : ports_.bus.inbox.events()) ports_.log.forward(event);
+  read_stops(now.steady);
+}
+
+// A command sends its stop to the robots, too, past a launcher that may have been suspended: what
+// the robots obey holds for the run.
+void FlightLoop::read_stops(SteadyTime now) {
+  if (ports_.stops == nullptr || !ports_.stops->take()) return;
+  if (supervisor_.phase() == MissionPhase::kStopped) return;
+  supervisor_.on_command(CommandKind::kStop, now);
+  if (ports_.hosts != nullptr) ports_.hosts->on_user_command(CommandKind::kStop);
 }
 
 // Positions are kept for robots that fall, and each robot's report goes to the supervisor.
@@ -154,6 +165,14 @@ void FlightLoop::send(CommandKind kind, UtcTime now) {
   ports_.bus.commands->write({.kind = kind,
                               .command_id = static_cast<std::uint64_t>(last_command_ns_),
                               .stamp_utc_ns = last_command_ns_});
+}
+
+// Beside the command's reliable topic, which on a lossy network may be late, and until the last
+// process has ended.
+void FlightLoop::send_stop(const FlightTime& now) {
+  if (ports_.stop == nullptr || supervisor_.phase() != MissionPhase::kStopped) return;
+  ports_.stop->step(now.steady, now.utc);
+  for (const RobotId robot : ports_.stop->newly_confirmed()) supervisor_.on_stop_confirmed(robot);
 }
 
 // Changes the scene and logs it. The supervisor must know of a new goal, so that robots at the old

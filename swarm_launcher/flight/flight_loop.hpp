@@ -58,6 +58,7 @@ class FlightLoop {
   /// The parts of a step, in their order.
   void reap(const FlightTime& now);
   void read_bus(const FlightTime& now);
+  void read_stops(SteadyTime now);
   void serve_requests(const FlightTime& now);
   Result<void> act(const Action& action, UtcTime now);
   void show(SteadyTime now);
@@ -71,6 +72,7 @@ class FlightLoop {
   Result<void> start(ProcessIndex process);
   void signal(const SignalProcess& action);
   void send(CommandKind kind, UtcTime now);
+  void send_stop(const FlightTime& now);
   Result<std::string> change(const SceneChange& change, UtcTime now);
 
   const FlightOptions& options_;

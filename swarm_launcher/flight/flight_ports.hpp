@@ -17,6 +17,7 @@
 #include "swarm_launcher/processes/spawner.hpp"
 #include "swarm_launcher/supervision/fallen_body.hpp"
 #include "swarm_launcher/supervision/progress.hpp"
+#include "swarm_launcher/flight/stop_order.hpp"
 
 /// Everything outside of itself that a FlightLoop uses.
 namespace swarm::launcher {
@@ -72,6 +73,8 @@ struct FlightPorts {
   LoggedPosition logged_position;
   RemoteHosts* hosts = nullptr;        ///< null if all robots are on this host
   FlightObserver* observer = nullptr;  ///< null if there is none
+  StopOrder* stop = nullptr;           ///< null if the interface carries no multicast
+  link::StopReceiver* stops = nullptr;  ///< stops that commands send; null like `stop`
 };
 
 }  // namespace swarm::launcher

@@ -115,6 +115,10 @@ class Supervisor {
   /// A status of a robot arrived. It ends the silence of the robot only if it was sent after the
   /// silence began.
   void on_status(RobotId robot, const RobotReport& report);
+  /// A robot has confirmed a stop by another path than its status.
+  void on_stop_confirmed(RobotId robot) {
+    robots_.at(robot.value()).report.mode = RobotMode::kStopped;
+  }
   /// Another host has taken over `count` processes from `first` on.
   void on_joined(ProcessIndex first, std::uint32_t count, SteadyTime now);
   /// A process has ended: it is restarted if allowed, otherwise its robots are lost.

@@ -86,13 +86,13 @@ Checked<void> Gate::command(const CommandMessage& message, UtcTime now) {
   return counted(checked);
 }
 
-// A stop always passes, since refusing a late emergency stop would be worse than repeating one.
+// A stop passes whatever its stamp and id are: a clock that is off must not keep robots moving.
 Checked<void> Gate::order(const CommandMessage& message, UtcTime now) {
+  if (message.kind == CommandKind::kStop) return {};
   const std::uint64_t latest = latest_ns(now);
   if (message.command_id > latest || is_after(message.stamp_utc_ns, latest)) {
     return refuse(RefusalReason::kForged);
   }
-  if (message.kind == CommandKind::kStop) return {};
   return command_.accept(message.command_id);
 }
 

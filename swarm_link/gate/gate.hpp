@@ -49,7 +49,7 @@ class Gate {
   Checked<Scene> scene(const SceneMessage& message, UtcTime now);
   /// Ordered by (epoch, number).
   Checked<void> heartbeat(const HeartbeatMessage& message, UtcTime now);
-  /// Ordered by id, except that a stop passes however old it is, and again and again.
+  /// Ordered by id, except that a stop passes whatever its stamp and id are, and again and again.
   Checked<void> command(const CommandMessage& message, UtcTime now);
   /// Not ordered: statuses have no number, and DDS keeps each writer's order.
   Checked<void> status(const StatusMessage& message, UtcTime now);

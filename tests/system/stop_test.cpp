@@ -77,6 +77,54 @@ TEST(EmergencyStop, NamesWhoHasNotConfirmed) {
   EXPECT_EQ(run.launcher().wait(), 1);
 }
 
+/// A launcher that hangs when the guard is made and goes on when it goes.
+class Suspended {
+ public:
+  explicit Suspended(const Program& program) : program_(program) { program.signal(SIGSTOP); }
+  ~Suspended() { program_.signal(SIGCONT); }
+  Suspended(const Suspended&) = delete;
+  Suspended& operator=(const Suspended&) = delete;
+
+ private:
+  const Program& program_;
+};
+
+TEST(EmergencyStop, PassesALauncherThatHangs) {
+  FlownRun run;
+  ASSERT_TRUE(run.mission_started());
+  {
+    const Suspended launcher(run.launcher());
+    Program command("swarm_launcher", {"command", run.dir().string(), "stop"});
+    EXPECT_EQ(command.wait(), 0) << command.err();
+    EXPECT_NE(command.out().find("all 12 robots confirmed"), std::string::npos) << command.out();
+  }
+  EXPECT_EQ(run.launcher().wait(), 1);
+  EXPECT_EQ(run.summary()["outcome"], "stopped") << "the launcher takes the stop that it missed";
+}
+
+TEST(EmergencyStop, NeedsNoRunDirectory) {
+  FlownRun run({"--domain", "226"});
+  ASSERT_TRUE(run.mission_started());
+
+  Program command("swarm_launcher", {"command", "--domain", "226", "stop"});
+
+  EXPECT_EQ(command.wait(), 0) << command.err();
+  EXPECT_NE(command.out().find("12 robots of domain 226"), std::string::npos) << command.out();
+  EXPECT_EQ(run.launcher().wait(), 1);
+  EXPECT_EQ(run.summary()["outcome"], "stopped");
+}
+
+TEST(EmergencyStop, ReachesAllThroughABadNetwork) {
+  FlownRun run({"--fault", "loss=0.5,delay-ms=150"});
+  ASSERT_TRUE(run.mission_started());
+
+  Program command("swarm_launcher", {"command", run.dir().string(), "stop"});
+
+  EXPECT_EQ(command.wait(), 0) << command.err();
+  EXPECT_NE(command.out().find("12 robots confirmed"), std::string::npos) << command.out();
+  EXPECT_EQ(run.launcher().wait(), 1);
+}
+
 TEST(Command, PausesAndResumes) {
   FlownRun run;
   ASSERT_TRUE(run.mission_started());

@@ -153,11 +153,6 @@ std::vector<Case> command_cases() {
       spoiled("CommandAgain", command(2), R::kDuplicate,
               [](C& c) { c.command_id = command(1).command_id; }),
       spoiled("CommandHugeId", command(2), R::kForged, [](C& c) { c.command_id = kHuge; }),
-      spoiled("CommandStopHugeId", command(2), R::kForged,
-              [](C& c) {
-                c.kind = CommandKind::kStop;
-                c.command_id = kHuge;
-              }),
       spoiled("CommandOfTheFuture", command(2), R::kForged,
               [](C& c) { c.stamp_utc_ns = ns_after(60); }),
   };

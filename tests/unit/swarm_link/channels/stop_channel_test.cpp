@@ -1,0 +1,102 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+// The stop channel over real multicast on loopback, in a domain that no run uses.
+#include "swarm_link/channels/stop_channel.hpp"
+
+#include <gtest/gtest.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include "swarm_core/base/clock.hpp"
+#include "swarm_link/udp_socket.hpp"
+
+namespace swarm::link {
+namespace {
+
+constexpr std::uint32_t kDomain = 228;
+constexpr CommandMessage kStopMessage{.kind = CommandKind::kStop, .command_id = 7};
+
+std::unique_ptr<StopSender> sender(std::uint32_t domain = kDomain) {
+  auto made = StopSender::open({.domain = domain});
+  return made ? std::move(*made) : nullptr;
+}
+
+std::unique_ptr<StopReceiver> receiver(std::uint32_t domain = kDomain,
+                                       const ReceptionFaults& faults = {}) {
+  auto made = StopReceiver::open({.domain = domain, .faults = faults});
+  return made ? std::move(*made) : nullptr;
+}
+
+class StopChannel : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (!carries_multicast()) GTEST_SKIP() << "loopback carries no multicast here";
+  }
+};
+
+TEST_F(StopChannel, ReachesEveryReceiverOfTheDomain) {
+  const auto from = sender();
+  const auto first = receiver(), second = receiver(), other = receiver(kDomain - 1);
+  from->send(kStopMessage);  // loopback delivers within the call
+  EXPECT_EQ(first->take(), kStopMessage);
+  EXPECT_EQ(second->take(), kStopMessage);
+  EXPECT_FALSE(other->take());
+  EXPECT_FALSE(first->take()) << "each stop once";
+}
+
+TEST_F(StopChannel, BringsConfirmationsToThoseWhoSent) {
+  const auto asked = sender(), silent = sender();
+  const auto robots = receiver();
+  asked->send(kStopMessage);
+  asked->send(kStopMessage);
+  ASSERT_TRUE(robots->take());
+  robots->confirm({.first_robot_id = 40, .robots = 3});
+  robots->confirm({.first_robot_id = 40, .robots = 3});  // to nobody: no stop since the last
+  std::vector<StopConfirmation> to_asked, to_silent;
+  asked->take(to_asked);
+  silent->take(to_silent);
+  ASSERT_EQ(to_asked.size(), 1U);
+  EXPECT_EQ(to_asked[0].first_robot_id, 40U);
+  EXPECT_EQ(to_asked[0].robots, 3U);
+  EXPECT_TRUE(to_silent.empty());
+}
+
+TEST_F(StopChannel, IgnoresWhatIsNoStop) {
+  const auto robots = receiver();
+  const auto from = sender();
+  const int fd = open_group_sender(to_in_addr(kLoopback));
+  sockaddr_in group = multicast_group(kDomain, 0);
+  group.sin_addr.s_addr = htonl(0xEFFEFFFFU);
+  for (const std::string& text :
+       {std::string("?"), std::string("SWSTOP"), std::string("SWSTOP\0\1", 8),
+        std::string("SWSTOP\0\1\0\1\0\0abc", 15), std::string(60'000, 'x')}) {
+    ::sendto(fd, text.data(), text.size(), 0, reinterpret_cast<const sockaddr*>(&group),
+             sizeof group);
+  }
+  ::close(fd);
+  EXPECT_FALSE(robots->take());
+  from->send(kStopMessage);
+  EXPECT_TRUE(robots->take());
+}
+
+// Half of the datagrams are lost: one of twelve arrives with probability 1 − 2⁻¹².
+TEST_F(StopChannel, GetsThroughALossyNetworkByRepetition) {
+  const auto from = sender();
+  int reached = 0;
+  for (std::uint64_t seed = 1; seed <= 50; ++seed) {
+    const auto robots = receiver(kDomain, {.faults = {.loss = 0.5}, .seed = seed});
+    for (int i = 0; i < 12; ++i) from->send(kStopMessage);
+    reached += robots->take().has_value() ? 1 : 0;
+  }
+  EXPECT_EQ(reached, 50);
+}
+
+TEST_F(StopChannel, SaysWhenTheInterfaceCarriesNoMulticast) {
+  const auto made = StopReceiver::open({.domain = kDomain, .interface = "203.0.113.7"});
+  ASSERT_FALSE(made);
+  EXPECT_EQ(made.error().code, ErrorCode::kEnvironment);
+  EXPECT_NE(made.error().message.find("203.0.113.7"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace swarm::link
