@@ -80,7 +80,7 @@ struct StopSender::Impl : DatagramSink {
   int fd;
   DatagramDrain drain;
   std::vector<std::byte> sample{};
-  std::vector<std::byte> bytes{};
+  std::vector<std::byte> outgoing{};
   std::vector<StopConfirmation> received{};
 };
 
@@ -97,9 +97,9 @@ void StopSender::send(const CommandMessage& stop) {
   SWARM_ASSERT(stop.kind == CommandKind::kStop);
   encode(stop, impl_->sample);
   const auto header = std::as_bytes(std::span(kStop));
-  impl_->bytes.assign(header.begin(), header.end());
-  impl_->bytes.insert(impl_->bytes.end(), impl_->sample.begin(), impl_->sample.end());
-  send_to(impl_->fd, impl_->bytes, impl_->group);
+  impl_->outgoing.assign(header.begin(), header.end());
+  impl_->outgoing.insert(impl_->outgoing.end(), impl_->sample.begin(), impl_->sample.end());
+  send_to(impl_->fd, impl_->outgoing, impl_->group);
 }
 
 void StopSender::take(std::vector<StopConfirmation>& confirmations) {
