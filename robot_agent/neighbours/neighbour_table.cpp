@@ -41,8 +41,8 @@ struct NeighbourTable::FilterPass {
     Int4 age_us;
   };
   std::vector<LaneBlock> blocks;     // as the table's
-  std::vector<std::uint32_t> close;  // numbers of the close robots, the first close_found
-  std::vector<std::uint32_t> far;    // … of the others within reach, the first far_found
+  std::vector<std::uint32_t> close;  // numbers of the close robots; close_found are valid
+  std::vector<std::uint32_t> far;    // numbers of the others within reach; far_found are valid
   std::size_t close_found = 0;
   std::size_t far_found = 0;
   std::vector<Neighbour> neighbours;
