@@ -75,7 +75,7 @@ inline constexpr auto kCriteriaKeys = std::to_array<SectionKey<CriteriaSpec>>({
     {"mission_over_plan_max_s", &CriteriaSpec::mission_over_plan_max_s, between(-1e6, 1e6),
      "mission time minus the first plan's duration"},
     {"arrival_spread_max_s", &CriteriaSpec::arrival_spread_max_s, positive(1e6),
-     "from 5 % to 95 % of the arrival times"},
+     "time from the 5th to the 95th percentile of the arrivals"},
 });
 
 }  // namespace swarm
