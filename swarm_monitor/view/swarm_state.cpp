@@ -81,21 +81,21 @@ void SwarmState::on_clock(const ObservedClock& clock) {
 void SwarmState::on_event(const ObservedEvent& event) {
   constexpr double kRecent_s = 2.0;
   if (events_.size() == kMostEvents) return;
-  // In doubles: stamps of other hosts are not bounded, and their difference might overflow.
-  const double since_beat_s =
-      to_seconds(event.stamp.time_since_epoch()) - to_seconds(beat_stamp_.time_since_epoch());
-  std::optional<double> mission_time_s;
-  if (std::abs(since_beat_s) < kRecent_s) {
-    mission_time_s = phase_ == MissionPhase::kRunning
-                         ? std::max(0.0, mission_time_s_ + since_beat_s)
-                         : mission_time_s_;
+  std::optional<double> at_s;
+  if (beat_stamp_) {
+    // In doubles: stamps of other hosts are not bounded, and their difference might overflow.
+    const double since_beat_s =
+        to_seconds(event.stamp.time_since_epoch()) - to_seconds(beat_stamp_->time_since_epoch());
+    const double time_s =
+        phase_ == MissionPhase::kRunning ? mission_time_s_ + since_beat_s : mission_time_s_;
+    if (std::abs(since_beat_s) < kRecent_s) at_s = std::max(0.0, time_s);
   }
   events_.push_back({.time_s = begin_ ? to_seconds(event.received - *begin_) : 0.0,
                      .source = event.source,
                      .severity = event.severity,
                      .code = event.code,
                      .text = event.text,
-                     .mission_time_s = mission_time_s});
+                     .mission_time_s = at_s});
 }
 
 /// Linear extrapolation from the last state, as the robot's neighbours do it.
