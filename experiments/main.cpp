@@ -25,13 +25,18 @@ using Act = std::function<Result<ExitCode>()>;
 Act add_table(CLI::App& program) {
   const auto o = std::make_shared<TableOptions>();
   CLI::App* const table = program.add_subcommand(
-      "table", "Simulate a paper's experiment: its table, its peers and ours side by side");
-  table->add_option("which", o->which, "The experiment")
+      "table", "Simulate the experiments of a paper; prints the paper's numbers beside ours");
+  table
+      ->add_option(
+          "which", o->which,
+          "The paper; diffusion_fine: thousands of robots of 1 cm; network: effect of loss,\n"
+          "delay, noise and clocks out of step")
       ->required()
       ->check(CLI::IsMember(std::vector<std::string>(kTables.begin(), kTables.end())));
   table->add_flag("--quick", o->quick, "Fewer robots and seeds");
-  table->add_option("--missions", o->missions, "Where the mission files are");
-  table->add_option("--out", o->out, "Directory for Markdown, JSON and pictures");
+  table->add_option("--missions", o->missions,
+                    "Directory of the mission files (default: deploy/missions)");
+  table->add_option("--out", o->out, "Directory for the table (Markdown, JSON) and figures");
   return [o] { return make_table(*o); };
 }
 
@@ -40,23 +45,27 @@ Act add_soak(CLI::App& program) {
   using namespace cli;
   const auto o = std::make_shared<SoakOptions>();
   CLI::App* const soak_app = program.add_subcommand(
-      "soak", "Keep a swarm moving, and measure what its link and its processes do");
-  soak_app->add_option("--processes", o->processes, "Number of agent processes")
+      "soak", "Keep a swarm moving; measure latency, loss, memory and late ticks");
+  soak_app->add_option("--processes", o->processes, "Number of agent processes (default: 100)")
       ->check(CLI::Range(1, kMostRobots));
-  soak_app->add_option("--per-process", o->per_process, "Robots hosted by each")
+  soak_app->add_option("--per-process", o->per_process, "Robots hosted by each (default: 1)")
       ->check(CLI::Range(1, kMostRobots));
-  soak_app->add_option("--rate-hz", o->rate_hz, "Control rate")->check(CLI::Range(1.0, 100.0));
-  soak_app->add_option("--duration-s", o->duration_s, "How long robots move")
+  soak_app->add_option("--rate-hz", o->rate_hz, "Control rate (default: 10)")
+      ->check(CLI::Range(1.0, 100.0));
+  soak_app->add_option("--duration-s", o->duration_s, "How long robots move (default: 60)")
       ->check(CLI::Range(5.0, 1e6));
   add_channel(*soak_app, o->channel);
-  soak_app->add_option("--fault", o->fault, "A bad network, as for run")->type_name("FAULT");
+  soak_app
+      ->add_option("--fault", o->fault,
+                   "Degrades what is received:\nloss=0.2,delay-ms=150,jitter-ms=50,from=10,to=60")
+      ->type_name("FAULT");
   soak_app->add_option("--max-p99-ms", o->criteria.max_p99_ms,
-                       "Fail if 1 % of states take longer to a listener");
+                       "Fail if 1 % of the states take longer to a receiver");
   soak_app->add_option("--max-loss", o->criteria.max_loss,
-                       "Fail if a larger share of states is lost");
+                       "Fail if a larger share of the states is lost, 0 to 1");
   soak_app->add_option("--max-rss-growth-pct", o->criteria.max_rss_growth_pct,
                        "Fail if the agents' memory grows by more");
-  soak_app->add_option("--seed", o->seed, "Seed of placement, plan and robots");
+  soak_app->add_option("--seed", o->seed, "Seed of placement, plan and robots (default: 1)");
   soak_app->add_option("--out", o->out, "Run directory (default: runs/soak-<time>)");
   add_domain(*soak_app, o->domain);
   soak_app->add_flag("--json", o->json, "Print the result as JSON");
@@ -68,9 +77,9 @@ Act add_soak(CLI::App& program) {
 
 int main(int argc, char** argv) {
   using namespace swarm;
-  return shell::run_main("swarm_experiments", [&]() -> Result<ExitCode> {
-    CLI::App app("The papers' experiments in lock-step, and soaks of a swarm in flight",
-                 "swarm_experiments");
+  const std::string name = shell::program_name(argv[0], "swarm_experiments");
+  return shell::run_main(name, [&]() -> Result<ExitCode> {
+    CLI::App app("Simulates the experiments of the papers, and runs endurance tests (soak)", name);
     app.require_subcommand(1);
     shell::add_common_options(app);
     const launcher::Act table = launcher::add_table(app);

@@ -8,7 +8,7 @@
 #include "swarmflow/core/random.hpp"
 #include "swarmflow/core/world.hpp"
 
-/// Checks of a plan against its promises, from the plan alone, independent of the planner's own
+/// Checks of a plan against its guarantees, from the plan alone, independent of the planner's own
 /// checks. For reports and tests.
 namespace swarm::planner {
 
@@ -19,7 +19,7 @@ double planned_max_cvar_m(const FlowPlan& plan, const World& world, double alpha
 /// between each two of them [m].
 double planned_max_mixture_cvar_m(const FlowPlan& plan, const World& world, double alpha);
 
-/// The promise in numbers of robots, for reports: the largest share of the flow's mixture inside
+/// The guarantee in numbers of robots, for reports: the largest share of the flow's mixture inside
 /// obstacles, over its whole time, from `samples` points drawn from it. A robot rides a point of
 /// its own and is shrunk towards the mean there, so this is a share of the plan, not of robots.
 double planned_obstacle_share(const FlowPlan& plan, const World& world, std::size_t samples,

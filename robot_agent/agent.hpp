@@ -69,9 +69,8 @@ struct AgentOutput {
 };
 
 /// One robot: computes its velocity from the flow, the map and the states received from its
-/// neighbours, without any other party. A pure function of its inputs and random numbers; a robot
-/// that cannot go on holds, tick() does not fail. tick()
-/// does not allocate once warm.
+/// neighbours alone. A pure function of its inputs and random numbers. tick() cannot fail: a robot
+/// that cannot go on holds. It does not allocate once warm.
 class Agent {
  public:
   /// \pre the world outlives the agent

@@ -33,8 +33,8 @@ struct Readers {
 struct NewPlan {
   FlowPlan flow;
   std::vector<link::PlanEntryMessage> entries;  ///< by robot id; empty in a mission's first plan
-  /// Where the plan has this robot enter; empty if anywhere.
 
+  /// Where the plan has this robot enter; empty if the robot chooses.
   std::optional<PlanEntry> entry_of(RobotId robot) const {
     if (robot.value() >= entries.size()) return std::nullopt;
     const link::PlanEntryMessage& entry = entries[robot.value()];

@@ -62,8 +62,8 @@ class PlanTimeWatch {
   double highest_s_ = 0.0;            // τ given out for this flow
   bool any_ = false;
   std::int64_t window_began_ns_ = 0;
-  std::int64_t least_ns_ = 0;         // receipt − stamp, in this window
-  std::int64_t least_before_ns_ = 0;  // … and in the one before
+  std::int64_t least_ns_ = 0;         // least receipt − stamp in this window
+  std::int64_t least_before_ns_ = 0;  // least receipt − stamp in the window before
 };
 
 }  // namespace swarm::agent

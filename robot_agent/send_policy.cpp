@@ -8,8 +8,8 @@ namespace swarm::agent {
 namespace {
 
 constexpr double kSendsNothingBelow_mps = 0.01;
-constexpr double kOfGap = 0.2;          // tolerated error, as a share of the nearest gap …
-constexpr double kLeastError_m = 0.01;  // … but no less than this
+constexpr double kOfGap = 0.2;          // tolerated error, as a share of the nearest gap
+constexpr double kLeastError_m = 0.01;  // least tolerated error
 
 }  // namespace
 

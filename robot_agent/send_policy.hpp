@@ -15,10 +15,10 @@ namespace swarm::agent {
 
 /// When a state is published.
 struct SendOptions {
-  double error_m = 0.05;    ///< publish when others' extrapolation of us is off by more …
-  Duration interval_max{};  ///< … or when the last state is this old
-  double near_m = 1.0;      ///< on a degraded link: at every tick while a surface is nearer
-  Duration period{};        ///< of control: the time until the next chance to publish
+  double error_m = 0.05;    ///< publish when others extrapolate this robot with a larger error
+  Duration interval_max{};  ///< publish when the last published state is this old
+  double near_m = 1.0;  ///< on a degraded link, publish at every tick with a neighbour this near
+  Duration period{};    ///< of control: the time until the next chance to publish
 };
 
 /// What the decision depends on: the own state, the neighbours that receive it and the link.

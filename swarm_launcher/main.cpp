@@ -9,7 +9,8 @@ int main(int argc, char** argv) {
   using namespace swarm;
   return shell::run_main("swarm_launcher", [&]() -> Result<ExitCode> {
     CLI::App app(
-        "Flies a swarm: starts planner and robots, scripts the mission, supervises, reports.\n"
+        "Runs a swarm: starts planner and robots, executes the mission script, supervises, "
+        "reports.\n"
         "  swarm_launcher run deploy/missions/swarmprm_standin.yaml\n"
         "  swarm_launcher command RUN_DIR stop",
         "swarm_launcher");
@@ -25,13 +26,13 @@ int main(int argc, char** argv) {
         add_keys(app),
         add_command(app),
         add_sibling(app, "simulate",
-                    "Fly a mission in lock-step, in one process, as fast as it goes",
+                    "Simulate a mission in one process, as fast as the machine allows",
                     {"swarm_sim"}),
         add_sibling(app, "table",
-                    "Simulate a paper's experiment: its table, its peers and ours side by side",
+                    "Simulate the experiments of a paper; prints the paper's numbers beside ours",
                     {"swarm_experiments", "table"}),
         add_sibling(app, "soak",
-                    "Keep a swarm moving, and measure what its link and its processes do",
+                    "Keep a swarm moving; measure latency, loss, memory and late ticks",
                     {"swarm_experiments", "soak"})};
     // Parsing may already complete the program: --help, --version or an error.
     const auto done = shell::parse(app, argc, argv, builtin_catalogue());

@@ -10,9 +10,9 @@ int main(int argc, char** argv) {
   using namespace swarm;
   return shell::run_main("swarm_monitor", [&]() -> Result<ExitCode> {
     CLI::App app(
-        "Shows a swarm in motion or afterwards, records it and judges it.\n"
-        "  swarm_monitor audit RUN_DIR    exits with 0 if the mission met its criteria, else 1\n"
-        "  swarm_monitor report RUN_DIR   writes report.html and paths.svg into it\n"
+        "Shows a run in progress or afterwards, records it and audits it.\n"
+        "  swarm_monitor audit RUN_DIR    exit code 0 if the mission met its criteria, else 1\n"
+        "  swarm_monitor report RUN_DIR   writes report.html, paths.svg and paths.png into it\n"
         "  swarm_monitor view RUN_DIR     shows it in the browser, in progress or afterwards",
         "swarm_monitor");
     app.require_subcommand(1);

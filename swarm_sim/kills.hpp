@@ -17,11 +17,10 @@ namespace swarm::launcher {
 
 /// Robots whose processes die at one time of a simulated mission, as by `kill -9`.
 struct Kill {
-  double at_s = 0.0;  ///< mission time
-  /// Which robots: either those of a list, or a number of them.
-  std::vector<RobotId> robots{};  ///< these; if empty:
-  std::uint32_t count = 0;        ///< number of robots, drawn by the seed …
-  std::optional<Box> in_m{};      ///< … among those whose centre is inside
+  double at_s = 0.0;              ///< mission time
+  std::vector<RobotId> robots{};  ///< the robots that die; empty: `count` robots are drawn
+  std::uint32_t count = 0;        ///< number of robots drawn by the seed, without a list
+  std::optional<Box> in_m{};      ///< only robots whose centre is inside are drawn; empty: all
 };
 
 /// Reads `ids:3,7@60`, `10@60` or `10@60,in=90:40:110:60` (x0:y0:x1:y1 in metres). Fails

@@ -28,21 +28,25 @@ void add_options(CLI::App& app, const std::shared_ptr<CommandLine>& line) {
   app.add_option("mission", o->mission_file, "Mission file")->required()->type_name("MISSION.yaml");
   app.add_option("--robots", o->robots, "Number of robots, instead of the mission's")
       ->check(CLI::Range(1, kMostSimulated));
-  app.add_option("--seed", o->seed, "Seed of placement, plan, robots, faults");
-  app.add_option("--fault", line->fault, "A bad network, as for run")->type_name("FAULT");
+  app.add_option("--seed", o->seed,
+                 "Seed of placement, plan, robots, faults and kills (default: 1)");
+  app.add_option("--fault", line->fault,
+                 "Degrades what is received:\nloss=0.2,delay-ms=150,jitter-ms=50,from=10,to=60")
+      ->type_name("FAULT");
   app.add_option("--kill", line->kills,
-                 "Robots die and their bodies stay: N@SECONDS drawn by the seed,\n"
-                 "N@SECONDS,in=X0:Y0:X1:Y1 of those in a box, or ids:A,B@SECONDS; repeatable")
+                 "Robots die and their bodies stay: N@SECONDS, N robots drawn by the seed,\n"
+                 "N@SECONDS,in=X0:Y0:X1:Y1, drawn from those in a box (metres), "
+                 "or\nids:A,B@SECONDS; repeatable")
       ->allow_extra_args(false)
       ->type_name("KILL");
   app.add_flag_callback(
       "--clocks-apart", [o] { o->clocks_in_step = false; },
-      "Robots tick at different moments of the control period");
-  app.add_option("--threads", o->threads, "0: as many as make it faster")
+      "Robots tick at different moments of the control period (default: at the same)");
+  app.add_option("--threads", o->threads, "Number of threads; 0: chosen automatically (default: 0)")
       ->check(CLI::Range(0, 256));
   app.add_flag_callback(
       "--no-record", [o] { o->record = false; },
-      "No robot logs, audit and report: arrivals and times alone");
+      "Write no robot logs, audit and report; print only arrivals and times");
   app.add_option("--out", o->out, "Run directory (default: runs/<mission>-<time>)");
   app.add_flag("--json", o->json, "Print the summary as JSON");
 }
@@ -65,8 +69,12 @@ Result<ExitCode> simulate(CommandLine& line) {
 
 int main(int argc, char** argv) {
   using namespace swarm;
-  return shell::run_main("swarm_sim", [&]() -> Result<ExitCode> {
-    CLI::App app("Flies a mission in lock-step, in one process, as fast as it goes", "swarm_sim");
+  const std::string name = shell::program_name(argv[0], "swarm_sim");
+  return shell::run_main(name, [&]() -> Result<ExitCode> {
+    CLI::App app(
+        "Simulates a mission in one process, as fast as the machine allows: the same planner,\n"
+        "supervisor and robot loop as in a run, with all robots ticking in lock-step",
+        name);
     shell::add_common_options(app);
     const auto line = std::make_shared<launcher::CommandLine>();
     launcher::add_options(app, line);

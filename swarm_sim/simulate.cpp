@@ -161,7 +161,7 @@ Result<ExitCode> simulate_mission(const SimulateOptions& options) {
   auto simulation = Simulation::make(*mission, simulated, recording, *observer);
   if (!simulation) return tl::unexpected(simulation.error());
   if (options.record) {
-    // The audit compares densities with the cap that the planner has promised to keep.
+    // The audit compares densities with the cap that the planner guarantees.
     const PlanningRecord promised{mission->planner.method,
                                   (*simulation)->planning_method().traits().density_cap_per_m2};
     if (auto w = shell::write_file(dir / shell::kPlanningFile, to_json(promised)); !w) {

@@ -24,7 +24,7 @@ struct SimulateOptions {
   /// See SimulationOptions.
   bool clocks_in_step = true;
   std::vector<Kill> kills{};  ///< robots whose processes die
-  std::size_t threads = 0;    ///< 0: as many as make it faster
+  std::size_t threads = 0;    ///< 0: chosen automatically
   bool record = true;         ///< robot logs, audit and report; otherwise arrivals and times only
   std::filesystem::path out;  ///< run directory; empty: runs/<mission>-<time>
   bool json = false;

@@ -96,7 +96,7 @@ void Simulation::admit_respawned() {
   }
 }
 
-/// Adds the bodies of robots that are not received any more as obstacles, large enough for where
+/// Adds the bodies of dead and silent robots as obstacles, large enough for where
 /// they may have come to rest by their last two steps.
 void Simulation::add_bodies(std::span<const RobotId> robots) {
   std::vector<SceneChange> changes;

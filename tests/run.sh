@@ -4,6 +4,14 @@
 set -eu
 root=$(cd "$(dirname "$0")/.." && pwd)
 preset=${1:-release}
+usage="usage: tests/run.sh [release|asan|tsan]    (default: release)
+Installs the Debian packages that are missing, builds everything and runs all tests."
+case $preset in
+  -h | --help) echo "$usage"; exit 0 ;;
+  release | asan | tsan) ;;
+  *) echo "tests/run.sh: unknown preset $preset
+$usage" >&2; exit 3 ;;
+esac
 cd "$root"
 deploy/install_packages.sh deploy/packages.txt deploy/test_packages.txt
 cmake --preset "$preset" -DSWARM_BUILD_TESTS=ON

@@ -40,8 +40,8 @@ struct Flown {
   double w2_floor_m = kUnknown;  ///< of two samples of χ(τ)
   double centre_lag_s = kUnknown;
   double lag_p90_s = kUnknown;
-  double density_per_m2 = kUnknown;          ///< largest flown, discs of 2 m radius
-  double density_p95_per_m2 = kUnknown;      ///< … not exceeded at 95 % of the times
+  double density_per_m2 = kUnknown;          ///< largest executed, discs of 2 m radius
+  double density_p95_per_m2 = kUnknown;      ///< the same, 95th percentile over time
   double planned_density_per_m2 = kUnknown;  ///< largest of the plan, the same discs
   double over_plan_s = kUnknown;             ///< mission time minus the plan's duration
   /// E = max (F + G) over the robots, of shapes that are filled.

@@ -18,8 +18,8 @@ struct DensityCap {
 };
 
 /// Share of the swarm that a Gaussian may carry alone: its peak density is N w / (2π √det Σ) ≤ ρ.
-/// On a W₂ geodesic Σ(t) = AΣ_aA with A linear in t, so that √det A is concave (Minkowski) and
-/// √det Σ(t) at least the smaller of both ends': a leg keeps what its ends keep.
+/// On a W₂ geodesic Σ(t) = AΣ_aA with A linear in t, so √det A is concave (Minkowski): √det Σ(t)
+/// never falls below the smaller end value, so a leg keeps the cap if both ends do.
 inline double mass_capacity(const Gaussian& g, const DensityCap& cap) {
   return 2.0 * std::numbers::pi * cap.max_per_m2 * std::sqrt(g.determinant()) / cap.robots;
 }

@@ -19,7 +19,7 @@ struct GroupOptions {
   double radius_m = 6.0;        ///< of a group, around its first robot
   std::size_t groups_max = 64;  ///< above, the radius grows until they are fewer
   double sigma_floor_m = 0.5;   ///< a group is at least this wide, where there is room
-  double sigma_least_m = 0.1;   ///< … and never squeezed below this
+  double sigma_least_m = 0.1;   ///< a group is never narrower than this, even without room
 };
 
 /// The measured state of the swarm as a mixture: groups of robots within the radius of their first

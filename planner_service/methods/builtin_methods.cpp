@@ -29,14 +29,14 @@ void register_builtin_methods(PlanningRegistry& registry) {
                                      "Gaussian roadmap, transport problem, smoothing; every "
                                      "Gaussian keeps the risk limit [SwarmPRM]"));
   registry.add(entry<RoverMethod>("rover",
-                                  "Model predictive control on a collocation set, planned anew in "
-                                  "flight; the mixture keeps the risk limit [ROVER]"));
+                                  "Model predictive control on a collocation set, planned again in "
+                                  "motion; the mixture keeps the risk limit [ROVER]"));
   registry.add(entry<CropsMethod>("crops",
                                   "A guide on a roadmap of points that prefers open space and "
                                   "avoids congestion [CRoPS]"));
   registry.add(entry<AdocMethod>("adoc",
                                  "The papers' baseline: overlap with obstacles is penalised, no "
-                                 "promise about risk"));
+                                 "guarantee about risk"));
 }
 
 PlanningRegistry builtin_planning() {

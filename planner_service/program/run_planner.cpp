@@ -22,15 +22,19 @@ Result<std::optional<ExitCode>> read_options(int argc, char** argv,
                                              const PlanningRegistry& registry,
                                              ProcessOptions& options) {
   CLI::App app(
-      "Plans how the swarm flows and publishes the plan and the heartbeat of a run.\nThe launcher "
+      "Computes the plan of a run; publishes it, and the heartbeat with the plan's clock.\nThe "
+      "launcher "
       "starts it; to start one by hand: planner_service --run RUN_DIR",
       "planner_service");
   std::string fault;
   app.add_option("--run", options.run_dir, "Run directory made by the launcher");
-  app.add_option("--parent", options.parent_pid, "End when this process is no longer our parent");
-  app.add_option("--strength", options.ownership_strength,
-                 "Ownership of the plan topic: agents follow the strongest living planner");
-  app.add_option("--fault", fault, "A bad network for what this process receives");
+  app.add_option("--parent", options.parent_pid, "End when this process is no longer the parent");
+  app.add_option(
+      "--strength", options.ownership_strength,
+      "Ownership strength of the plan topic: agents follow the strongest living planner");
+  app.add_option("--fault", fault,
+                 "Degrades what this process receives:\n"
+                 "loss=0.2,delay-ms=150,jitter-ms=50,from=10,to=60");
   bool describe = false;
   app.add_flag("--describe", describe,
                "Print its planning methods with their options as JSON, and exit");

@@ -47,8 +47,8 @@ struct RobotParts {
 
 /// The control loop of one robot: measure → receive → decide → command → log → publish. The same in
 /// a process and in a lock-step simulation, which differ in the clock, the bus and the log that
-/// they pass in. Cannot fail: without a plan, a planner or an order to go it holds. Does not
-/// allocate once warm, but for notes at changes of mode or plan. One thread at a time.
+/// they pass in. Cannot fail: without a plan, a planner or a start command it holds. Once
+/// warm it allocates only for notes at changes of mode or plan. One thread at a time.
 class RobotLoop {
  public:
   /// \pre the world outlives the loop
@@ -57,9 +57,9 @@ class RobotLoop {
 
   /// One tick. The bus is any class with
   ///
-  ///   receive(position_m, take)   calls take(const NeighbourReport&, Duration age) for each
-  ///   checked
-  ///                               state of other robots near this place that has arrived
+  ///   receive(position_m, take)   calls take(const NeighbourReport&, Duration age) for each state
+  ///                               that has arrived from another robot near position_m and that
+  ///                               passed the gate
   ///   publish(state)              sends a link::RobotStateMessage; not called at every tick
   template <class Bus>
   void step(const RobotTick& tick, const RobotParts& parts, Bus& bus) {

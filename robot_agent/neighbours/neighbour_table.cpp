@@ -13,9 +13,9 @@ constexpr std::size_t kSlotsEach = 4;  // of the index, for every robot known
 constexpr std::size_t kSweepAt = 8;    // lanes of gone robots that are worth a compaction
 constexpr double kStopped_mps = 0.01;  // slower counts as stopped: such a robot may be silent
 constexpr double kUpdates = 64.0;      // averaging window of the link quality, in messages
-constexpr double kPoor = 0.02;    // loss rate above which the link is degraded: 2 of 64 lost …
-constexpr double kClean = 0.005;  // … and below which it is good again (hysteresis)
-constexpr double kInside = 0.8;   // of the communication radius: beyond, gaps are no losses
+constexpr double kPoor = 0.02;         // loss rate above which the link is degraded: 2 of 64 lost
+constexpr double kClean = 0.005;       // loss rate below which it is good again (hysteresis)
+constexpr double kInside = 0.8;        // of the communication radius: beyond, gaps are no losses
 constexpr std::int32_t kLongest_us = 1 << 29;  // clamp of ages, 537 s: differences fit 32 bits
 constexpr Duration kFrameFor = std::chrono::seconds(60);
 constexpr double kFrame_m = 100.0;
@@ -41,8 +41,8 @@ struct NeighbourTable::FilterPass {
     Int4 age_us;
   };
   std::vector<LaneBlock> blocks;     // as the table's
-  std::vector<std::uint32_t> close;  // numbers of the close robots, the first close_found
-  std::vector<std::uint32_t> far;    // … of the others within reach, the first far_found
+  std::vector<std::uint32_t> close;  // numbers of the close robots; close_found are valid
+  std::vector<std::uint32_t> far;    // numbers of the others within reach; far_found are valid
   std::size_t close_found = 0;
   std::size_t far_found = 0;
   std::vector<Neighbour> neighbours;

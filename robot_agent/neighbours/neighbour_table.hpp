@@ -33,7 +33,7 @@ struct Neighbourhood {
   std::span<const Neighbour> close;  ///< the first of `all`: may touch us or bound our speed
 };
 
-/// How well messages of other robots reach us; those that we send most likely fare alike.
+/// How well messages of other robots reach this one; its own are assumed to reach them as well.
 struct LinkQuality {
   bool poor = false;    ///< degraded: messages are lost, or later than 1.5 control periods
   double late_s = 0.0;  ///< mean age of messages on receipt
@@ -45,8 +45,8 @@ struct NeighbourOptions {
   Fleet fleet;                          ///< sizes and speeds of the others
   double communication_radius_m = 6.0;  ///< robots received or extrapolated farther off are dropped
   /// at() leaves out robots farther than this: they matter neither to control nor to safety. For
-  /// information older than a control period it grows by reach_growth_mps. It includes the distance
-  /// that a robot has driven on which may in fact have stopped.
+  /// information older than a control period it grows by reach_growth_mps, plus the distance by
+  /// which extrapolation may overshoot if the robot has stopped.
   double reach_m = 6.0;
   double close_m = 6.0;  ///< robots nearer than this, which grows alike, are close
   double reach_growth_mps = 0.0;
@@ -136,9 +136,11 @@ class NeighbourTable {
   /// The messages since the last at().
   struct Tally {
     std::uint32_t updates = 0;
-    std::uint32_t came = 0;  // without a gap before, or with both its ends in range
-    std::uint32_t lost = 0;
-    std::int64_t late_us = 0;
+    /// Messages that count as received when the loss rate is computed: those without skipped
+    /// numbers before them, and those whose sender was in range at both ends of the skipped ones.
+    std::uint32_t came = 0;
+    std::uint32_t lost = 0;    // skipped numbers that count as lost
+    std::int64_t late_us = 0;  // sum of the ages on receipt
   };
   Tally tally_;
   LinkQuality link_;

@@ -139,7 +139,7 @@ void ProcessLoop::follow_scene(UtcTime utc_now) {
                         .text = fmt::format("took scene version {}", scene_.version)});
   }
   if (!world_moves_) return;
-  // A respawned robot is inside the obstacle of its own fallen body until the launcher receives it
+  // A respawned robot is inside the obstacle of its own body until the launcher receives it
   // and clears that body.
   const auto count = static_cast<std::uint32_t>(local_.robots.size());
   const Scene without_own = without_bodies_of(scene_, local_.robots.front().loop.id(), count);

@@ -25,15 +25,18 @@ struct CommandLine {
 
 void add_options(CLI::App& app, CommandLine& line) {
   app.add_option("--run", line.options.run_dir, "Run directory made by the launcher");
-  app.add_option("--ids", line.first, "First robot of this process");
-  app.add_option("--count", line.options.count, "Number of robots in this process");
-  app.add_option("--number", line.options.number, "Of this agent process in the run, from 0");
+  app.add_option("--ids", line.first,
+                 "Id of the first robot of this process; it hosts the ids that follow");
+  app.add_option("--count", line.options.count, "Number of robots in this process (default: 1)");
+  app.add_option("--number", line.options.number, "Number of this agent process, from 0");
   app.add_option("--parent", line.options.parent_pid,
-                 "End when this process is no longer our parent");
+                 "End when this process is no longer the parent");
   shell::add_vendor_option(app, line.options.vendor, "DDS vendor of this process");
   app.add_flag("--by-gateway", line.options.by_gateway,
-               "Its states go by topics through the gateway, where the others' go by groups");
-  app.add_option("--fault", line.fault, "A bad network for what this process receives");
+               "Publish states on DDS topics; a gateway carries them to the multicast groups");
+  app.add_option("--fault", line.fault,
+                 "Degrades what this process receives:\n"
+                 "loss=0.2,delay-ms=150,jitter-ms=50,from=10,to=60");
   app.add_flag("--describe", line.describe,
                "Print its control methods and drivers with their options as JSON, and exit");
   shell::add_common_options(app);
@@ -43,7 +46,7 @@ void add_options(CLI::App& app, CommandLine& line) {
 /// program has.
 Result<ExitCode> run(int argc, char** argv, const RobotRegistry& registry) {
   CLI::App app(
-      "Moves one robot (or several) of a run, knowing only the plan, the map and the neighbours "
+      "Moves one robot (or several) of a run, by the plan, the map and the neighbours' states "
       "that it receives.\nThe launcher starts it; to start one by hand: "
       "robot_agent --run RUN_DIR --ids 7",
       "robot_agent");

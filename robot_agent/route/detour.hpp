@@ -11,11 +11,11 @@ namespace swarm::agent {
 /// The distances of a detour.
 struct DetourOptions {
   double radius_m = 0.2;
-  double touch_m = 0.3;  ///< a path nearer than this to a body is bent …
-  double keep_m = 0.5;   ///< … to go around it at this surface distance
+  double touch_m = 0.3;  ///< a path nearer than this to a body is bent
+  double keep_m = 0.5;   ///< surface distance of the bent path to the body
 };
 
-/// Points that lead from a point to another around the bodies of fallen robots on the straight line
+/// Points that lead from a point to another around the bodies of dead robots on the straight line
 /// between them, in order, without its ends; empty if the line is free. The
 /// detour passes bodies that no robot fits between together, on the shorter side that is free;
 /// where neither is, the line stays straight and avoidance is left to the safety filter. O(bodies²)

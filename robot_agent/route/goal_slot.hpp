@@ -15,8 +15,8 @@ struct GoalSlotOptions {
   double radius_m = 0.2;
   double room_gap_m = 0.4;  ///< a neighbour nearer than this pushes; above the filter's margin
   double room_gain_hz = 3.0;
-  double inner_share = 0.75;   ///< of the push of a neighbour that is farther in
-  double outside_share = 3.0;  ///< … that is still outside of the goal
+  double inner_share = 0.75;   ///< factor on the push of a neighbour that is farther in
+  double outside_share = 3.0;  ///< factor on the push of a neighbour outside of the goal
   double approach_gain_hz = 0.8;
   double approach_max_mps = 0.4;  ///< of a robot that has arrived, to its slot
 };

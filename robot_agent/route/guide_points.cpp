@@ -32,8 +32,12 @@ bool GuidePoints::sees(const Vec2& position_m, const World& world, std::size_t p
   return world.segment_is_free(position_m, points_m_[point], std::max(0.0, least_m - 1e-3));
 }
 
-/// Preference: the farthest later point with full clearance; the present one; a later one through
-/// any passable gap; the last earlier one.
+/// Takes the first of these that is in sight:
+///
+///   1. the farthest later point with full clearance
+///   2. the present point
+///   3. the farthest later point through any passable gap
+///   4. outside the goal: the last earlier point
 void GuidePoints::look(const Vec2& position_m, const World& world, bool in_goal) {
   std::size_t last = at_;
   while (last + 1 < points_m_.size() && behind_m_[at_] - behind_m_[last + 1] < options_->sight_m) {

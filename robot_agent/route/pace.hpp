@@ -29,7 +29,7 @@ class Pace {
  public:
   static constexpr double kFeed_s = 1.0;
   static constexpr double kPast_m = 0.8;      ///< a robot this far past the carrot returns to it
-  static constexpr double kReturn_mps = 0.5;  ///< … at this speed at most
+  static constexpr double kReturn_mps = 0.5;  ///< largest speed of that return
 
   /// The pace at one plan time.
   struct Now {

@@ -94,7 +94,7 @@ Route finish(const FlowPlan& plan, std::uint32_t node, double share, std::vector
   const std::uint32_t last = follow(plan, node, share, stations);
   const auto sink = std::find(plan.sinks().begin(), plan.sinks().end(), last);
   SWARM_ASSERT(sink != plan.sinks().end());
-  // Bodies of fallen robots are small against a plan: they bend single paths, but do not shrink
+  // Bodies of dead robots are small against a plan: they bend single paths, but do not shrink
   // offsets.
   const std::vector<Vec2> own_m = free_vertices(stations, world.without_bodies(), options);
   const DetourOptions detour{.radius_m = options.radius_m, .touch_m = options.leg_clearance_m};

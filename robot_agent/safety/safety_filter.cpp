@@ -14,8 +14,8 @@ namespace {
 
 constexpr int kBisections = 8;    // of the least violation: to 1 % of the speed
 constexpr double kBlocked = 0.1;  // less than this share of the desired speed is left: blocked
-constexpr std::array kTurns_rad{0.4, 0.9, 1.4};  // to the right, tried in turn while blocked, …
-constexpr double kFree = 0.3;           // … until this share of the desired speed is left
+constexpr std::array kTurns_rad{0.4, 0.9, 1.4};  // to the right, tried in this order while blocked
+constexpr double kFree = 0.3;  // a turn is taken if it leaves this share of the desired speed
 constexpr double kFollowMargin = 0.9;   // share of the margin that following may use up
 constexpr double kEvade = 1.0 / 3.0;    // share of the margin kept to any other robot
 constexpr double kFollows = 3.5;        // periods: a robot whose state is older may have turned

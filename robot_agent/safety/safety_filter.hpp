@@ -46,33 +46,33 @@ struct Listeners {
 /// n points to the neighbour, or into the obstacle; v_j is the velocity that the neighbour
 /// published; gap_s, and its n, are to where it is if it stopped after its last state update.
 ///
-/// What they guarantee, given speeds of at most v_max and commands that run out after 2Δt:
+/// The bounds guarantee, given speeds of at most v_max and commands that run out after 2Δt:
 ///
 /// 1. A robot that begins with s ≥ m_o from every obstacle keeps it, however late its ticks are: an
-///    obstacle is convex and lies within its half-plane, and u = 0 obeys all of them.
-/// 2. Two robots that obey, begin with gap ≥ m and know each other to within e keep gap ≥ m − e
-///    (with β = 0), however late their ticks are: a command closes at most γ (gap − m) in the 2Δt
-///    it lasts, half of what is left above m for each, γ ≤ ½. With states that are τ old the pair
-///    is the delayed system ẋ = −(γ/T) x(t − τ) for x = gap − m, which does not overshoot as long
-///    as γτ/T ≤ 1/e: that is what a ≥ eγ is for. β, 0 for those with τ > 3.5 Δt, lets a
-///    robot follow one that moves away, as far as what is given up when that one stops at once, β
-///    v_max τ, is below 0.9 m.
-/// 3. From a robot that keeps off no other, received at every tick and no faster than v_max, a
-///    robot withdraws before contact: the second line asks for u at least as fast as the other
-///    comes once the gap is down to a third of m. It is met whenever there is room to go to. One
-///    whose body stopped while no state of it was received is not touched either: the third line
-///    keeps a following robot off every position where it may have been left behind.
-/// 4. No robot that may move freezes: where the lines have no common point, those that ask for a
-///    wider gap are relaxed by the same least speed, down to not closing it, which u = 0 obeys. A
-///    robot whose desired velocity is blocked by robots that face it turns it to its right, as all
-///    robots do, so that opposing streams part into lanes.
+///    obstacle is convex and lies within its half-plane, and u = 0 obeys all these half-planes.
+/// 2. Two robots that obey, begin with gap ≥ m and know each other's position to within ε keep
+///    gap ≥ m − ε (with β = 0), however late their ticks are: a command lasts 2Δt and closes at
+///    most γ (gap − m) in that time; with γ ≤ ½ each robot uses at most half of the gap above m.
+///    With states that are τ old, x = gap − m obeys the delayed equation ẋ = −(γ/T) x(t − τ), which
+///    does not overshoot as long as γτ/T ≤ 1/e (e: Euler's number); a ≥ eγ ensures that. β lets a
+///    robot follow one that moves away; it is 0 for neighbours with τ > 3.5 Δt. If that neighbour
+///    stops at once, following costs at most β v_max τ of the gap, which is below 0.9 m.
+/// 3. If the other robot does not avoid anyone, but is received every tick and is no faster than
+///    v_max, this robot backs away before contact: once the gap is below a third of m, the second
+///    line demands a retreat as fast as the other approaches. This is possible while there is free
+///    space to retreat to. A robot that stopped unnoticed is not touched: the third line keeps
+///    clear of every place where it may have stopped.
+/// 4. No robot that may move freezes. If no velocity meets all lines, those that demand a widening
+///    gap are relaxed equally, as little as possible, at most to "do not close". u = 0 then always
+///    qualifies. A robot whose desired velocity is blocked by robots that face it turns it to its
+///    right, as all robots do, so that opposing streams part into lanes.
 ///
-/// λ = 0 for a body that has a commanded velocity at once. One that takes up to λ = v_max/a to
-/// reach it is asked for no deceleration above a: towards an obstacle v/(2Δt + λ) < v/λ ≤ a, and of
-/// two that close in on each other each 2γv/(2Δt + 2γλ) < a. Bodies that leave the commanded
-/// direction (a unicycle while it turns, any with motion noise) may come as much nearer as they
-/// leave it by, and the margins must hold that. The velocity that it publishes must then be the
-/// measured one: β relies on it.
+/// λ = 0 for a body that has a commanded velocity at once. A body whose acceleration is limited to
+/// A takes up to λ = v_max/A to reach it, and the lines never demand a deceleration above A:
+/// towards an obstacle they demand v/(2Δt + λ) < v/λ ≤ A, and of each of two robots that approach
+/// each other 2γv/(2Δt + 2γλ) < A. A body that deviates from the commanded direction (a unicycle
+/// while it turns, any body with motion noise) may come nearer by the deviation; the margins must
+/// cover it. Such a body must publish its measured velocity: β relies on it.
 class SafetyFilter {
  public:
   SafetyFilter(const World& world, Shared<SafetyOptions> options);

@@ -29,6 +29,11 @@ int run_main(const std::string& name, const std::function<Result<ExitCode>()>& b
   }
 }
 
+std::string program_name(const char* argv0, const std::string& own) {
+  const std::string name = argv0 == nullptr ? "" : argv0;
+  return name == "swarm_launcher" || name.starts_with("swarm_launcher ") ? name : own;
+}
+
 void add_common_options(CLI::App& app) {
   app.set_version_flag("--version", app.get_name() + " " + SWARM_VERSION);
   app.add_option("--check", "Validate a mission file, report every error in it, and exit")

@@ -20,6 +20,10 @@ namespace swarm::shell {
 /// into the exit code. The only catch-all of a program.
 int run_main(const std::string& name, const std::function<Result<ExitCode>()>& body);
 
+/// The name for messages and help: `own`, or argv[0] if swarm_launcher started this program as one
+/// of its subcommands, as in `swarm_launcher simulate`.
+std::string program_name(const char* argv0, const std::string& own);
+
 /// Adds `--version` and `--check MISSION.yaml` (validate and exit), which every program has.
 void add_common_options(CLI::App& app);
 

@@ -17,8 +17,8 @@ struct LinkFaults {
   double loss = 0.0;  ///< share that never arrives
   Duration delay{};   ///< mean transit time added to each message
   Duration jitter{};  ///< each message comes up to this much earlier or later than `delay`
-  Duration from{};    ///< since the run began
-  Duration until = Duration::max();
+  Duration from{};    ///< the faults begin at this time since the run began
+  Duration until = Duration::max();  ///< the faults end at this time since the run began
 
   /// Whether any message can be lost or delayed.
   bool any() const { return loss > 0.0 || delay > Duration::zero() || jitter > Duration::zero(); }

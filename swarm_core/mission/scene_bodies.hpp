@@ -8,7 +8,7 @@
 
 #include "swarmflow/mission/scene.hpp"
 
-/// The bodies of robots whose state updates are no longer received: obstacles with an owner.
+/// The bodies of dead and silent robots: obstacles with an owner.
 namespace swarm {
 
 /// Whether a robot's body is an obstacle.

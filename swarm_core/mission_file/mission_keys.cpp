@@ -104,10 +104,9 @@ class Page {
 
   std::string text_ =
       "<!-- Made by `swarm_launcher keys`: edit the tables in the code, not this file. "
-      "-->\n# Keys of a mission file\n\nAll keys with one value. A section that is left out has "
-      "its "
-      "defaults; so has a key. The keys of every component may be given, whichever component the "
-      "mission names. `swarm_launcher --check MISSION.yaml` names what is wrong with a file.\n";
+      "-->\n# Keys of a mission file\n\nThe keys that have a single value. A section or key that "
+      "is left out has its default. Keys of components that the mission does not choose are "
+      "allowed. `swarm_launcher --check MISSION.yaml` lists all errors in a file.\n";
   bool has_table_ = false;
 };
 
@@ -131,20 +130,19 @@ Row automatic(std::string_view key, const Range& range, std::string_view doc) {
 }
 
 void add_robots(Page& page, const Components& drivers) {
-  page.heading(
-      "##", "robots",
-      "The robots' bodies; a group in robots.groups may set the keys of the body otherwise");
+  page.heading("##", "robots",
+               "The robots' bodies; a group in robots.groups may have other values for its robots");
   page.add("robots", kRobotsKeys);
   page.add("robots", named("model", drivers, BodySpec{}.model, "the driver of the body"));
   page.add("robots", kBodyKeys);
-  page.add("robots", automatic("lag_s", reader_bounds::kLag_s,
-                               "how long the body takes until it moves as commanded; auto: as its "
-                               "driver declares"));
+  page.add("robots",
+           automatic("lag_s", reader_bounds::kLag_s,
+                     "time until the body moves as commanded; auto: as its driver declares"));
   page.add("robots", drivers);
 }
 
 void add_planner(Page& page, const Components& methods) {
-  page.heading("##", "planner", "What every planning method reads");
+  page.heading("##", "planner", "Keys of every planning method");
   page.add("planner", named("method", methods, PlannerSpec{}.method, "the planning method"));
   page.add("planner", automatic("density_cap_per_m2", reader_bounds::kDensityCap_per_m2,
                                 "swarmprm and rover: robots per m2 at most; 0: no cap; auto: "
@@ -154,7 +152,7 @@ void add_planner(Page& page, const Components& methods) {
 }
 
 void add_control(Page& page, const Components& methods) {
-  page.heading("##", "control", "What every control method reads");
+  page.heading("##", "control", "Keys of every control method");
   page.add("control", named("method", methods, ControlSpec{}.method, "the control method"));
   page.add("control", kControlKeys);
   page.add("control", methods);
@@ -168,7 +166,7 @@ std::string mission_keys_markdown(const Catalogue& catalogue) {
   add_robots(page, catalogue.drivers);
   add_planner(page, catalogue.planning_methods);
   add_control(page, catalogue.control_methods);
-  page.heading("##", "safety", "The filter that no robot's command passes without");
+  page.heading("##", "safety", "The safety filter, which every command passes");
   page.add("safety", kSafetyKeys);
   page.heading("##", "link", "Which states robots receive and how often they send their own");
   page.add("link", kLinkKeys);
@@ -176,7 +174,7 @@ std::string mission_keys_markdown(const Catalogue& catalogue) {
   page.add("timing", kTimingKeys);
   page.heading("##", "plan_clock", "How far the plan's clock slows down when the swarm lags");
   page.add("plan_clock", kPlanClockKeys);
-  page.heading("##", "launcher", "Starting, waiting and starting again");
+  page.heading("##", "launcher", "Start of the processes, waiting for them, restart");
   page.add("launcher", kLauncherKeys);
   page.heading("##", "criteria",
                "What the audit demands of a run beyond arrival and no contact; a key that is left "

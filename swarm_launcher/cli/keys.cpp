@@ -16,10 +16,10 @@ Command add_keys(CLI::App& program) {
   CLI::App* const keys = program.add_subcommand(
       "keys", "Print all keys of a mission file with their ranges and defaults, as Markdown");
   keys->add_option("--agent-program", *agent_program,
-                   "Robot program whose components are printed in place of our own");
+                   "Robot program whose components are printed instead of the built-in ones");
   const auto planner_program = std::make_shared<std::filesystem::path>();
   keys->add_option("--planner-program", *planner_program,
-                   "Planner program whose methods are printed in place of our own");
+                   "Planner program whose methods are printed instead of the built-in ones");
   return {keys, [agent_program, planner_program]() -> Result<ExitCode> {
             const auto catalogue = catalogue_of(*agent_program, *planner_program);
             if (!catalogue) return tl::unexpected(catalogue.error());

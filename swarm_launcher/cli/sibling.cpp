@@ -12,10 +12,11 @@
 namespace swarm::launcher::cli {
 namespace {
 
-/// Replaces this process; returns only if that fails.
-Error become(std::vector<std::string> command_line) {
+/// Replaces this process; returns only if that fails. `name` becomes argv[0], by which the other
+/// program's --help shows the command as the user typed it.
+Error become(const std::string& name, std::vector<std::string> command_line) {
   const std::string program = sibling_program(command_line.front()).string();
-  command_line.front() = program;
+  command_line.front() = name;
   std::vector<char*> arguments;
   for (std::string& argument : command_line) arguments.push_back(argument.data());
   arguments.push_back(nullptr);
@@ -31,11 +32,13 @@ Command add_sibling(CLI::App& program, const std::string& name, const std::strin
   CLI::App* const sibling = program.add_subcommand(name, description);
   sibling->prefix_command();   // its arguments are the other program's
   sibling->set_help_flag("");  // and so is --help
-  return {sibling, [sibling, command_line]() -> Result<ExitCode> {
+  // A subcommand of the other program is in its command line; a whole program is one here.
+  const std::string shown = command_line.size() > 1 ? "swarm_launcher" : "swarm_launcher " + name;
+  return {sibling, [sibling, shown, command_line]() -> Result<ExitCode> {
             std::vector<std::string> all = command_line;
             const std::vector<std::string> arguments = sibling->remaining();
             all.insert(all.end(), arguments.begin(), arguments.end());
-            return tl::unexpected(become(std::move(all)));
+            return tl::unexpected(become(shown, std::move(all)));
           }};
 }
 

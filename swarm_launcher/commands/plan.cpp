@@ -71,8 +71,10 @@ struct Sample {
   std::vector<double> nodes, edges, roadmap_ms, search_ms, transport_ms, smoothing_ms, total_ms,
       raw_ratio, ratio, cost_m, duration_s;
   std::vector<planner::PlanWarning> warnings;  // of the first plan with warnings
-  double cap_per_m2 = 0.0;
-  std::uint32_t capped = 0;
+  std::optional<double> cap_in_force_per_m2;   // of the mission or automatic; empty: none
+  bool cap_is_automatic = false;
+  double cap_per_m2 = 0.0;      // the largest that shaped a plan; 0: none did
+  std::uint32_t capped = 0;     // plans that it shaped
   double obstacle_share = 0.0;  // of the first plan
   double max_density_per_m2 = 0.0;
   double max_cvar_m = -std::numeric_limits<double>::infinity();
@@ -140,6 +142,17 @@ struct Sample {
     return json.dump(2) + "\n";
   }
 
+  // Every plan keeps a cap of the mission. The automatic one is applied only where a plan without
+  // it would be too dense for the bodies.
+  std::string cap_text() const {
+    if (!cap_in_force_per_m2) return "no density cap";
+    const std::string cap =
+        fmt::format("density cap {:.3g} robots/m2", std::max(*cap_in_force_per_m2, cap_per_m2));
+    if (!cap_is_automatic) return cap + ", kept by every plan";
+    if (capped == 0) return cap + " (automatic), not needed: it changed no plan";
+    return fmt::format("{} (automatic), changed {} of {} plans", cap, capped, total_ms.size());
+  }
+
   std::string to_text(double bound_m) const {
     std::string text = fmt::format(
         "{} of {} seeds planned; {:.0f} nodes, {:.0f} edges\n"
@@ -147,11 +160,11 @@ struct Sample {
         "{:.2f} ms\n"
         "mean path / bound {:.3f} raw, {:.3f} smoothed (bound {:.1f} m), W2 cost {:.1f} m\n"
         "largest CVaR {:.4f} m; at most {:.2f} % of the first plan's mixture inside obstacles\n"
-        "takes {:.1f} s; at most {:.3g} robots/m2; {} of {} plans under a density cap of {:.3g}\n",
+        "takes {:.1f} s; at most {:.3g} robots/m2; {}\n",
         total_ms.size(), tried, median(nodes), median(edges), median(roadmap_ms), median(search_ms),
         median(transport_ms), median(smoothing_ms), median(total_ms), mean(raw_ratio), mean(ratio),
         bound_m, mean(cost_m), max_cvar_m, 100.0 * obstacle_share, mean(duration_s),
-        max_density_per_m2, capped, total_ms.size(), cap_per_m2);
+        max_density_per_m2, cap_text());
     for (const planner::PlanWarning& warning : warnings) {
       text += fmt::format("warning {}: {}\n", warning.code, warning.text);
     }
@@ -211,6 +224,8 @@ Result<ExitCode> plan_mission(const PlanCommandOptions& options) {
       if (!failure) failure = result.error();
       continue;
     }
+    sample.cap_in_force_per_m2 = traits.density_cap_per_m2;
+    sample.cap_is_automatic = !mission->planner.density_cap_per_m2;
     sample.add(*result, traits.risk_promise, *mission, bound_m);
     if (sample.total_ms.size() == 1 && options.times) {
       const auto passage = planner::narrowest_passage(result->plan, mission->world);

@@ -60,8 +60,8 @@ class RemoteHosts {
     ProcessIndex first_process{};
     std::uint32_t processes = 0;
     int signalled = -1;    // strongest signal sent
-    bool over = false;     // its processes have ended …
-    bool counted = false;  // … and the supervisor knows
+    bool over = false;     // its processes have ended
+    bool counted = false;  // the supervisor was informed of that
     bool left = false;     // it has left, or the connection is lost
     std::ofstream log_file{};
     std::uint32_t log_robot = 0;

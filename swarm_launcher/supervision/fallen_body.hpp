@@ -11,7 +11,7 @@
 
 namespace swarm::launcher {
 
-/// The newest known position of a robot that is not received any more.
+/// The newest known position of a dead or silent robot.
 struct LastKnown {
   UtcTime at{};
   Vec2 position_m = Vec2::Zero();
@@ -26,7 +26,7 @@ struct LastKnown {
 std::optional<LastKnown> last_known(std::span<const robot_log::Step> steps, const Mission& mission);
 
 /// A circle that covers the body of a robot from its last known position to where its driver stops
-/// it. `silent_since`: when it was no longer received. A command is valid for two control periods;
+/// it. `silent_since`: when its silence began. A command is valid for two control periods;
 /// then the robot brakes. The less is known, the larger is the circle: with the command of the last
 /// period it covers the motion under that command only; otherwise every direction at the largest
 /// speed for the age of the information, at most a period of its statuses.

@@ -63,7 +63,7 @@ struct SendCommand {
 struct ChangeScene {
   SceneChange change;
 };
-/// The bodies of these robots, which are not received any more, become obstacles.
+/// The bodies of these robots, which are dead or silent, become obstacles.
 struct AddBodies {
   std::vector<RobotId> robots;
 };
@@ -123,8 +123,8 @@ class Supervisor {
   void on_joined(ProcessIndex first, std::uint32_t count, SteadyTime now);
   /// A process has ended: it is restarted if allowed, otherwise its robots are lost.
   void on_exit(ProcessIndex process, const ProcessExit& exit, SteadyTime now);
-  /// A robot is not received any more, for whatever reason. It is assumed to stay where it is, as
-  /// an obstacle, until it reports again.
+  /// A robot is silent: nothing is received from it, for whatever reason. It is assumed to stay
+  /// where it is, as an obstacle, until it reports again.
   void on_silent(RobotId robot, SteadyTime now);
   void on_command(CommandKind kind, SteadyTime now);  ///< by the user
   /// The swarm has a new goal: robots that arrive by a plan for an older scene do not count as

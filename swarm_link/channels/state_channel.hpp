@@ -38,8 +38,8 @@ class StateChannel {
 struct CellOptions {
   double cell_size_m = 20.0;            ///< edge length of a cell
   double communication_radius_m = 4.0;  ///< states of robots this near must be received
-  double join_margin_m = 1.5;           ///< a cell is joined this far outside the radius …
-  double leave_margin_m = 3.0;          ///< … and left this far; at least the join margin
+  double join_margin_m = 1.5;           ///< a cell is joined this far outside the radius
+  double leave_margin_m = 3.0;  ///< a cell is left this far outside; at least the join margin
 };
 
 /// The `topics` channel: one ordinary topic per cell, with endpoints that are created and

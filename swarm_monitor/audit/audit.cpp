@@ -229,6 +229,10 @@ std::string list_pairs(const std::vector<Approach>& contacts) {
   return list(pairs);
 }
 
+std::string number_of_pairs(std::uint32_t count) {
+  return count == 1 ? "1 pair" : fmt::format("{} pairs", count);
+}
+
 /// Collects the reasons why the run fails, one line each; without any the outcome is "ok".
 void judge(const AuditedRun& audited, Audit& audit) {
   if (!audit.lost.empty()) {
@@ -244,16 +248,19 @@ void judge(const AuditedRun& audited, Audit& audit) {
     audit.reasons.push_back(fmt::format("{} not arrived: robot {}", absent.size(), list(absent)));
   }
   if (audit.collisions_robot > 0) {
-    audit.reasons.push_back(fmt::format("{} pairs touched: {}", audit.collisions_robot,
+    audit.reasons.push_back(fmt::format("{} touched: {}", number_of_pairs(audit.collisions_robot),
                                         list_pairs(audited.robots.contacts)));
   }
   if (audit.collisions_fallen > 0) {
-    audit.reasons.push_back(fmt::format("{} pairs touched after one had fallen: {}",
-                                        audit.collisions_fallen,
+    audit.reasons.push_back(fmt::format("{} touched after one had died: {}",
+                                        number_of_pairs(audit.collisions_fallen),
                                         list_pairs(audited.robots.fallen_contacts)));
   }
   if (audit.collisions_obstacle > 0) {
-    audit.reasons.push_back(fmt::format("{} robots touched obstacles", audit.collisions_obstacle));
+    audit.reasons.push_back(fmt::format("{} touched obstacles",
+                                        audit.collisions_obstacle == 1
+                                            ? "1 robot"
+                                            : fmt::format("{} robots", audit.collisions_obstacle)));
   }
   if (audit.outside_bounds > 0) {
     std::vector<std::string> outside;

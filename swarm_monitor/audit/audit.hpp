@@ -51,7 +51,7 @@ struct Audit {
   std::vector<RobotId> lost;
   std::uint32_t collisions_robot = 0;     ///< pairs that ever touched
   std::uint32_t collisions_obstacle = 0;  ///< robots that ever touched an obstacle
-  std::uint32_t collisions_fallen = 0;    ///< pairs that touched after one of them had fallen
+  std::uint32_t collisions_fallen = 0;    ///< pairs that touched after one of them had died
   std::optional<double> min_robot_gap_m;  ///< surface to surface; empty with fewer than two robots
   std::optional<double> min_obstacle_gap_m;
   std::optional<double> mean_path_m;       ///< over robots that are not lost

@@ -15,6 +15,10 @@ using Json = nlohmann::ordered_json;
 /// A value that was not measured becomes null, which readers can distinguish from zero.
 Json number(const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); }
 
+std::string counted(std::uint32_t count, const char* one, const char* many) {
+  return fmt::format("{} {}", count, count == 1 ? one : many);
+}
+
 std::string metres(const std::optional<double>& value, const char* none) {
   return value ? fmt::format("{:.3f} m", *value) : none;
 }
@@ -78,21 +82,22 @@ std::string to_json(const Audit& audit) {
 /// The same numbers as to_json() in one line each, units included. Lines of values that were not
 /// measured are left out.
 std::string to_text(const Audit& audit) {
-  std::string text = fmt::format("{}: {} of {} robots arrived, {} lost, {} processes\n",
-                                 audit.ok() ? "ok" : "criteria not met", audit.arrived,
-                                 audit.robots, audit.lost.size(), audit.processes);
+  std::string text =
+      fmt::format("{}: {} of {} robots arrived, {} lost, {}\n",
+                  audit.ok() ? "ok" : "criteria not met", audit.arrived, audit.robots,
+                  audit.lost.size(), counted(audit.processes, "process", "processes"));
   for (const std::string& reason : audit.reasons) text += fmt::format("  - {}\n", reason);
   text += fmt::format("  per goal         {}\n", fmt::join(audit.arrived_per_goal, ", "));
-  text += fmt::format(
-      "  contacts         {} between robots, {} with fallen ones, {} robots with obstacles\n",
-      audit.collisions_robot, audit.collisions_fallen, audit.collisions_obstacle);
+  text +=
+      fmt::format("  contacts         {} between robots, {} with dead ones, {} with obstacles\n",
+                  audit.collisions_robot, audit.collisions_fallen, audit.collisions_obstacle);
   text +=
       fmt::format("  smallest gaps    {} between robots, {} to obstacles\n",
                   metres(audit.min_robot_gap_m, "none"), metres(audit.min_obstacle_gap_m, "none"));
   if (audit.mean_path_m) {
     text += fmt::format("  mean path        {:.2f} m", *audit.mean_path_m);
     if (audit.path_ratio) {
-      text += fmt::format(", {:.4f} of the geodesic bound {:.2f} m", *audit.path_ratio,
+      text += fmt::format(", {:.3f} times the geodesic bound {:.2f} m", *audit.path_ratio,
                           *audit.geodesic_bound_m);
     }
     text += "\n";

@@ -57,13 +57,13 @@ std::size_t window_of(double time_s) {
   return std::min(kLastWindow, static_cast<std::size_t>(time_s / Clearance::kWindow_s));
 }
 
-/// Time until which a body is present: its last step, or later if its robot fell there. \pre some
+/// Time until which a body is present: its last step, or later if its robot died there. \pre some
 /// point
 double end_of(const Track& track) {
   return std::max(track.points.back().time_s, track.body_until_s);
 }
 
-/// Number of windows of kWindow_s that cover all tracks, fallen bodies included.
+/// Number of windows of kWindow_s that cover all tracks, bodies of dead robots included.
 std::size_t windows_of(std::span<const Track> tracks) {
   double end_s = 0.0;
   for (const Track& track : tracks) {

@@ -30,7 +30,7 @@ struct Clearance {
 
   Approach nearest;                ///< +∞ when nothing ever was near anything
   std::vector<Approach> contacts;  ///< deepest approach of each pair that touched (gap ≤ 0)
-  /// The same for pairs of which one had fallen and lay there; they enter no other member.
+  /// The same for pairs of which one was dead; they enter no other member.
   std::vector<Approach> fallen_contacts;
   std::vector<double> by_window_m;
   std::vector<double> by_robot_m;  ///< smallest gap of each robot, at most kCap_m
@@ -39,7 +39,7 @@ struct Clearance {
 /// Nearest approach of two tracks within [from_s, to_s]; gap +∞ if they do not overlap in time.
 Approach approach_of(const Track& a, const Track& b, double from_s, double to_s);
 
-/// The same while at least one of them lies there, fallen (Track::body_until_s).
+/// The same while at least one of them is dead and its body is there (Track::body_until_s).
 Approach fallen_approach_of(const Track& a, const Track& b, double from_s, double to_s);
 
 /// Smallest gap of one straight piece of motion to a convex obstacle, and the share of the piece at

@@ -6,7 +6,7 @@
 
 namespace swarm::monitor {
 
-/// Sets Track::body_until_s of fallen robots: a robot whose log ends without "exit" stays at its
+/// Sets Track::body_until_s of dead robots: a robot whose log ends without "exit" stays at its
 /// last point until the end of the run, or until a scene records that its body was cleared. A robot
 /// whose log continues has been respawned: its body is the track itself, also between two
 /// incarnations. O(robots + scenes · bodies).

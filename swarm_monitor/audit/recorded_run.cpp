@@ -268,6 +268,10 @@ Result<RecordedRun> read_directory(const std::filesystem::path& run_dir) {
     if (plan_version_of(name) == 0) continue;
     if (auto text = shell::read_file(entry.path(), kMaxPlanBytes)) texts[name] = *text;
   }
+  if (text_of(texts, shell::kMissionFile).empty()) {
+    return fail(ErrorCode::kEnvironment, fmt::format("{} holds no {}: is it a run directory?",
+                                                     run_dir.string(), shell::kMissionFile));
+  }
   auto run = with_mission(text_of(texts, shell::kMissionFile), run_dir);
   if (!run) return run;
   TrackTable tracks(run->mission.robots.count);

@@ -47,7 +47,7 @@ struct Track {
   std::vector<EstimatePoint> estimates{};
   std::vector<std::uint32_t> processes{};  ///< one per incarnation
   bool ended_gracefully = false;           ///< the last incarnation noted "exit"
-  /// The body of a fallen robot stays at the last point until this time; a time before the last
+  /// The body of a dead robot stays at the last point until this time; a time before the last
   /// point means that there is no body. Set by lay_fallen_bodies().
   double body_until_s = 0.0;
   std::string unreadable{};       ///< why there is no robot log; empty if there is one
@@ -66,6 +66,7 @@ struct Track {
 struct RunEvent {
   double time_s = 0.0;
   std::string source, severity, code, text;
+  std::optional<double> mission_time_s{};  ///< only in a live run, and only where it is known
 };
 
 /// A plan as it was published.
@@ -85,7 +86,7 @@ struct RecordedRun {
   std::vector<Scene> scenes{};               ///< the first as in the mission file
   std::string launcher_summary{};            ///< text of summary.json
   std::vector<PlanClock> clock{};            ///< the plan's clock as published; stamps ascend
-  std::optional<PlanningRecord> planning{};  ///< what the planning method promised, if recorded
+  std::optional<PlanningRecord> planning{};  ///< what the planning method guarantees, if recorded
 
   /// The final goal of the swarm: that of the newest scene with a goal, else the mission's.
   const Mixture& goal() const;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
 #include <functional>
 
 #include <CLI/CLI.hpp>
@@ -15,6 +16,11 @@ struct Command {
   CLI::App* app;                          ///< its options
   std::function<Result<ExitCode>()> act;  ///< what it does once they are read
 };
+
+/// Whether a run is in progress: its launcher writes the summary at the end.
+bool is_in_progress(const std::filesystem::path& run_dir);
+/// Fails (kEnvironment) with "this run is not in progress" after the end of a run.
+Result<void> check_in_progress(const std::filesystem::path& run_dir);
 
 /// Each declares its options at `program`; the returned action reads them after parsing.
 Command add_audit(CLI::App& program);

@@ -15,9 +15,11 @@ Command add_audit(CLI::App& program) {
     bool json = false;
   };
   const auto o = std::make_shared<Options>();
-  CLI::App* const audit = program.add_subcommand("audit", "Recompute all results of a run");
-  audit->add_option("run", o->from, "Directory of the run, or a recording of it")
+  CLI::App* const audit = program.add_subcommand(
+      "audit", "Recompute all results of a run from its logs; exit code 1 if it failed");
+  audit->add_option("run", o->from, "Run directory, or a recording")
       ->required()
+      ->check(CLI::ExistingPath)
       ->type_name("RUN_DIR|FILE");
   audit->add_flag("--json", o->json, "Print a JSON document");
   return {audit, [o]() -> Result<ExitCode> {
@@ -31,8 +33,12 @@ Command add_audit(CLI::App& program) {
 
 Command add_report(CLI::App& program) {
   const auto run_dir = std::make_shared<std::filesystem::path>();
-  CLI::App* const report = program.add_subcommand("report", "Write the run's report and map");
-  report->add_option("run_dir", *run_dir, "Directory of the run")->required();
+  CLI::App* const report = program.add_subcommand(
+      "report", "Write report.html, paths.svg and paths.png into the run directory");
+  report->add_option("run_dir", *run_dir, "Run directory")
+      ->required()
+      ->check(CLI::ExistingDirectory)
+      ->type_name("RUN_DIR");
   return {report, [run_dir]() -> Result<ExitCode> {
             const auto result = write_report(*run_dir);
             if (!result) return tl::unexpected(result.error());

@@ -35,12 +35,6 @@ struct ViewOptions {
   ViewServerOptions server{};
 };
 
-/// Whether a run is in progress: its launcher writes the summary at the end.
-bool flies(const std::filesystem::path& from) {
-  return std::filesystem::is_directory(from) &&
-         !std::filesystem::exists(from / shell::kSummaryFile);
-}
-
 /// Serves until a stop signal. The address is printed first, with the token in the fragment, which
 /// browsers do not send to servers.
 Result<ExitCode> serve(ViewServerOptions options, ViewSource& source) {
@@ -55,7 +49,7 @@ Result<ExitCode> serve(ViewServerOptions options, ViewSource& source) {
 
 /// A run in progress is joined on the bus, a finished run or a recording is read as a whole.
 Result<ExitCode> view(ViewOptions options) {
-  if (!flies(options.from)) {
+  if (!is_in_progress(options.from)) {
     if (options.server.allow_control) {
       return fail(ErrorCode::kBadInput, "--allow-control: this run has ended");
     }
@@ -78,6 +72,9 @@ Result<ExitCode> view(ViewOptions options) {
 /// Joins the run as a monitor and redraws the terminal once a second, between polls of 10 ms; ends
 /// with the run.
 Result<ExitCode> top(const std::filesystem::path& run_dir) {
+  if (auto joinable = check_in_progress(run_dir); !joinable) {
+    return tl::unexpected(joinable.error());
+  }
   auto source = look_at_run(run_dir, kTopNumber);
   if (!source) return tl::unexpected(source.error());
   const bool live = ::isatty(STDOUT_FILENO) != 0;
@@ -108,22 +105,37 @@ Result<ExitCode> top(const std::filesystem::path& run_dir) {
 
 }  // namespace
 
+bool is_in_progress(const std::filesystem::path& run_dir) {
+  return std::filesystem::is_directory(run_dir) &&
+         !std::filesystem::exists(run_dir / shell::kSummaryFile);
+}
+
+// Joining a finished run would succeed, and wait for robots that never come.
+Result<void> check_in_progress(const std::filesystem::path& run_dir) {
+  if (is_in_progress(run_dir)) return {};
+  return fail(ErrorCode::kEnvironment,
+              fmt::format("{}: this run is not in progress; see view, report and audit for a "
+                          "finished one",
+                          run_dir.string()));
+}
+
 Command add_view(CLI::App& program) {
   const auto o = std::make_shared<ViewOptions>();
   CLI::App* const command = program.add_subcommand(
-      "view", "Show a run in the browser; also for Foxglove, and metrics for Prometheus");
-  command->add_option("run", o->from, "Directory of a run, or a recording")
+      "view", "Show a run or a recording in the browser and in Foxglove; metrics for Prometheus");
+  command->add_option("run", o->from, "Run directory, or a recording")
       ->required()
       ->check(CLI::ExistingPath)
       ->type_name("RUN_DIR|FILE");
-  command->add_option("--address", o->server.address, "Of the interface to listen at")
+  command->add_option("--address", o->server.address, "Address to listen at")
       ->check(CLI::ValidIPV4)
       ->capture_default_str();
-  command->add_option("--port", o->server.port, "To listen at (default: a free one)");
-  command->add_option("--host-name", o->server.host_names,
-                      "Name, beside addresses and this machine's own, under which it is opened");
+  command->add_option("--port", o->server.port, "Port to listen at (default: a free one)");
+  command->add_option(
+      "--host-name", o->server.host_names,
+      "Additional host name accepted in the URL; this machine's names are accepted anyway");
   command->add_flag("--allow-control", o->server.allow_control,
-                    "Allow anyone who has the printed address to control the mission");
+                    "Let anyone with the printed address pause, stop and change the mission");
   return {command, [o] { return view(*o); }};
 }
 
@@ -131,9 +143,10 @@ Command add_top(CLI::App& program) {
   const auto run_dir = std::make_shared<std::filesystem::path>();
   CLI::App* const command =
       program.add_subcommand("top", "Show a run in progress in the terminal, once a second");
-  command->add_option("run_dir", *run_dir, "Directory of the run")
+  command->add_option("run_dir", *run_dir, "Run directory of a run in progress")
       ->required()
-      ->check(CLI::ExistingDirectory);
+      ->check(CLI::ExistingDirectory)
+      ->type_name("RUN_DIR");
   return {command, [run_dir] { return top(*run_dir); }};
 }
 

@@ -117,7 +117,8 @@ void BusReader::take_heartbeat(const TappedSample& sample) {
                       .mission_time_s = message.mission_time_s,
                       .plan_time_s = message.plan_time_s,
                       .plan_rate = message.plan_rate,
-                      .received = sample.received});
+                      .received = sample.received,
+                      .stamp = UtcTime(Duration(message.stamp_utc_ns))});
 }
 
 void BusReader::take_command(const TappedSample& sample) {
@@ -131,6 +132,7 @@ void BusReader::take_event(const TappedSample& sample) {
   link::EventMessage message;
   if (!decode(sample, message) || !gate_.event(message)) return;
   observer_.on_event({.received = sample.received,
+                      .stamp = UtcTime(Duration(message.stamp_utc_ns)),
                       .source = link::source_name(message.source),
                       .severity = std::string(link::to_string(message.severity)),
                       .code = message.code,

@@ -61,6 +61,7 @@ Result<void> observe_recording(const std::filesystem::path& from, Observer& obse
     if (item.robot == run->tracks.size()) {
       const RunEvent& event = run->events[item.index];
       observer.on_event({.received = at,
+                         .stamp = at,
                          .source = event.source,
                          .severity = event.severity,
                          .code = event.code,

@@ -125,26 +125,32 @@ Json data_of(const mcap::Message& message, const mcap::Channel& channel, const s
 
 }  // namespace
 
-Result<mcap::Damage> print_messages(const std::filesystem::path& file,
-                                    const std::vector<std::string>& topics,
-                                    const std::function<void(const std::string&)>& print) {
+Result<PrintedMessages> print_messages(const std::filesystem::path& file,
+                                       const std::vector<std::string>& topics,
+                                       const std::function<void(const std::string&)>& print) {
+  PrintedMessages result;
   const auto wanted = [&](const std::string& topic) {
     return topics.empty() || std::any_of(topics.begin(), topics.end(), [&](const auto& begin) {
              return topic.starts_with(begin);
            });
   };
-  return mcap::read(file,
-                    {.message = [&](const mcap::Message& message, const mcap::Channel& channel,
-                                    const mcap::Schema& schema) {
-                      if (!wanted(channel.topic)) return;
-                      print(Json{{"topic", channel.topic},
-                                 {"type", schema.name},
-                                 {"log_time_ns", text(message.log_time_ns)},
-                                 {"publish_time_ns", text(message.publish_time_ns)},
-                                 {"sequence", message.sequence},
-                                 {"data", data_of(message, channel, schema.name)}}
-                                .dump(-1, ' ', false, Json::error_handler_t::replace));
-                    }});
+  const auto damage =
+      mcap::read(file, {.message = [&](const mcap::Message& message, const mcap::Channel& channel,
+                                       const mcap::Schema& schema) {
+                   result.topics.insert(channel.topic);
+                   if (!wanted(channel.topic)) return;
+                   ++result.printed;
+                   print(Json{{"topic", channel.topic},
+                              {"type", schema.name},
+                              {"log_time_ns", text(message.log_time_ns)},
+                              {"publish_time_ns", text(message.publish_time_ns)},
+                              {"sequence", message.sequence},
+                              {"data", data_of(message, channel, schema.name)}}
+                             .dump(-1, ' ', false, Json::error_handler_t::replace));
+                 }});
+  if (!damage) return tl::unexpected(damage.error());
+  result.damage = *damage;
+  return result;
 }
 
 }  // namespace swarm::monitor

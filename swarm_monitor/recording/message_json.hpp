@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -11,12 +13,19 @@
 
 namespace swarm::monitor {
 
+/// What print_messages() read.
+struct PrintedMessages {
+  mcap::Damage damage;
+  std::uint64_t printed = 0;
+  std::set<std::string> topics;  ///< of all messages, printed or not
+};
+
 /// Hands over every message of a recording as a line of JSON: topic, type, times, sequence number
 /// and, as "data", its fields by their names in the IDL. 64-bit integers are texts, since many
 /// readers take JSON numbers for doubles; a message that cannot be decoded has "data": null.
 /// `topics` are prefixes; empty: all.
-Result<mcap::Damage> print_messages(const std::filesystem::path& file,
-                                    const std::vector<std::string>& topics,
-                                    const std::function<void(const std::string&)>& print);
+Result<PrintedMessages> print_messages(const std::filesystem::path& file,
+                                       const std::vector<std::string>& topics,
+                                       const std::function<void(const std::string&)>& print);
 
 }  // namespace swarm::monitor

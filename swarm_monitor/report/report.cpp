@@ -124,7 +124,7 @@ void add_figures(Page& page, const Audit& audit) {
   add_figure(page, number(audit.max_rss_mb, 1, "MB"), "memory of the largest process");
   add_tracking(page, audit.tracking);
   if (audit.collisions_fallen > 0) {
-    add_figure(page, fmt::format("{}", audit.collisions_fallen), "pairs that touched, one fallen",
+    add_figure(page, fmt::format("{}", audit.collisions_fallen), "pairs that touched, one dead",
                Tone::kBad);
   }
   if (audit.outside_bounds > 0) {
@@ -304,7 +304,7 @@ std::string paths_svg(const AuditedRun& audited) {
   }
   for (const Approach& contact : audited.robots.fallen_contacts) {
     map.add_contact(contact.at_m,
-                    fmt::format("robots {} and {} touched at {:.1f} s, one fallen: gap {:.3f} m",
+                    fmt::format("robots {} and {} touched at {:.1f} s, one dead: gap {:.3f} m",
                                 contact.robot, contact.other, contact.time_s, contact.gap_m));
   }
   for (const Approach& contact : audited.obstacles.contacts) {

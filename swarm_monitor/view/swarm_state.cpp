@@ -9,7 +9,7 @@
 namespace swarm::monitor {
 namespace {
 
-/// A robot not received for this long counts as lost: each one publishes at least twice a second.
+/// A robot that is silent for this long counts as lost: each one publishes at least twice a second.
 constexpr Duration kLostAfter = std::chrono::seconds(3);
 /// Longest extrapolation of a state; after that the robot is shown where it stopped being received.
 constexpr double kCarryOn_s = 0.8;
@@ -73,15 +73,29 @@ void SwarmState::on_clock(const ObservedClock& clock) {
   plan_time_s_ = clock.plan_time_s;
   plan_rate_ = clock.plan_rate;
   beat_at_ = clock.received;
+  beat_stamp_ = clock.stamp;
 }
 
+/// The mission time follows from the newest heartbeat. It stays unknown before the first one and
+/// for old events, which a monitor that joins late receives: a pause may lie between.
 void SwarmState::on_event(const ObservedEvent& event) {
+  constexpr double kRecent_s = 2.0;
   if (events_.size() == kMostEvents) return;
+  std::optional<double> at_s;
+  if (beat_stamp_) {
+    // In doubles: stamps of other hosts are not bounded, and their difference might overflow.
+    const double since_beat_s =
+        to_seconds(event.stamp.time_since_epoch()) - to_seconds(beat_stamp_->time_since_epoch());
+    const double time_s =
+        phase_ == MissionPhase::kRunning ? mission_time_s_ + since_beat_s : mission_time_s_;
+    if (std::abs(since_beat_s) < kRecent_s) at_s = std::max(0.0, time_s);
+  }
   events_.push_back({.time_s = begin_ ? to_seconds(event.received - *begin_) : 0.0,
                      .source = event.source,
                      .severity = event.severity,
                      .code = event.code,
-                     .text = event.text});
+                     .text = event.text,
+                     .mission_time_s = at_s});
 }
 
 /// Linear extrapolation from the last state, as the robot's neighbours do it.

@@ -96,7 +96,8 @@ class SwarmState final : private Observer {
   double mission_time_s_ = 0.0;
   double plan_time_s_ = 0.0;
   double plan_rate_ = 0.0;
-  UtcTime beat_at_{};  // reception of the last heartbeat
+  UtcTime beat_at_{};                  // reception of the last heartbeat
+  std::optional<UtcTime> beat_stamp_;  // its own time; empty before the first
   std::vector<RunEvent> events_;
   std::optional<UtcTime> begin_;
   link::StreamMeter meter_;

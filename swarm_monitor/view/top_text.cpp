@@ -53,8 +53,9 @@ std::string top_text(const SwarmState& state, const TopFacts& facts, UtcTime now
   text += "\n";
   for (std::size_t i = events.size() - std::min(events.size(), facts.events); i < events.size();
        ++i) {
-    text += fmt::format("{:>8.1f} s  {}  {}: {}\n", events[i].time_s, events[i].source,
-                        events[i].code, events[i].text);
+    const auto& at_s = events[i].mission_time_s;
+    text += fmt::format("{:>10}  {}  {}: {}\n", at_s ? fmt::format("{:.1f} s", *at_s) : "–",
+                        events[i].source, events[i].code, events[i].text);
   }
   return text;
 }

@@ -108,6 +108,30 @@ TEST(Monitor, ReportsWhatIsNoRunDirectory) {
 
   EXPECT_EQ(audit.wait(), 2);
   EXPECT_FALSE(audit.err().empty());
+
+  for (const char* command : {"audit", "report", "view", "top", "record", "merge"}) {
+    Program missing("swarm_monitor", {command, (folder.path() / "missing").string()});
+    EXPECT_EQ(missing.wait(), 3) << command;
+  }
+}
+
+TEST(Monitor, JoinsNoFinishedRun) {
+  TemporaryFolder folder;
+  std::ofstream(folder.path() / "summary.json") << "{}";
+
+  for (const char* command : {"top", "record"}) {
+    Program monitor("swarm_monitor", {command, folder.path().string()});
+    EXPECT_EQ(monitor.wait(), 2) << command;
+    EXPECT_NE(monitor.err().find("not in progress"), std::string::npos) << monitor.err();
+  }
+}
+
+TEST(Launcher, NamesTheCommandsThatItKnows) {
+  TemporaryFolder folder;
+  Program command("swarm_launcher", {"command", folder.path().string(), "fly"});
+
+  EXPECT_EQ(command.wait(), 3);
+  EXPECT_NE(command.err().find("add_obstacle"), std::string::npos) << command.err();
 }
 
 }  // namespace

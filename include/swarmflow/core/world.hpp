@@ -87,7 +87,7 @@ class World {
   /// \param bounds_m the rectangle robots stay in [m]
   /// \param obstacles obstacles in any order; they may reach beyond the bounds
   /// \param velocities_mps velocity of each obstacle [m/s]; empty: nothing moves
-  /// \param bodies number of obstacles at the end of the list that are bodies of fallen robots
+  /// \param bodies number of obstacles at the end of the list that are bodies of dead robots
   /// \return kBadInput for a rectangle that is empty or not finite, circles without a finite centre
   ///   and a positive, finite radius, and polygons without vertices
   /// \pre velocities_mps is empty or has the size of obstacles, and bodies ≤ obstacles.size();
@@ -104,10 +104,10 @@ class World {
   /// All obstacles, in the order given to make().
   const std::vector<Obstacle>& obstacles() const { return obstacles_; }
 
-  /// The obstacles that are bodies of fallen robots, the last ones of obstacles(). They are small
+  /// The obstacles that are bodies of dead robots, the last ones of obstacles(). They are small
   /// compared with a plan's Gaussians: each robot avoids them on its own path.
   std::span<const Obstacle> bodies() const { return std::span(obstacles_).last(bodies_); }
-  /// The map without the bodies of fallen robots; valid as long as this one.
+  /// The map without the bodies of dead robots; valid as long as this one.
   const World& without_bodies() const { return without_bodies_ ? *without_bodies_ : *this; }
 
   /// The obstacles, non-convex ones decomposed into convex parts; in the order of obstacles().

@@ -41,10 +41,10 @@ struct GoTo {
 struct SetRisk {
   double alpha = 0.05;  ///< α of RiskLimit, in (0, 1)
 };
-/// Scene change by the launcher: a robot is not received any more, so its body stays where it is
-/// and becomes an obstacle. A robot has one body: a second one replaces the first.
+/// Scene change by the launcher: a robot is dead or silent, so its body stays where it is and
+/// becomes an obstacle. A robot has one body: a second one replaces the first.
 struct AddBody {
-  RobotId robot;  ///< the fallen robot
+  RobotId robot;  ///< the robot
   Circle shape;   ///< covers every position its body may have
 };
 /// Scene change: the body of a robot is no obstacle any more, because the robot is received again
@@ -98,7 +98,7 @@ struct Scene {
 };
 
 /// Number of robot 0's body as an obstacle. Bodies have numbers above those of all other obstacles,
-/// so the number of an obstacle that a script adds does not depend on how many robots fell before.
+/// so the number of an obstacle that a script adds does not depend on how many robots died before.
 inline constexpr std::uint32_t kFirstBodyId = 0x8000'0000;
 /// Number of a robot's body as an obstacle.
 constexpr std::uint32_t body_id(RobotId robot) { return kFirstBodyId + robot.value(); }
@@ -132,11 +132,11 @@ struct WorldPhase {
 };
 
 /// The maps of a run that went through these scenes, by ascending time; the first one begins at the
-/// epoch if the first scene has version 0. Without bodies of fallen robots.
+/// epoch if the first scene has version 0. Without bodies of dead robots.
 std::vector<WorldPhase> world_phases(const World& mission_world, const std::vector<Scene>& scenes);
 
 /// The map of the obstacles of the mission file that were neither moved nor removed in any of these
-/// scenes: a path that was free during the run is free in it. Without bodies of fallen robots.
+/// scenes: a path that was free during the run is free in it. Without bodies of dead robots.
 World lasting_world(const World& mission_world, const std::vector<Scene>& scenes);
 
 }  // namespace swarm

@@ -62,11 +62,13 @@ struct ObservedClock {
   double plan_time_s = 0.0;                   ///< τ: the swarm is to form flow.mixture_at(τ) [s]
   double plan_rate = 0.0;                     ///< dτ/dt, in [0, 1]; 0 while the mission is paused
   UtcTime received{};                         ///< by this machine's clock
+  UtcTime stamp{};                            ///< when it was published, by the planner's clock
 };
 
 /// An event of the run's log: something that happened once and that an operator may want to know.
 struct ObservedEvent {
   UtcTime received{};    ///< by this machine's clock; in a recording the time of the event
+  UtcTime stamp{};       ///< when it happened, by the clock of its source
   std::string source;    ///< "planner", "launcher" or a robot, as "robot-7"
   std::string severity;  ///< "info", "warning" or "error"
   std::string code;      ///< its kind, for programs, as "robot-fault"

@@ -16,7 +16,7 @@ namespace swarm::planner {
 /// them.
 struct PlanRequest {
   /// Bounds and obstacles as they are now; an obstacle that moves may occur at several positions,
-  /// those it has until the next plan. Includes bodies of fallen robots where a plan around them is
+  /// those it has until the next plan. Includes bodies of dead robots where a plan around them is
   /// tried.
   const World& world;
   const Mixture& start;  ///< where the swarm is; component i is to be source i of the plan

@@ -23,7 +23,7 @@ struct ControlView {
   /// Estimates of the other robots: at least those within PreparedControl::reach_m, as far as they
   /// are within the communication radius. In no particular order but that of `close`.
   std::span<const Neighbour> neighbours;
-  /// The map at `now`, bodies of fallen robots included. The same object at every tick, but its
+  /// The map at `now`, bodies of dead robots included. The same object at every tick, but its
   /// content is replaced when the scene changes: keep no references into it.
   const World& world;
   /// The first of `neighbours`: those near enough for the safety filter or for contact forces.

@@ -42,7 +42,7 @@ struct RouteOptions {
 ///   y' = T y,   T = Σ₁⁻¹ # Σ₂ (geometric mean)                     [SwarmPRM, eq. 3–4]
 ///
 /// so on each leg it moves in a straight line. Where μ + y would come too near an obstacle, y is
-/// scaled towards 0, where the plan keeps its risk limit. Bodies of fallen robots only bend the
+/// scaled towards 0, where the plan keeps its risk limit. Bodies of dead robots only bend the
 /// path. Deterministic; allocates; O(vertices) distance queries.
 /// \param plan the plan
 /// \param share the robot's share in [0, 1)

@@ -12,8 +12,8 @@
 #include "swarmflow/core/world.hpp"
 
 /// The baseline of both papers in the style of ADOC (adaptive distributed optimal control):
-/// obstacles on a grid map, their overlap with the swarm's Gaussians penalised, no promise about
-/// risk.
+/// obstacles on a grid map, their overlap with the swarm's Gaussians penalised, no guarantee
+/// about risk.
 namespace swarm::planner {
 
 /// The map as cells, a cell being taken when its centre is in an obstacle.

@@ -18,10 +18,11 @@ struct AdocKeys : CollocationKeys {
 };
 
 const OptionTable<AdocKeys>& adoc_keys() {
-  static const auto table = OptionTable<AdocKeys>()
-                                .with(collocation_keys())
-                                .number("adoc_penalty", &AdocKeys::penalty, between(0, 1e6),
-                                        "of the share of a Gaussian that is in obstacles");
+  static const auto table =
+      OptionTable<AdocKeys>()
+          .with(collocation_keys())
+          .number("adoc_penalty", &AdocKeys::penalty, between(0, 1e6),
+                  "penalty on the share of a Gaussian that lies in obstacles");
   return table;
 }
 

@@ -12,7 +12,7 @@ namespace swarm::planner {
 /// The options of ADOC in a mission.
 AdocOptions adoc_options(const Mission& mission);
 
-/// ADOC as a planning method. It promises nothing about risk and keeps nothing.
+/// ADOC as a planning method. It guarantees neither the risk limit nor a density cap.
 class AdocMethod final : public PlanningMethod {
  public:
   AdocMethod(const AdocOptions& options, const RiskLimit& risk, const LegSpeed& speed);

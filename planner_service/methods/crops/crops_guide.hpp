@@ -34,8 +34,8 @@ struct CropsOptions {
   double clearance_power = 3.0;
   double goal_radius_m = 1.0;     ///< 20 px; circle around a path vertex, two σ of its Gaussian
   std::uint32_t rounds_max = 20;  ///< how often N/2 + 1 samples are added until all is joined
-  double stuck_factor = 3.0;      ///< cost factor of edges where robots are stuck …
-  std::uint32_t stuck_edges = 4;  ///< … for this many edges ahead of them
+  double stuck_factor = 3.0;      ///< cost factor of edges where robots are stuck
+  std::uint32_t stuck_edges = 4;  ///< number of edges ahead of a stuck robot that get the factor
 };
 
 /// w(q) = (Σ_o dist(q, o))^p over the obstacles of the world            [CRoPS, roadmap weights];

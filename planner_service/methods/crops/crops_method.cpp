@@ -28,7 +28,7 @@ const OptionTable<CropsKeys>& crops_keys() {
           .number("crops_power", &CropsKeys::power, between(0, 10),
                   "p of w(q) = (sum of dist)^p; 3 in the paper, 1 in its code")
           .number("crops_goal_radius_m", &CropsKeys::goal_radius_m, between(0.1, 1000),
-                  "of the intermediate goals; the control method crops reads it too");
+                  "radius of the intermediate goals; the control method crops uses it too");
   return table;
 }
 

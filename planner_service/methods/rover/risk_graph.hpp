@@ -84,8 +84,8 @@ class RiskGraph {
     return to_goal_m_[vertex * goals_ + goal];
   }
 
-  /// The Gaussians near a convex obstacle of the world, by its index. Part 0: vertices. Part f = 1
-  /// … checks_between: arcs, at f/(checks_between + 1) of their W₂ geodesic.
+  /// The Gaussians near a convex obstacle of the world, by its index. Part 0: vertices. Parts f
+  /// from 1 to checks_between: arcs, at f/(checks_between + 1) of their W₂ geodesic.
   std::span<const Near> near(std::size_t part, std::size_t obstacle) const {
     return near_[part][obstacle];
   }

@@ -14,7 +14,7 @@
 namespace swarm::planner {
 namespace {
 
-/// Whether two mixtures differ in their weights at most: the graph depends on the components alone.
+/// Whether two mixtures differ only in their weights: the graph depends on the components alone.
 bool have_same_components(const Mixture& a, const Mixture& b) {
   return std::equal(a.components().begin(), a.components().end(), b.components().begin(),
                     b.components().end(), [](const auto& l, const auto& r) {
@@ -42,9 +42,10 @@ const OptionTable<RoverKeys>& rover_keys() {
   static const auto table =
       OptionTable<RoverKeys>()
           .with(collocation_keys())
-          .count("horizon", &RoverKeys::horizon, between(1, 10), "h")
+          .count("horizon", &RoverKeys::horizon, between(1, 10),
+                 "number of steps planned ahead (h in ROVER)")
           .number("replan_period_s", &RoverKeys::replan_period_s, between(0.1, 3600),
-                  "a plan from where the robots are each");
+                  "time between two plans from the robots' present positions");
   return table;
 }
 

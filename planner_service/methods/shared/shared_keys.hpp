@@ -19,7 +19,8 @@ struct RoadmapKeys {
 
 inline OptionTable<RoadmapKeys> roadmap_keys() {
   return OptionTable<RoadmapKeys>()
-      .count("samples", &RoadmapKeys::samples, between(1, 100'000), "n, nodes of the roadmap")
+      .count("samples", &RoadmapKeys::samples, between(1, 100'000),
+             "n: number of nodes of the roadmap")
       .number("connection_radius_m", &RoadmapKeys::connection_radius_m, positive(kLongest_m),
               "r: nodes nearer to each other are connected; swarmprm: in W2");
 }
@@ -39,7 +40,7 @@ inline OptionTable<CollocationKeys> collocation_keys() {
       .number("collocation_sigma_m", &Keys::collocation_sigma_m, between(0.01, 1000),
               "standard deviation of its Gaussians per axis")
       .number("transport_radius_m", &Keys::transport_radius_m, positive(kLongest_m),
-              "of Assumption 2, in W2");
+              "W2 distance within which mass may move in one step (ROVER, Assumption 2)");
 }
 
 }  // namespace swarm::planner

@@ -35,12 +35,13 @@ inline const OptionTable<SwarmPrmKeys>& swarmprm_keys() {
           .number("sigma_min_m", &Keys::sigma_min_m, between(0.01, 1000),
                   "least standard deviation per axis that the sampler draws")
           .at_most("sigma_max_m")
-          .number("sigma_max_m", &Keys::sigma_max_m, between(0.01, 1000), "the largest")
+          .number("sigma_max_m", &Keys::sigma_max_m, between(0.01, 1000),
+                  "largest standard deviation per axis that the sampler draws")
           .number("rho_max", &Keys::rho_max, between(0, 0.99), "largest |correlation|")
           .number("bridge_share", &Keys::bridge_share, between(0, 1),
                   "share of samples drawn by the Gaussian sampler of ref. [20]")
           .number("bridge_sigma_m", &Keys::bridge_sigma_m, positive(kLongest_m),
-                  "spread of its pairs")
+                  "standard deviation of the distance within the pairs of that sampler")
           .count("shortcuts", &Keys::shortcuts, between(0, 1'000'000),
                  "smoothing tries per route; 0: the roadmap's routes are published");
   return table;

@@ -24,13 +24,14 @@ struct ApfKeys : PathKeys, ObstacleKeys {
 const OptionTable<ApfKeys>& apf_keys() {
   static const auto table =
       OptionTable<ApfKeys>()
-          .choice("tracking", &ApfKeys::tracking, {"plan", "free"},
-                  "keep the plan's times, or travel the planned path at the robot's own speed")
+          .choice(
+              "tracking", &ApfKeys::tracking, {"plan", "free"},
+              "plan: keep the plan's times; free: travel the planned path at the robot's own speed")
           .with(path_keys())
           .number("pace_gain_hz", &ApfKeys::pace_gain_hz, between(0, 100),
                   "tracking plan: speed per metre behind the reference position")
           .number("keep_clearance_m", &ApfKeys::keep_clearance_m, between(0, 100),
-                  "planned clearance up to this is not cut away")
+                  "shortcuts keep the planned clearance up to this distance")
           .number("density_push_mps", &ApfKeys::density_push_mps, between(0, 100),
                   "largest speed towards the planned density; 0: off")
           .number("neighbour_gap_m", &ApfKeys::neighbour_gap_m, between(0, 100),
@@ -39,7 +40,7 @@ const OptionTable<ApfKeys>& apf_keys() {
                   "speed of that push at contact")
           .with(obstacle_keys())
           .number("escape_spread_m", &ApfKeys::escape_spread_m, between(0, 1000),
-                  "largest standard deviation per axis of the places to escape to");
+                  "largest standard deviation per axis of the positions to escape to");
   return table;
 }
 

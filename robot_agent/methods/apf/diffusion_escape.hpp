@@ -13,8 +13,8 @@ namespace swarm::agent {
 
 /// When a robot counts as stuck, and how far it escapes.
 struct EscapeOptions {
-  double progress_m = 0.3;  ///< less progress than this along the path …
-  Duration stuck_after{};   ///< … in this time: stuck
+  double progress_m = 0.3;  ///< a robot with less progress along its path in stuck_after is stuck
+  Duration stuck_after{};   ///< time over which progress is measured
   Duration duration{};      ///< longest time under way to an intermediate target
   double spread_m = 4.0;    ///< largest standard deviation per axis of the targets
   double radius_m = 0.2;

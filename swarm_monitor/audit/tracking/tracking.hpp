@@ -29,15 +29,15 @@ struct ClockUse {
 struct Tracking {
   /// With less of the motion covered by the clock, nothing that needs the clock is judged.
   static constexpr double kLeastCovered = 0.9;
-  /// Robots that log references must have logged them for this share of their motion, …
+  /// Robots that log references must have logged them for this share of their motion.
   static constexpr double kLeastFollowed = 0.9;
-  /// … and the references must be as near to the plan as this times the floor of sampling.
+  /// W2 of the logged references to the plan must be at most this times its floor.
   static constexpr double kTruthfulRatio = 1.5;
 
   std::optional<ClockUse> clock{};
   std::vector<SwarmDistance> distances{};
   std::optional<Distance> w2{};       ///< means over all moments
-  std::optional<Distance> w2_half{};  ///< … at which at most half of the robots had arrived
+  std::optional<Distance> w2_half{};  ///< means over moments at which at most half had arrived
   std::optional<Distance> references{};
   std::vector<PlanDistance> plans{};
   std::optional<double> centre_lag_s{};

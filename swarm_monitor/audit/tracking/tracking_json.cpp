@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "swarm_monitor/audit/tracking/tracking_json.hpp"
 
+#include <cmath>
+
 #include <fmt/format.h>
 
 namespace swarm::monitor {
@@ -85,7 +87,13 @@ Json ending(const Ending& e) {
 }
 
 std::string distance_text(const Distance& d) {
-  return fmt::format("{:.2f} m, floor {:.2f}: {:.2f} times", d.w2_m, d.floor_m, d.ratio());
+  return fmt::format("{:.2f} m, {:.2f} times the floor {:.2f} m", d.w2_m, d.ratio(), d.floor_m);
+}
+
+/// One decimal, without the sign of values that round to 0.
+std::string tenths(double value) {
+  const double rounded = std::round(10.0 * value) / 10.0;
+  return fmt::format("{:.1f}", rounded == 0.0 ? 0.0 : rounded);
 }
 
 }  // namespace
@@ -115,15 +123,18 @@ std::string tracking_text(const Tracking& tracking) {
   const auto add = [&](const char* what, const std::string& value) {
     text += fmt::format("  {:<16} {}\n", what, value);
   };
-  if (tracking.w2) add("W2 to the plan", distance_text(*tracking.w2));
+  if (tracking.w2) {
+    add("W2 to the plan",
+        distance_text(*tracking.w2) + " (floor: W2 of two random samples of the plan)");
+  }
   if (tracking.w2_half && tracking.plans.size() > 1) {
     add("  half under way", distance_text(*tracking.w2_half));
   }
   if (tracking.centre_lag_s) {
-    std::string lag = fmt::format("{:.1f} s of the centre", *tracking.centre_lag_s);
+    std::string lag = fmt::format("{} s of the centre", tenths(*tracking.centre_lag_s));
     if (const auto& q = tracking.own.lag) {
-      lag += fmt::format(", robots {:.1f} (p10), {:.1f} (p90), {:.1f} (p99)", q->p10_s, q->p90_s,
-                         q->p99_s);
+      lag += fmt::format(", robots {} (p10), {} (p90), {} (p99)", tenths(q->p10_s),
+                         tenths(q->p90_s), tenths(q->p99_s));
     }
     add("lag", lag);
   }
@@ -132,20 +143,22 @@ std::string tracking_text(const Tracking& tracking) {
         fmt::format("{:.2f} m (p50), {:.2f} (p95), {:.2f} (rms)", e->p50_m, e->p95_m, e->rms_m));
   }
   if (const auto& d = tracking.density) {
-    std::string density = fmt::format("{:.2f} per m2 (p95), {:.2f} (worst), planned {:.2f}",
+    std::string density = fmt::format("{:.2f} robots/m2 (p95), {:.2f} (worst), planned {:.2f}",
                                       d->p95_per_m2, d->worst_per_m2, d->planned_worst_per_m2);
-    if (d->cap_per_m2) density += fmt::format(", cap {:g}", *d->cap_per_m2);
+    if (d->cap_per_m2) density += fmt::format(", cap {:.2f}", *d->cap_per_m2);
     add("density", density);
   }
   if (const auto& r = tracking.risk) {
-    add("CVaR flown", fmt::format("{:.2f} m (worst), planned {:.2f}, kept {:.1f} % of the time",
-                                  r->worst_m, r->planned_worst_m, 100.0 * r->kept_share));
+    add("CVaR executed",
+        fmt::format("{:.2f} m (worst), planned {:.2f}, limit kept {:.1f} % of the time", r->worst_m,
+                    r->planned_worst_m, 100.0 * r->kept_share));
   }
   const Ending& end = tracking.ending;
   if (end.to_goal) add("W2 to the goal", distance_text(*end.to_goal));
   if (end.own_place_share) {
-    add("own place", fmt::format("{:.1f} % within 0.7 m, {:.1f} % within 1 m",
-                                 100.0 * *end.own_place_share, 100.0 * *end.own_place_wide_share));
+    add("in own slot",
+        fmt::format("{:.1f} % within 0.7 m, {:.1f} % within 1 m", 100.0 * *end.own_place_share,
+                    100.0 * *end.own_place_wide_share));
   }
   return text;
 }

@@ -188,6 +188,9 @@ TEST_F(Live, ReportsEventsOnce) {
   const auto event = nlohmann::json::parse(source_.events().front());
   EXPECT_EQ(event["source"], "launcher");
   EXPECT_EQ(event["severity"], "warning");
+  // Without a heartbeat the mission time of the event is unknown.
+  const std::string text = top_text(source_.state(), {.name = "small"}, at_ms(20));
+  EXPECT_NE(text.find(" –  launcher  agent-exit: robot 3 ended"), std::string::npos) << text;
 }
 
 TEST_F(Live, IsShownInATerminal) {

@@ -10,28 +10,30 @@
 
 namespace swarm {
 
-/// Key `criteria`: what the audit demands of a run beyond arrival and no contact. A bar that is not
-/// set is not judged; one whose quantity cannot be computed from the run fails it. The quantities
-/// and how they are measured: "Tracking and criteria" in docs/audit.md.
+/// Key `criteria`: what the audit demands of a run beyond arrival and no contact. A limit that is
+/// not set is not judged; one whose quantity cannot be computed from the run fails the run. The
+/// *floor* of a W2 distance is W2 between two random samples of the plan's mixture, with as many
+/// points as robots: a swarm that follows the plan perfectly has ratio 1. The quantities and how
+/// they are measured: "Tracking and criteria" in docs/audit.md.
 struct CriteriaSpec {
   /// A limit; empty: not judged.
   using Bar = std::optional<double>;
-  Bar w2_ratio_max{};              ///< mean W2 of swarm and χ(τ) over the mean floor of sampling
+  Bar w2_ratio_max{};              ///< mean W2 of swarm and χ(τ), divided by the mean floor
   Bar w2_half_ratio_max{};         ///< the same while at most half of the robots have arrived
-  Bar w2_end_ratio_max{};          ///< W2 of the last positions to the goal mixture over its floor
-  Bar centre_lag_max_s{};          ///< amount of the signed lag of the swarm's centre
-  Bar lag_p90_max_s{};             ///< 90 % of the amounts of the robots' signed lags
-  Bar lag_p99_max_s{};             ///< the same for 99 %
-  Bar clock_error_max_s{};         ///< amount by which a robot's τ differs from the published one
+  Bar w2_end_ratio_max{};          ///< W2 of last positions and goal mixture, divided by its floor
+  Bar centre_lag_max_s{};          ///< absolute value of the lag of the swarm's centre
+  Bar lag_p90_max_s{};             ///< 90th percentile of the absolute values of robots' lags
+  Bar lag_p99_max_s{};             ///< 99th percentile of these
+  Bar clock_error_max_s{};         ///< largest difference of a robot's τ to the published one
   Bar reference_p50_max_m{};       ///< median distance of robots under way to their references
-  Bar reference_p95_max_m{};       ///< 95 % of these distances
+  Bar reference_p95_max_m{};       ///< 95th percentile of these distances
   Bar reference_rms_max_m{};       ///< root mean square of these distances
-  Bar density_over_cap_p95_max{};  ///< flown peak over the cap, minus 1, at 95 % of times
-  Bar density_over_cap_max{};      ///< the same at all times
-  Bar planned_over_cap_max{};      ///< planned peak over the cap, minus 1, at all times
+  Bar density_over_cap_p95_max{};  ///< executed peak / cap − 1, 95th percentile over time
+  Bar density_over_cap_max{};      ///< executed peak / cap − 1, largest over time
+  Bar planned_over_cap_max{};      ///< planned peak / cap − 1, largest over time
   Bar cvar_kept_share_min{};  ///< share of times with the executed CVaR ≤ planner.risk_delta_m
   Bar own_place_share_min{};  ///< share of robots within 0.7 m of their last reference
-  Bar path_ratio_max{};       ///< mean path over the geodesic bound
+  Bar path_ratio_max{};       ///< mean path divided by the geodesic bound
   Bar mission_over_plan_max_s{};  ///< mission time minus the first plan's duration
   Bar arrival_spread_max_s{};     ///< from 5 % to 95 % of the arrival times
 };
@@ -39,41 +41,41 @@ struct CriteriaSpec {
 /// Keys of the section.
 inline constexpr auto kCriteriaKeys = std::to_array<SectionKey<CriteriaSpec>>({
     {"w2_ratio_max", &CriteriaSpec::w2_ratio_max, positive(1000),
-     "mean W2 of swarm and plan over the mean floor of sampling"},
+     "mean W2 of swarm and plan, divided by its mean floor (W2 of two samples of the plan)"},
     {"w2_half_ratio_max", &CriteriaSpec::w2_half_ratio_max, positive(1000),
      "the same while at most half of the robots have arrived"},
     {"w2_end_ratio_max", &CriteriaSpec::w2_end_ratio_max, positive(1000),
-     "W2 of the last positions to the goal mixture over its floor"},
+     "W2 of the last positions and the goal mixture, divided by its floor"},
     {"centre_lag_max_s", &CriteriaSpec::centre_lag_max_s, positive(3600),
-     "amount of the signed lag of the swarm's centre"},
+     "absolute value of the lag of the swarm's centre"},
     {"lag_p90_max_s", &CriteriaSpec::lag_p90_max_s, positive(3600),
-     "90 % of the amounts of the robots' signed lags"},
+     "90th percentile of the absolute values of the robots' lags"},
     {"lag_p99_max_s", &CriteriaSpec::lag_p99_max_s, positive(3600),
-     "99 % of the amounts of the robots' signed lags"},
+     "99th percentile of the absolute values of the robots' lags"},
     {"clock_error_max_s", &CriteriaSpec::clock_error_max_s, positive(3600),
-     "amount by which a robot's plan time differs from the published one"},
+     "largest difference of a robot's plan time to the published one"},
     {"reference_p50_max_m", &CriteriaSpec::reference_p50_max_m, positive(1e6),
      "distance of robots under way to their own references, median"},
     {"reference_p95_max_m", &CriteriaSpec::reference_p95_max_m, positive(1e6),
-     "the same, 95 % of them"},
+     "the same, 95th percentile"},
     {"reference_rms_max_m", &CriteriaSpec::reference_rms_max_m, positive(1e6),
-     "the same, root of the mean square"},
+     "the same, root mean square"},
     {"density_over_cap_p95_max", &CriteriaSpec::density_over_cap_p95_max, between(-1, 1000),
-     "flown peak density over the cap, minus 1, at 95 % of times"},
+     "executed peak density / cap - 1, 95th percentile over time"},
     {"density_over_cap_max", &CriteriaSpec::density_over_cap_max, between(-1, 1000),
-     "the same, always"},
+     "the same, largest over time"},
     {"planned_over_cap_max", &CriteriaSpec::planned_over_cap_max, between(-1, 1000),
-     "planned peak density over the cap, minus 1, always"},
+     "planned peak density / cap - 1, largest over time"},
     {"cvar_kept_share_min", &CriteriaSpec::cvar_kept_share_min, between(0, 1),
      "share of times with the executed CVaR <= planner.risk_delta_m"},
     {"own_place_share_min", &CriteriaSpec::own_place_share_min, between(0, 1),
      "share of robots within 0.7 m of their last reference"},
     {"path_ratio_max", &CriteriaSpec::path_ratio_max, positive(1000),
-     "mean path over the geodesic bound"},
+     "mean path divided by the geodesic bound"},
     {"mission_over_plan_max_s", &CriteriaSpec::mission_over_plan_max_s, between(-1e6, 1e6),
      "mission time minus the first plan's duration"},
     {"arrival_spread_max_s", &CriteriaSpec::arrival_spread_max_s, positive(1e6),
-     "from 5 % to 95 % of the arrival times"},
+     "time from the 5th to the 95th percentile of the arrivals"},
 });
 
 }  // namespace swarm

@@ -24,18 +24,19 @@ struct LauncherSpec {
 /// Keys of the section.
 inline constexpr auto kLauncherKeys = std::to_array<SectionKey<LauncherSpec>>({
     {"starts_per_s", &LauncherSpec::starts_per_s, positive(10'000),
-     "processes started per second at most"},
+     "largest number of processes started per second"},
     {"starting_max", &LauncherSpec::starting_max, between(1, 10'000),
-     "processes started and not received yet at most"},
+     "largest number of started processes from which nothing was received yet"},
     {"quorum_share", &LauncherSpec::quorum_share, positive(1),
-     "after the time-out this share of robots is enough"},
+     "after quorum_timeout_s the mission starts with at least this share of the robots"},
     {"quorum_timeout_s", &LauncherSpec::quorum_timeout_s, positive(3600),
-     "until then all robots are waited for; the missing are named"},
-    {"time_limit_s", &LauncherSpec::time_limit_s, positive(1e6), "of mission time"},
+     "time to wait for all robots; then the missing ones are reported"},
+    {"time_limit_s", &LauncherSpec::time_limit_s, positive(1e6),
+     "longest mission time; then the run fails"},
     {"respawn_planner_max", &LauncherSpec::respawn_planner_max, between(0, 1000),
-     "times that a planner which ended is started again"},
+     "how often a planner that ended is restarted"},
     {"respawn_agent_max", &LauncherSpec::respawn_agent_max, between(0, 1000),
-     "times that a robot's process which ended is started again"},
+     "how often a robot's process that ended is restarted"},
 });
 
 }  // namespace swarm

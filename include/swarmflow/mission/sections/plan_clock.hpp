@@ -21,15 +21,15 @@ struct PlanClockSpec {
 /// Keys of the section.
 inline constexpr auto kPlanClockKeys = std::to_array<SectionKey<PlanClockSpec>>({
     {"lag_quantile", &PlanClockSpec::lag_quantile, between(0.5, 1),
-     "of the robots' lags; the plan's clock looks at this one"},
+     "quantile of the robots' lags that slows the plan's clock"},
     {"lag_free_s", &PlanClockSpec::lag_free_s, between(0, 3600),
-     "up to this lag the plan's clock advances with time"},
+     "up to this lag the plan's clock runs at full rate"},
     {"lag_stop_s", &PlanClockSpec::lag_stop_s, positive(3600),
-     "at this lag it would stand still, were there no least rate"},
+     "at this lag its rate would reach 0; rate_min bounds it"},
     {"rate_min", &PlanClockSpec::rate_min, between(0.01, 1),
-     "it advances at least this fast; 1: it never slows down"},
+     "smallest rate of the plan's clock; 1: it never slows down"},
     {"hopeless_lag_s", &PlanClockSpec::hopeless_lag_s, positive(1e6),
-     "robots later than this do not slow it down; they are named"},
+     "robots that lag more are reported and do not slow the clock"},
 });
 
 }  // namespace swarm

@@ -34,15 +34,15 @@ struct BodySpec {
 /// Keys of the body, of all robots and of each group, beside `model`, `lag_s` and the driver's
 /// options.
 inline constexpr auto kBodyKeys = std::to_array<SectionKey<BodySpec>>({
-    {"radius_m", &BodySpec::radius_m, positive(100), "of the body"},
+    {"radius_m", &BodySpec::radius_m, positive(100), "radius of the body"},
     {"speed_max_mps", &BodySpec::speed_max_mps, positive(100), "largest speed of the body"},
     {"acceleration_max_mps2", &BodySpec::acceleration_max_mps2, positive(1000),
-     "unicycle (along its heading) and double_integrator"},
+     "largest acceleration: of unicycle (along its heading) and double_integrator"},
     {"turn_rate_max_radps", &BodySpec::turn_rate_max_radps, positive(1000), "unicycle"},
     {"communication_radius_m", &BodySpec::communication_radius_m, between(0, 10'000),
-     "its communication radius; 0: link.communication_radius_m"},
+     "communication radius of the robot; 0: link.communication_radius_m"},
     {"motion_noise_m", &BodySpec::motion_noise_m, between(0, 100),
-     "standard deviation of what a control step adds to the motion, per axis"},
+     "standard deviation of the noise that each control step adds to the motion, per axis"},
     {"position_noise_m", &BodySpec::position_noise_m, between(0, 100),
      "standard deviation of the measured position, per axis"},
 });
@@ -65,7 +65,7 @@ inline constexpr double kMaxRobots = 200'000;
 
 /// Keys of the swarm as a whole, beside `groups`.
 inline constexpr auto kRobotsKeys = std::to_array<SectionKey<RobotsSpec>>({
-    {"count", &RobotsSpec::count, between(1, kMaxRobots), "robots of the swarm"},
+    {"count", &RobotsSpec::count, between(1, kMaxRobots), "number of robots"},
     {"placement_gap_m", &RobotsSpec::placement_gap_m, between(0, 100),
      "least surface gap to robots and obstacles at the start"},
 });

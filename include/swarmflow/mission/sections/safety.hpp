@@ -23,13 +23,13 @@ inline constexpr auto kSafetyKeys = std::to_array<SectionKey<SafetySpec>>({
     {"gap_share", &SafetySpec::gap_share, positive(1),
      "share of the gap that a robot may close by one command"},
     {"stale_gain", &SafetySpec::stale_gain, between(0, 100),
-     "how much slower by what is known late"},
+     "how much slower a gap may close the older the neighbour's state is"},
     {"neighbour_margin_m", &SafetySpec::neighbour_margin_m, between(0, 100),
      "surface gap that robots keep to each other"},
     {"obstacle_margin_m", &SafetySpec::obstacle_margin_m, between(0, 100),
      "surface gap that robots keep to obstacles"},
     {"follow_share", &SafetySpec::follow_share, between(0, 1),
-     "how much of a neighbour's retreat may be used"},
+     "share of a neighbour's retreating speed by which a robot may follow"},
 });
 
 }  // namespace swarm

@@ -23,13 +23,13 @@ inline constexpr auto kTimingKeys = std::to_array<SectionKey<TimingSpec>>({
     {"heartbeat_hz", &TimingSpec::heartbeat_hz, between(2, 1000),
      "the planner's heartbeats per second"},
     {"planner_silence_s", &TimingSpec::planner_silence_s, positive(3600),
-     "robots hold, avoidance on, without a heartbeat for this long"},
+     "without a heartbeat for this long robots hold; avoidance stays active"},
     {"neighbour_forget_s", &TimingSpec::neighbour_forget_s, positive(60),
      "until then the radius of a silent neighbour grows by v_max times its age"},
     {"clock_skew_warn_s", &TimingSpec::clock_skew_warn_s, positive(3600),
-     "clocks that differ by more are warned about"},
+     "a larger difference of clocks is reported"},
     {"clock_skew_refuse_s", &TimingSpec::clock_skew_refuse_s, positive(3600),
-     "messages of clocks that differ by more are refused"},
+     "messages with a larger difference of clocks are refused"},
 });
 
 }  // namespace swarm

@@ -11,8 +11,8 @@ namespace swarm::agent {
 
 /// Which neighbours count, and how much.
 struct HeadingFieldOptions {
-  double mean_m = 1.2;      ///< μ: not too near …
-  double sigma_m = 0.5;     ///< σ: … nor too far
+  double mean_m = 1.2;      ///< μ: distance of the neighbours with the largest weight
+  double sigma_m = 0.5;     ///< σ: spread of the weight around that distance
   double moving_mps = 0.3;  ///< slower neighbours count as stuck and are left out
   double strength = 0.6;    ///< of all headings together
 };

@@ -129,7 +129,7 @@ TEST(Audit, LetsTheFallenLieWhereTheyFell) {
 
   EXPECT_EQ(audit.collisions_fallen, 1U);
   EXPECT_EQ(audit.collisions_robot, 0U);
-  EXPECT_EQ(audit.reasons.back(), "1 pairs touched after one had fallen: 0-1");
+  EXPECT_EQ(audit.reasons.back(), "1 pair touched after one had died: 0-1");
 }
 
 TEST(Audit, LetsAFallenBodyLieUntilItIsCleared) {

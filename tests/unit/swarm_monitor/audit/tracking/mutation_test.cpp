@@ -145,7 +145,7 @@ TEST(Mutation, ARobotThroughAFallenOne) {
   const Audit audit = audit_of(flight);
   EXPECT_GT(audit.collisions_fallen, 0U);
   EXPECT_EQ(audit.collisions_robot, 0U);
-  EXPECT_TRUE(names(audit, "touched after one had fallen: 0-")) << all(audit);
+  EXPECT_TRUE(names(audit, "touched after one had died: 0-")) << all(audit);
 
   // The same without anybody behind it.
   PlannedRun alone = flight;
