@@ -223,6 +223,25 @@ TEST(EventCheck, RefusesLongTextsAndControlCharacters) {
                       RefusalReason::kOutOfRange));
 }
 
+// In UTF-8 a terminal also obeys C1 controls, and some code points reorder the text around them.
+TEST(EventCheck, RefusesControlsBeyondAscii) {
+  const auto check = [](const std::string& text) {
+    return check_event({.source = 0, .code = "note", .text = text}, limits());
+  };
+  for (const char* text : {"a\xC2\x9B"
+                           "31m",
+                           "\xC2\x80", "\xC2\x9F",
+                           "\xE2\x80\xAE"
+                           "gpj.exe",
+                           "\xE2\x80\xAA", "\xE2\x81\xA6", "\xE2\x81\xA9", "\xE2\x80\x8F"}) {
+    EXPECT_TRUE(refused(check(text), RefusalReason::kOutOfRange)) << text;
+  }
+  for (const char* text :
+       {"\xC2\xA0", "10 \xC2\xB5m", "\xE2\x80\x93", "\xE2\x81\xB0", "\xE2\x86\x92"}) {
+    EXPECT_TRUE(check(text)) << text;
+  }
+}
+
 TEST(EventCheck, RefusesSourcesThatAreNoneOfTheMission) {
   const auto from = [](std::uint32_t source) {
     return check_event({.source = source, .code = "exit"}, limits());
