@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include <arpa/inet.h>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -85,8 +86,10 @@ Result<HostOffer> parse_offer(const std::string& line) {
                     .first_process = whole<std::uint32_t>(json, "first_process"),
                     .fault = json.at("fault").get<std::string>(),
                     .mission_yaml = json.at("mission").get<std::string>()};
+    // It becomes a part of the DDS configuration: nothing but an address may be in it.
+    in_addr address{};
     const bool plausible =
-        offer.run.domain < 230 && offer.run.relays >= 1 && offer.run.relays <= 1000 &&
+        ::inet_pton(AF_INET, offer.run.host.c_str(), &address) == 1 && offer.run.domain < 230 && offer.run.relays >= 1 && offer.run.relays <= 1000 &&
         offer.robots >= 1 && offer.robots <= kMaxRobots && offer.first_robot <= kMaxRobots &&
         offer.first_robot + offer.robots <= kMaxRobots && offer.per_process >= 1 &&
         offer.per_process <= kMaxRobots && offer.first_process <= kMaxRobots;

@@ -147,5 +147,14 @@ TEST(HostOffer, DamagedOnTheRouteIsAnErrorOrWithinTheLimits) {
   }
 }
 
+// The host becomes a part of the DDS configuration, an XML text.
+TEST(HostOffer, TakesNothingButAnAddressForTheHost) {
+  EXPECT_TRUE(parse_offer(with("host", "192.168.7.4")));
+  for (const char* host : {"", "launcher.local", "10.0.0.1:9", "10.0.0.256",
+                           "--><Peer address='127.0.0.1:9\"/></Peers></Discovery><Tracing>"}) {
+    EXPECT_FALSE(parse_offer(with("host", host))) << host;
+  }
+}
+
 }  // namespace
 }  // namespace swarm::launcher
