@@ -67,7 +67,8 @@ Result<std::unique_ptr<AgentProcess>> AgentProcess::make(const ProcessOptions& o
   auto impl = std::make_unique<Impl>();
   impl->options = options;
   impl->mission = std::move(*mission);
-  if (options.first.value() + options.count > impl->mission.robots.count || options.count == 0) {
+  const std::uint64_t end = std::uint64_t{options.first.value()} + options.count;
+  if (end > impl->mission.robots.count || options.count == 0) {
     return fail(ErrorCode::kBadInput, fmt::format("--ids: the mission has robots 0 to {}",
                                                   impl->mission.robots.count - 1));
   }
