@@ -68,6 +68,8 @@ Act add_soak(CLI::App& program) {
   soak_app->add_option("--seed", o->seed, "Seed of placement, plan and robots (default: 1)");
   soak_app->add_option("--out", o->out, "Run directory (default: runs/soak-<time>)");
   add_domain(*soak_app, o->domain);
+  soak_app->add_flag("--urgent", o->urgent,
+                     "Raise the launcher's priority (niceness -10, for root)");
   soak_app->add_flag("--json", o->json, "Print the result as JSON");
   return [o] { return soak(*o); };
 }

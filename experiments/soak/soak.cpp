@@ -19,7 +19,7 @@ namespace swarm::launcher {
 Result<ExitCode> soak(const SoakOptions& options) {
   // The discovery server is in this process: starved by hundreds of starting agents it would answer
   // too late.
-  become_urgent();
+  if (options.urgent) become_urgent();
   const std::uint32_t robots = options.processes * options.per_process;
   auto mission = soak_mission(robots, options.rate_hz, options.duration_s);
   if (!mission) return tl::unexpected(mission.error());

@@ -24,7 +24,8 @@ struct SoakOptions {
   SoakCriteria criteria{};
   std::filesystem::path out{};  ///< run directory; empty: runs/soak-<time>
   int domain = -1;
-  bool json = false;  ///< print JSON instead of text
+  bool urgent = false;  ///< raise the launcher's priority (niceness −10)
+  bool json = false;    ///< print JSON instead of text
 };
 
 /// `swarm_launcher soak`: keeps a swarm moving for a given time and measures its link and its

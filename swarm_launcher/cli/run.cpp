@@ -84,6 +84,8 @@ Command add_run(CLI::App& program) {
   run->add_flag("--allow-control", o->how.monitors.allow_control,
                 "Let anyone with the view's address pause, stop and change the mission")
       ->needs(view);
+  run->add_flag("--urgent", o->urgent,
+                "Raise the launcher's priority (niceness -10, for root), for hundreds of processes");
   run->add_flag("--json", o->json, "Print the summary as JSON");
   return {run, [o] { return run_mission(*o); }};
 }

@@ -29,7 +29,7 @@ Machine this_machine() {
 
 // The priority is raised first, since threads started later inherit it.
 Result<ExitCode> run_mission(const RunOptions& options) {
-  become_urgent();
+  if (options.urgent) become_urgent();
   const auto catalogue = catalogue_of(options.how.agent_program, options.how.planner_program);
   if (!catalogue) return tl::unexpected(catalogue.error());
   auto mission = load_mission(options.mission_file, *catalogue);

@@ -17,6 +17,7 @@ struct RunOptions {
   std::optional<std::uint32_t> robots;       ///< instead of the mission's
   std::uint32_t per_process = 1;             ///< robots, unless `processes` is set
   std::optional<std::uint32_t> processes{};  ///< of agents; 0: chosen for this machine
+  bool urgent = false;                       ///< raise the launcher's priority (niceness −10)
   bool json = false;                         ///< print the summary as JSON
   FlightChoices how{};                       ///< everything else the user chooses
 };

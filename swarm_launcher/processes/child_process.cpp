@@ -4,7 +4,9 @@
 
 #include <cerrno>
 #include <csignal>
+#include <cstdio>
 #include <cstring>
+#include <string_view>
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -17,7 +19,7 @@ namespace swarm::launcher {
 namespace {
 
 constexpr int kUrgentNice = -10;
-constexpr int kChildNice = 5;
+constexpr int kChildNice = 5;  // above the launcher's
 // Exit code of a child that could not execute its program, as in shells.
 constexpr int kExecFailed = 127;
 
@@ -29,14 +31,29 @@ double seconds(const timeval& t) {
 
 void become_urgent() { ::setpriority(PRIO_PROCESS, 0, kUrgentNice); }
 
+// A child that cannot log is started all the same: a full disk must not end a flight.
+int open_log(const std::filesystem::path& log) {
+  const int fd = ::open(log.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
+  if (fd >= 0) return fd;
+  std::fprintf(stderr, "cannot open %s: %s; the process runs without a log\n", log.c_str(),
+               std::strerror(errno));
+  return ::open("/dev/null", O_WRONLY | O_CLOEXEC);
+}
+
+// When memory runs out, the kernel is to end a child, which can be restarted, and not the launcher.
+// Only async-signal-safe calls.
+void become_first_victim() {
+  const int fd = ::open("/proc/self/oom_score_adj", O_WRONLY | O_CLOEXEC);
+  if (fd < 0) return;
+  constexpr std::string_view kScore = "500";
+  [[maybe_unused]] const auto wrote = ::write(fd, kScore.data(), kScore.size());
+  ::close(fd);
+}
+
 // fork() and exec() instead of posix_spawn(), which cannot set the parent-death signal.
 Result<pid_t> start_process(const std::vector<std::string>& command_line,
                             const std::filesystem::path& log) {
-  const int log_fd = ::open(log.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
-  if (log_fd < 0) {
-    return fail(ErrorCode::kEnvironment,
-                fmt::format("cannot open {}: {}", log.string(), std::strerror(errno)));
-  }
+  const int log_fd = open_log(log);
   std::vector<char*> argv;
   for (const std::string& word : command_line) argv.push_back(const_cast<char*>(word.c_str()));
   argv.push_back(nullptr);
@@ -59,11 +76,14 @@ Result<pid_t> start_process(const std::vector<std::string>& command_line,
     ::prctl(PR_SET_PDEATHSIG, SIGTERM);
     // The launcher may have died before the death signal was set.
     if (::getppid() != parent) ::_exit(kExecFailed);
-    ::setpriority(PRIO_PROCESS, 0, kChildNice);
+    ::setpriority(PRIO_PROCESS, 0, ::getpriority(PRIO_PROCESS, 0) + kChildNice);
+    become_first_victim();
     ::dup2(log_fd, STDOUT_FILENO);
     ::dup2(log_fd, STDERR_FILENO);
     const int null_fd = ::open("/dev/null", O_RDONLY);
     if (null_fd >= 0) ::dup2(null_fd, STDIN_FILENO);
+    // Sockets and files of the launcher stay with it, also those that libraries opened.
+    ::close_range(STDERR_FILENO + 1, ~0U, CLOSE_RANGE_CLOEXEC);
     ::execv(argv[0], argv.data());
     ::_exit(kExecFailed);
   }

@@ -23,8 +23,11 @@ void become_urgent();
 /// Starts a program with stdout and stderr appended to `log`. The child
 ///  - is in a process group of its own, so that Ctrl-C at the terminal reaches the launcher alone,
 ///  - gets SIGTERM from the kernel when the launcher dies, so that no process is orphaned,
-///  - has a lower priority (nice 5) than the launcher, which must get CPU time beside hundreds of
-///  them.
+///  - has a lower priority than the launcher (5 more niceness), which must get CPU time beside
+///    hundreds of them,
+///  - is ended by the kernel before the launcher when memory runs out (oom_score_adj 500),
+///  - has no file or socket of the launcher.
+/// Without its log it runs all the same, and a line on stderr says so.
 /// Call it from a thread that runs as long as the launcher: the kernel monitors that thread.
 Result<pid_t> start_process(const std::vector<std::string>& command_line,
                             const std::filesystem::path& log);

@@ -9,6 +9,7 @@
 #include <thread>
 #include <vector>
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/prctl.h>
 #include <unistd.h>
@@ -134,13 +135,26 @@ TEST_F(ChildProcess, OfAProgramThatIsNotThereEndsAsInAShell) {
   EXPECT_EQ(reap().exit.code, 127);
 }
 
-TEST_F(ChildProcess, IsNotStartedWithoutItsLog) {
+TEST_F(ChildProcess, RunsWithoutItsLogAndReportsThat) {
   const auto log = folder_ / "none/log";
-  const auto refused = start_process({"/bin/true"}, log);
-  ASSERT_FALSE(refused);
-  EXPECT_EQ(refused.error().code, ErrorCode::kEnvironment);
-  EXPECT_EQ(refused.error().message, "cannot open " + log.string() + ": No such file or directory");
-  EXPECT_FALSE(reap_child());
+  testing::internal::CaptureStderr();
+  const auto pid = start_process({"/bin/sh", "-c", "echo lost; exit 3"}, log);
+  const std::string said = testing::internal::GetCapturedStderr();
+  ASSERT_TRUE(pid) << pid.error().message;
+  EXPECT_EQ(reap().exit.code, 3);
+  EXPECT_NE(said.find("cannot open " + log.string() + ": No such file or directory"),
+            std::string::npos)
+      << said;
+}
+
+// Descriptors are counted from inside: those of the shell, and the directory that it lists.
+TEST_F(ChildProcess, HasNoOtherFilesAndIsTheFirstVictimOfTheOomKiller) {
+  const int inherited = ::open("/dev/null", O_RDONLY);  // without O_CLOEXEC, as of a library
+  ASSERT_GE(inherited, 0);
+  start_shell("cat /proc/self/oom_score_adj; ls /proc/$$/fd | tr '\\n' ' '");
+  EXPECT_EQ(reap().exit.code, 0);
+  ::close(inherited);
+  EXPECT_EQ(log(), "500\n0 1 2 ");
 }
 
 // A launcher in between starts a process and dies. The kernel gives the orphan to this test, which
