@@ -14,7 +14,6 @@ namespace {
 // A process that has not been received after this time no longer delays the next starts.
 constexpr Duration kStartTimeout = std::chrono::seconds(5);
 // A process that fails immediately is not restarted in a tight loop.
-constexpr Duration kRespawnDelay = std::chrono::milliseconds(300);
 // An emergency stop is sent 15 times within 1.5 s, because it must get through a degraded network.
 constexpr Duration kStopRepeat = std::chrono::milliseconds(100);
 constexpr std::uint32_t kStopRepeats = 15;
@@ -120,7 +119,7 @@ void Supervisor::on_joined(ProcessIndex first, std::uint32_t count, SteadyTime n
 }
 
 // In this order: the run is ending; a remote process before the start, which another host may
-// replace; restart; given up. A planner without restarts left ends the run.
+// replace; restart; given up.
 void Supervisor::on_exit(ProcessIndex process, const ProcessExit& exit, SteadyTime now) {
   Process& p = processes_.at(process.value());
   p.alive = false;
@@ -143,11 +142,19 @@ void Supervisor::on_exit(ProcessIndex process, const ProcessExit& exit, SteadyTi
   const bool hopeless = is_planner && exit.signal == 0 &&
                         (exit.code == static_cast<int>(ExitCode::kCriteriaNotMet) ||
                          exit.code == static_cast<int>(ExitCode::kUsage));
+  const Duration delay = p.restarts.on_exit(now);
   const std::uint32_t allowed =
       is_planner ? options_.launcher.respawn_planner_max : options_.launcher.respawn_agent_max;
-  if (!hopeless && !is_remote(process) && p.respawns < allowed) {
+  const bool is_spent = p.restarts.deaths_in_a_row() > allowed;
+  const bool is_needed = is_planner && stage_ == Stage::kRunning;
+  if (!hopeless && !is_remote(process) && (!is_spent || is_needed)) {
     p.respawn_due = true;
-    p.respawn_at = now + kRespawnDelay;
+    p.respawn_at = now + delay;
+    if (is_spent) hold_without_planner(p.restarts.deaths_in_a_row());
+    return;
+  }
+  if (is_needed) {
+    hold_without_planner(0);
     return;
   }
   if (is_planner) {
@@ -155,6 +162,17 @@ void Supervisor::on_exit(ProcessIndex process, const ProcessExit& exit, SteadyTi
     return;
   }
   for (std::uint32_t i = 0; i < count; ++i) robots_[first.value() + i].lost = true;
+}
+
+// Robots without a planner hold by themselves: ending their processes would not be safer.
+void Supervisor::hold_without_planner(std::uint32_t deaths) {
+  pending_log_.push_back(
+      {.warning = true,
+       .code = "planner-given-up",
+       .text = deaths == 0 ? "the planner cannot plan any more: the robots hold"
+                           : fmt::format("the planner ended {} times in a row: the robots hold "
+                                         "until a restart helps",
+                                         deaths)});
 }
 
 // Queued until the next step, which decides with all commands in their order.
@@ -205,7 +223,8 @@ void Supervisor::start_due(SteadyTime now, std::vector<Action>& actions) {
     if (!p.respawn_due || now < p.respawn_at) continue;
     p.respawn_due = false;
     p.alive = true;
-    ++p.respawns;
+    p.started_at = now;
+    p.restarts.on_start(now);
     actions.emplace_back(StartProcess{ProcessIndex(i)});
     actions.emplace_back(LogEvent{
         .code = "respawn",
@@ -219,6 +238,7 @@ void Supervisor::start_due(SteadyTime now, std::vector<Action>& actions) {
          starting++ < options_.launcher.starting_max) {
     processes_[next_start_].alive = processes_[next_start_].started = true;
     processes_[next_start_].started_at = now;
+    processes_[next_start_].restarts.on_start(now);
     actions.emplace_back(StartProcess{ProcessIndex(next_start_++)});
     last_start_ = now;
   }

@@ -8,6 +8,7 @@
 #include <variant>
 #include <vector>
 
+#include "swarm_launcher/supervision/restart_policy.hpp"
 #include "swarmflow/core/ids.hpp"
 #include "swarmflow/core/strong_id.hpp"
 #include "swarmflow/core/time.hpp"
@@ -121,7 +122,9 @@ class Supervisor {
   }
   /// Another host has taken over `count` processes from `first` on.
   void on_joined(ProcessIndex first, std::uint32_t count, SteadyTime now);
-  /// A process has ended: it is restarted if allowed, otherwise its robots are lost.
+  /// A process has ended. An agent process is restarted while it died no more often in a row than
+  /// the mission allows (see RestartPolicy), and then its robots are lost. The planner is restarted
+  /// for as long as robots need it: without it they hold, so it never ends a mission in flight.
   void on_exit(ProcessIndex process, const ProcessExit& exit, SteadyTime now);
   /// A robot is silent: nothing is received from it, for whatever reason. It is assumed to stay
   /// where it is, as an obstacle, until it reports again.
@@ -164,7 +167,7 @@ class Supervisor {
     bool alive = false;
     bool started = false;
     SteadyTime started_at;
-    std::uint32_t respawns = 0;
+    RestartPolicy restarts{};
     SteadyTime respawn_at;  ///< when it may be restarted
     bool respawn_due = false;
   };
@@ -192,6 +195,7 @@ class Supervisor {
   bool has_failed(const Robot& robot) const {
     return robot.report.mode == RobotMode::kStopped && phase_ != MissionPhase::kStopped;
   }
+  void hold_without_planner(std::uint32_t deaths);
   void repeat_stop(SteadyTime now, std::vector<Action>& actions);
   void begin_ending(Outcome outcome, SteadyTime now);
   void end(SteadyTime now, std::vector<Action>& actions);

@@ -140,7 +140,7 @@ TEST(SupervisorRules, RestartAPlannerUnlessItReportsThatItCannotPlan) {
     const auto starts = all_of<StartProcess>(sut.step(at_s(2.3)));
     const bool hopeless = code == 1 || code == 3;  // criteria not met, usage
     EXPECT_EQ(starts.size(), hopeless ? 0U : 1U) << "code " << code;
-    EXPECT_EQ(sut.outcome(), hopeless ? Outcome::kPlannerFailed : Outcome::kNone);
+    EXPECT_EQ(sut.outcome(), Outcome::kNone) << "robots in flight hold without it";
   }
   Supervisor sut = running(options_of(2));
   sut.on_exit(kPlanner, {.code = 1, .signal = 11}, at_s(2));
@@ -153,22 +153,22 @@ TEST(SupervisorRules, AllowEachProcessItsOwnRestartsAndNoMore) {
     options.launcher.respawn_agent_max = allowed;
     Supervisor sut = running(options);
     double t = 2.0;
-    for (std::uint32_t death = 1; death <= allowed + 1; ++death, t += 1.0) {
+    for (std::uint32_t death = 1; death <= allowed + 1; ++death, t += 3.0) {
       for (const std::uint32_t process : {1U, 3U}) {
         sut.on_exit(ProcessIndex(process), {.code = 0, .signal = 9}, at_s(t));
       }
-      const auto starts = all_of<StartProcess>(sut.step(at_s(t + 0.5)));
+      const auto starts = all_of<StartProcess>(sut.step(at_s(t + 2.5)));
       EXPECT_EQ(starts.size(), death <= allowed ? 2U : 0U);
       EXPECT_EQ(sut.lost().size(), death <= allowed ? 0U : 2U);
     }
     EXPECT_EQ(sut.lost(), (std::vector<RobotId>{RobotId(0), RobotId(2)}));
     EXPECT_EQ(sut.stage(), Stage::kRunning) << "robot 1 is left";
     sut.on_exit(ProcessIndex(2), {}, at_s(t));
-    for (std::uint32_t i = 0; i < allowed; ++i, t += 1.0) {
-      sut.step(at_s(t + 0.5));
-      sut.on_exit(ProcessIndex(2), {}, at_s(t + 0.6));
+    for (std::uint32_t i = 0; i < allowed; ++i, t += 3.0) {
+      sut.step(at_s(t + 2.5));
+      sut.on_exit(ProcessIndex(2), {}, at_s(t + 2.6));
     }
-    sut.step(at_s(t + 0.7));
+    sut.step(at_s(t + 2.7));
     EXPECT_EQ(sut.outcome(), Outcome::kAllLost);
   }
 }

@@ -3,6 +3,7 @@
 #include "swarm_launcher/supervision/supervisor.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include <gtest/gtest.h>
@@ -350,14 +351,44 @@ TEST(Supervisor, RestartsAPlannerThatCrashedButNotOneThatCannotPlan) {
   EXPECT_EQ(infeasible.sut->outcome(), Outcome::kPlannerFailed);
 }
 
-TEST(Supervisor, GivesUpOnAPlannerThatKeepsCrashing) {
+// Robots without a planner hold: that is no reason to end their processes.
+TEST(Supervisor, RestartsAPlannerThatKeepsCrashingInFlightEverMoreSlowly) {
   Running bench(3);
+  bench.options.launcher.time_limit_s = 1e6;
   bench.start();
-  for (int i = 0; i < 4; ++i) {
+  const auto starts = [&] { return std::count(bench.started.begin(), bench.started.end(), 0U); };
+  for (int deaths = 1; deaths <= 10; ++deaths) {
+    const auto before = starts();
     bench.sut->on_exit(kPlanner, {.code = 0, .signal = 11}, bench.now);
-    bench.run_for(seconds(1));
+    const double delay_s = std::min(30.0, 0.3 * std::pow(2.0, deaths - 1));
+    bench.run_for(milliseconds(static_cast<int>(1000 * delay_s) - 100));
+    ASSERT_EQ(starts(), before) << deaths;
+    bench.run_for(milliseconds(200));
+    ASSERT_EQ(starts(), before + 1) << deaths;
+    ASSERT_EQ(bench.sut->stage(), Supervisor::Stage::kRunning);
   }
+}
 
+TEST(Supervisor, ForgetsTheDeathsOfAPlannerThatWasWell) {
+  Running bench(3);
+  bench.options.launcher.time_limit_s = 1e6;
+  bench.start();
+  const auto starts = [&] { return std::count(bench.started.begin(), bench.started.end(), 0U); };
+  for (int deaths = 1; deaths <= 20; ++deaths) {
+    bench.run_for(seconds(30));
+    bench.sut->on_exit(kPlanner, {.code = 0, .signal = 11}, bench.now);
+    bench.run_for(milliseconds(400));
+    ASSERT_EQ(starts(), 1 + deaths);
+  }
+}
+
+TEST(Supervisor, EndsBeforeTheStartWhenThePlannerKeepsCrashing) {
+  Bench bench(3);
+  bench.run_for(milliseconds(200));
+  for (int deaths = 1; deaths <= 4; ++deaths) {
+    bench.sut->on_exit(kPlanner, {.code = 0, .signal = 11}, bench.now);
+    bench.run_for(seconds(3));
+  }
   EXPECT_EQ(bench.sut->outcome(), Outcome::kPlannerFailed);
 }
 
