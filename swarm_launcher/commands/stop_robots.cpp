@@ -36,7 +36,7 @@ std::string list_of(const std::vector<RobotId>& robots) {
   return text;
 }
 
-/// Without an answer of the launcher, the robots' own confirmations tell.
+/// The result by the robots' own confirmations, for want of an answer of the launcher.
 ExitCode report(const StopOrder& order) {
   if (order.is_complete()) {
     std::printf("done: all %u robots confirmed that they stopped; the launcher did not answer\n",

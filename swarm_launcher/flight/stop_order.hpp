@@ -14,7 +14,7 @@
 namespace swarm::launcher {
 
 /// An emergency stop that a process sends to the robots on the stop channel, and the robots that
-/// have confirmed it. Single thread; told the time.
+/// have confirmed it. Single thread; the time is passed in.
 class StopOrder {
  public:
   /// `robots`: number of robots of the run, if it is known.

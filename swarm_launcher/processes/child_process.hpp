@@ -27,7 +27,7 @@ void become_urgent();
 ///    hundreds of them,
 ///  - is ended by the kernel before the launcher when memory runs out (oom_score_adj 500),
 ///  - has no file or socket of the launcher.
-/// Without its log it runs all the same, and a line on stderr says so.
+/// Without its log it runs all the same, and a line on stderr reports it.
 /// Call it from a thread that runs as long as the launcher: the kernel monitors that thread.
 Result<pid_t> start_process(const std::vector<std::string>& command_line,
                             const std::filesystem::path& log);

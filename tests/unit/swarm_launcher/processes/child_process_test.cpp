@@ -139,12 +139,12 @@ TEST_F(ChildProcess, RunsWithoutItsLogAndReportsThat) {
   const auto log = folder_ / "none/log";
   testing::internal::CaptureStderr();
   const auto pid = start_process({"/bin/sh", "-c", "echo lost; exit 3"}, log);
-  const std::string said = testing::internal::GetCapturedStderr();
+  const std::string reported = testing::internal::GetCapturedStderr();
   ASSERT_TRUE(pid) << pid.error().message;
   EXPECT_EQ(reap().exit.code, 3);
-  EXPECT_NE(said.find("cannot open " + log.string() + ": No such file or directory"),
+  EXPECT_NE(reported.find("cannot open " + log.string() + ": No such file or directory"),
             std::string::npos)
-      << said;
+      << reported;
 }
 
 // Descriptors are counted from inside: those of the shell, and the directory that it lists.

@@ -51,7 +51,7 @@ TEST_F(StopChannel, BringsConfirmationsToThoseWhoSent) {
   asked->send(kStopMessage);
   ASSERT_TRUE(robots->take());
   robots->confirm({.first_robot_id = 40, .robots = 3});
-  robots->confirm({.first_robot_id = 40, .robots = 3});  // to nobody: no stop since the last
+  robots->confirm({.first_robot_id = 40, .robots = 3});  // no stop since the last one
   std::vector<StopConfirmation> to_asked, to_silent;
   asked->take(to_asked);
   silent->take(to_silent);
@@ -91,7 +91,7 @@ TEST_F(StopChannel, GetsThroughALossyNetworkByRepetition) {
   EXPECT_EQ(reached, 50);
 }
 
-TEST_F(StopChannel, SaysWhenTheInterfaceCarriesNoMulticast) {
+TEST_F(StopChannel, ReportsAnInterfaceThatCarriesNoMulticast) {
   const auto made = StopReceiver::open({.domain = kDomain, .interface = "203.0.113.7"});
   ASSERT_FALSE(made);
   EXPECT_EQ(made.error().code, ErrorCode::kEnvironment);
