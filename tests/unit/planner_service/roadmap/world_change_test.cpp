@@ -57,7 +57,8 @@ TEST(WorldChange, IsTheDifferenceOfTwoMultisetsOfShapes) {
     }
     const auto boxes_of = [](const std::vector<Obstacle>& obstacles) {
       std::vector<Box> boxes;
-      for (const ConvexObstacle& part : world_of(obstacles).convex_obstacles()) {
+      const World world = world_of(obstacles);
+      for (const ConvexObstacle& part : world.convex_obstacles()) {
         boxes.push_back(part.box);
       }
       return boxes;

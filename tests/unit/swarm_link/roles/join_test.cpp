@@ -59,14 +59,14 @@ TEST(Join, RefusesTheDiscoveryServerToCycloneDds) {
     return joined ? "" : std::string(joined.error().message);
   };
   const std::string reason =
-      " cyclonedds: a discovery server of Fast DDS is not for Cyclone DDS; use --channel groups, "
+      "cyclonedds: a discovery server of Fast DDS is not for Cyclone DDS; use --channel groups, "
       "whose processes meet without one";
   const auto launcher = join_as_launcher({.launcher = Vendor::kCycloneDds});
-  EXPECT_EQ(refusal(launcher), "--launcher-dds" + reason);
+  EXPECT_EQ(refusal(launcher), "--dds launcher=" + reason);
   EXPECT_EQ(launcher.error().code, ErrorCode::kBadInput);
   EXPECT_EQ(refusal(join_as_planner({.planner = Vendor::kCycloneDds}, 1)),
-            "--planner-dds" + reason);
-  EXPECT_EQ(refusal(join_as_agent({}, 0, "robot", Vendor::kCycloneDds)), "--dds" + reason);
+            "--dds planner=" + reason);
+  EXPECT_EQ(refusal(join_as_agent({}, 0, "robot", Vendor::kCycloneDds)), "--dds " + reason);
 }
 
 TEST(MeetingOf, IsThatOfTheRunAndTheFaultsOfTheProcess) {
@@ -74,7 +74,7 @@ TEST(MeetingOf, IsThatOfTheRunAndTheFaultsOfTheProcess) {
                            .discovery_host = "127.0.0.2",
                            .discovery_port = 4711,
                            .relays = 3,
-                           .cyclone_planner = true,
+                           .planner = Vendor::kCycloneDds,
                            .host = "127.0.0.3",
                            .interface = "127.0.0.4"};
 
@@ -90,7 +90,7 @@ TEST(MeetingOf, IsThatOfTheRunAndTheFaultsOfTheProcess) {
   EXPECT_EQ(meeting.interface, "127.0.0.4");
   EXPECT_EQ(meeting.faults.faults.loss, 0.25);
   EXPECT_EQ(meeting.faults.seed, 5U);
-  EXPECT_EQ(meeting_of({.cyclone_launcher = true}).launcher, Vendor::kCycloneDds);
+  EXPECT_EQ(meeting_of({.launcher = Vendor::kCycloneDds}).launcher, Vendor::kCycloneDds);
 }
 
 }  // namespace
