@@ -93,20 +93,64 @@ Front front_of(View bytes) {
                            .size = kRecordHead + length}};
 }
 
+/// Whether the bytes after a record could be the next one, or the end of the file.
+bool could_follow(View bytes) {
+  constexpr std::size_t kLeast = 4;  // content of a data end, the shortest record of the format
+  const auto next = front_of(bytes).record;
+  return bytes.empty() || (next && (next->op > Op::kDataEnd || next->content.size() >= kLeast));
+}
+
+/// The fields of a chunk, and whether all of them are there.
+struct ChunkFields {
+  std::int64_t begin_ns = 0, end_ns = 0;
+  std::uint64_t size = 0;  // unpacked
+  std::uint32_t crc = 0;
+  std::string compression{};
+  View records{};
+  View beyond{};  // fields of a later version of the format
+  bool good = false;
+};
+
+ChunkFields chunk_fields(View content) {
+  Get get(content);
+  ChunkFields chunk;
+  chunk.begin_ns = get.number<std::int64_t>();
+  chunk.end_ns = get.number<std::int64_t>();
+  chunk.size = get.number<std::uint64_t>();
+  chunk.crc = get.number<std::uint32_t>();
+  chunk.compression = get.text();
+  chunk.records = get.long_bytes();
+  chunk.beyond = get.rest();
+  chunk.good = get.good() && chunk.size <= kMaxChunkBytes;
+  return chunk;
+}
+
 /// One pass over the records of a file. After a damaged record it searches for the next chunk with
-/// a correct checksum.
+/// a correct checksum. Records may be longer than the fields known here, and their opcodes may be
+/// unknown, as the format may grow by both. A damaged length or opcode looks the same, so
+/// such a record counts only if another one follows it.
 class FileReader {
  public:
   explicit FileReader(const Handlers& handlers) : handlers_(handlers) {}
+
+  /// The compression of the chunks if it is unknown here and not one chunk could be unpacked;
+  /// otherwise empty. A single chunk with an unknown compression is damaged.
+  const std::string& unknown_compression() const {
+    static const std::string kNone;
+    return any_unpacked_ ? kNone : unknown_compression_;
+  }
 
   Damage read(View bytes) {
     View rest = bytes.subspan(kMagic.size());
     bool in_damage = false;
     while (!rest.empty()) {
-      if (damage_.ended) break;
+      if (damage_.ended || (handlers_.go_on && !handlers_.go_on())) break;
       const Front front = front_of(rest);
       // After damage reading resumes at a chunk only, whose checksum proves that it is a record.
-      const bool trusted = front.record && (!in_damage || front.record->op == Op::kChunk);
+      if (front.record) after_ = rest.subspan(front.record->size);
+      const bool chunk = front.record && front.record->op == Op::kChunk;
+      const bool trusted =
+          front.record && (chunk || !(in_damage || is_chunk(front.record->content)));
       if (trusted && take(*front.record)) {
         rest = rest.subspan(front.record->size);
         in_damage = false;
@@ -153,15 +197,25 @@ class FileReader {
       case Op::kMessageIndex: {
         Get get(record.content);
         get.number<std::uint16_t>();
-        return get.number<std::uint32_t>() == get.rest().size() && get.good();
+        const std::size_t entries = get.number<std::uint32_t>();
+        const std::size_t rest = get.rest().size();
+        return get.good() && (entries == rest || (entries < rest && could_follow(after_)));
       }
       default:
-        // Opcodes from 0x80 on are private records of other programs, or a chunk whose opcode was
-        // damaged; both are skipped and counted. All other opcodes occur only after the data end.
-        if (static_cast<std::uint8_t>(record.op) < 0x80) return false;
-        ++damage_.damaged;
-        return true;
+        // The other opcodes of the format occur only after the data end.
+        if (static_cast<std::uint8_t>(record.op) <= static_cast<std::uint8_t>(Op::kDataEnd)) {
+          return false;
+        }
+        // Of a later version of the format, or (from 0x80 on) of an application.
+        return could_follow(after_);
     }
+  }
+
+  /// Whether the content of another record is that of a chunk with a correct checksum: then the
+  /// opcode is damaged.
+  bool is_chunk(View content) {
+    const ChunkFields chunk = chunk_fields(content);
+    return chunk.good && chunk.crc != 0 && unpack(chunk).has_value();
   }
 
   // Schemas and channels may be repeated in a file; the last one counts.
@@ -208,27 +262,14 @@ class FileReader {
   // Checks size, checksum and times of a chunk before it passes on the first message: handlers
   // receive no message of a chunk whose checksum is wrong.
   bool take_chunk(View content) {
-    Get get(content);
-    const auto begin_ns = get.number<std::int64_t>();
-    const auto end_ns = get.number<std::int64_t>();
-    const auto size = get.number<std::uint64_t>();
-    const auto crc = get.number<std::uint32_t>();
-    const std::string compression = get.text();
-    View records = get.long_bytes();
-    if (!get.good() || !get.rest().empty() || size > kMaxChunkBytes) return false;
+    const ChunkFields chunk = chunk_fields(content);
+    if (!chunk.good || (!chunk.beyond.empty() && !could_follow(after_))) return false;
     // A chunk may declare channels, so none is skipped before the first channel is known.
-    if (end_ns < handlers_.from_ns && !channels_.empty()) return true;
-    if (compression == "zstd") {
-      unpacked_.resize(size);
-      if (::ZSTD_decompress(unpacked_.data(), size, records.data(), records.size()) != size) {
-        return false;
-      }
-      records = unpacked_;
-    } else if (!compression.empty()) {
-      return false;
-    }
-    if (records.size() != size || (crc != 0 && crc_of(records) != crc)) return false;
-    if (!times_are(records, begin_ns, end_ns)) return false;
+    if (chunk.end_ns < handlers_.from_ns && !channels_.empty()) return true;
+    const auto unpacked = unpack(chunk);
+    if (!unpacked || !times_are(*unpacked, chunk.begin_ns, chunk.end_ns)) return false;
+    any_unpacked_ = true;
+    View records = *unpacked;
     while (!records.empty()) {
       const Front front = front_of(records);
       const Op op = front.record->op;
@@ -238,6 +279,26 @@ class FileReader {
       records = records.subspan(front.record->size);
     }
     return true;
+  }
+
+  /// The records of a chunk; nothing if size or checksum are wrong or the compression is unknown.
+  std::optional<View> unpack(const ChunkFields& chunk) {
+    View records = chunk.records;
+    if (chunk.compression == "zstd") {
+      unpacked_.resize(chunk.size);
+      if (::ZSTD_decompress(unpacked_.data(), chunk.size, records.data(), records.size()) !=
+          chunk.size) {
+        return std::nullopt;
+      }
+      records = unpacked_;
+    } else if (!chunk.compression.empty()) {
+      if (unknown_compression_.empty()) unknown_compression_ = chunk.compression;
+      return std::nullopt;
+    }
+    if (records.size() != chunk.size || (chunk.crc != 0 && crc_of(records) != chunk.crc)) {
+      return std::nullopt;
+    }
+    return records;
   }
 
   /// Whether a chunk consists of whole records and its begin and end time, which the checksum does
@@ -292,7 +353,18 @@ class FileReader {
   std::unordered_map<std::uint16_t, Schema> schemas_;
   std::unordered_map<std::uint16_t, Channel> channels_;
   Bytes unpacked_;
+  View after_;  // what follows the record that is being read
+  std::string unknown_compression_;
+  bool any_unpacked_ = false;
 };
+
+/// A text of a file as it may be printed: its first printable characters.
+std::string printable(const std::string& text) {
+  constexpr std::size_t kShown = 32;
+  std::string shown;
+  for (const char c : text.substr(0, kShown)) shown += c >= ' ' && c <= '~' ? c : '?';
+  return shown;
+}
 
 }  // namespace
 
@@ -307,7 +379,15 @@ Result<Damage> read(const std::filesystem::path& file, const Handlers& handlers)
     return fail(ErrorCode::kBadInput,
                 fmt::format("{}: no recording: it does not begin as MCAP files do", file.string()));
   }
-  return FileReader(handlers).read(bytes);
+  FileReader reader(handlers);
+  const Damage damage = reader.read(bytes);
+  if (const std::string& name = reader.unknown_compression(); !name.empty()) {
+    return fail(ErrorCode::kBadInput,
+                fmt::format("{}: its chunks are compressed by '{}'; this program reads zstd and "
+                            "uncompressed chunks",
+                            file.string(), printable(name)));
+  }
+  return damage;
 }
 
 }  // namespace swarm::mcap

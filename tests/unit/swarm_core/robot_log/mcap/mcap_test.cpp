@@ -203,6 +203,140 @@ TEST_P(Mcap, DoesNotOverwrite) {
   EXPECT_FALSE(Writer::create(file_, GetParam()));
 }
 
+/// Files as programs of later versions of the format, or of others, write them.
+class McapOfOthers : public Mcap {
+ protected:
+  /// Schema, channel and messages from `first` on in one chunk.
+  static ChunkContent chunk_of(std::uint32_t first, std::uint32_t messages) {
+    ChunkContent chunk;
+    append_schema(chunk.records, schema_named("A"));
+    append_channel(chunk.records, {.id = 0, .schema = 0, .topic = "a", .encoding = "cdr"});
+    for (std::uint32_t i = first; i < first + messages; ++i) {
+      chunk.add({.channel = 0,
+                 .sequence = i,
+                 .log_time_ns = i,
+                 .publish_time_ns = i,
+                 .data = bytes_of("some data")});
+    }
+    return chunk;
+  }
+  static Bytes chunk_record(std::uint32_t first, std::uint32_t messages) {
+    Bytes record;
+    append_chunk(record, chunk_of(first, messages), GetParam());
+    return record;
+  }
+  static Bytes record_of(unsigned opcode, const std::string& content) {
+    Bytes record;
+    Put put(record);
+    const std::size_t begin = put.begin_record(static_cast<Op>(opcode));
+    put.bytes(bytes_of(content));
+    put.end_record(begin);
+    return record;
+  }
+  /// The same record with fields that this version does not know.
+  static Bytes extended(Bytes record) {
+    const std::string added("\0\xFF new field", 12);
+    record.insert(record.end(), added.begin(), added.end());
+    const std::uint64_t length = record.size() - 9;
+    for (std::size_t i = 0; i < 8; ++i) {
+      record[1 + i] = static_cast<unsigned char>(length >> (8 * i));
+    }
+    return record;
+  }
+  Content content_of_records(const std::vector<Bytes>& records) const {
+    Bytes all(kMagic.begin(), kMagic.end());
+    append_header(all, "another writer");
+    for (const Bytes& record : records) all.insert(all.end(), record.begin(), record.end());
+    all.insert(all.end(), plain_end().begin(), plain_end().end());
+    std::ofstream(file_, std::ios::binary | std::ios::trunc)
+        .write(reinterpret_cast<const char*>(all.data()), static_cast<std::streamsize>(all.size()));
+    return content_of(file_);
+  }
+};
+
+TEST_P(McapOfOthers, PassesOverRecordsThatItDoesNotKnow) {
+  for (const unsigned opcode : {0x10U, 0x42U, 0x7FU, 0x80U, 0x85U, 0xFFU}) {
+    const Bytes other = record_of(opcode, "calibration");
+    const Content content =
+        content_of_records({other, chunk_record(0, 3), other, chunk_record(3, 3), other});
+    EXPECT_EQ(content.messages.size(), 6U) << opcode;
+    EXPECT_EQ(content.damage.damaged, 0U) << opcode;
+    EXPECT_TRUE(content.damage.ended) << opcode;
+  }
+}
+
+TEST_P(McapOfOthers, PassesOverFieldsThatItDoesNotKnow) {
+  Bytes metadata;
+  append_metadata(metadata, {.name = "about", .values = {{"where", "hall"}}});
+  Bytes attachment;
+  append_attachment(attachment, {.log_time_ns = 1, .name = "n", .media_type = "t", .data = "d"});
+  const Bytes index = record_of(0x07, std::string(6, '\0'));  // of channel 0, without entries
+  const Content content =
+      content_of_records({extended(metadata), extended(attachment), extended(chunk_record(0, 3)),
+                          extended(index), extended(chunk_record(3, 3)), extended(index)});
+  EXPECT_EQ(content.messages.size(), 6U);
+  EXPECT_EQ(content.metadata.size(), 1U);
+  EXPECT_EQ(content.attachments.size(), 1U);
+  EXPECT_EQ(content.damage.damaged, 0U);
+}
+
+TEST_P(McapOfOthers, RecognisesAChunkWithADamagedOpcode) {
+  for (unsigned bit = 0; bit < 8; ++bit) {
+    Bytes broken = chunk_record(3, 3);
+    broken[0] = static_cast<unsigned char>(broken[0] ^ (1U << bit));
+    const Content content = content_of_records({chunk_record(0, 3), broken, chunk_record(6, 3)});
+    EXPECT_EQ(content.messages.size(), 6U) << bit;
+    EXPECT_EQ(content.damage.damaged, 1U) << bit;
+  }
+}
+
+TEST_P(McapOfOthers, DoesNotTakeADamagedLengthForNewFields) {
+  Bytes broken = chunk_record(3, 3);
+  broken[1] = static_cast<unsigned char>(broken[1] + 20);
+  const Content content = content_of_records({chunk_record(0, 3), broken, chunk_record(6, 3)});
+  EXPECT_EQ(content.damage.damaged, 1U);
+  EXPECT_EQ(content.messages.size(), 6U);
+}
+
+TEST_P(McapOfOthers, RefusesAnUnknownCompressionByItsName) {
+  Bytes record;
+  Put put(record);
+  const std::size_t begin = put.begin_record(Op::kChunk);
+  put.number(std::int64_t{0});
+  put.number(std::int64_t{1});
+  put.number(std::uint64_t{10});
+  put.number(std::uint32_t{0});
+  put.text("lz4");
+  put.number(std::uint64_t{4});
+  put.bytes(bytes_of("abcd"));
+  put.end_record(begin);
+  Bytes all(kMagic.begin(), kMagic.end());
+  all.insert(all.end(), record.begin(), record.end());
+  std::ofstream(file_, std::ios::binary)
+      .write(reinterpret_cast<const char*>(all.data()), static_cast<std::streamsize>(all.size()));
+
+  const auto damage = read(file_, {});
+
+  ASSERT_FALSE(damage);
+  EXPECT_NE(damage.error().message.find("'lz4'"), std::string::npos) << damage.error().message;
+}
+
+TEST_P(McapOfOthers, EndsWhereTheReaderWantsNoMore) {
+  content_of_records({chunk_record(0, 3), chunk_record(3, 3), chunk_record(6, 3)});
+  int taken = 0;
+  const auto damage =
+      read(file_, {.message = [&](const Message&, const Channel&, const Schema&) { ++taken; },
+                   .go_on = [&] { return taken < 3; }});
+  ASSERT_TRUE(damage);
+  EXPECT_EQ(taken, 3);
+  EXPECT_EQ(damage->damaged, 0U);
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, McapOfOthers, testing::Values(Compression::kNone, Compression::kZstd),
+                         [](const auto& param) {
+                           return param.param == Compression::kNone ? "Plain" : "Zstd";
+                         });
+
 INSTANTIATE_TEST_SUITE_P(Of, Mcap, testing::Values(Compression::kNone, Compression::kZstd),
                          [](const auto& param) {
                            return param.param == Compression::kNone ? "Plain" : "Zstd";
