@@ -2,11 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "swarm_core/app/run_dir.hpp"
 
+#include <cerrno>
 #include <chrono>
 #include <system_error>
 
+#include <fcntl.h>
 #include <fmt/chrono.h>
 #include <fmt/format.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include "swarm_core/app/run_directory.hpp"
 
@@ -14,23 +19,53 @@ namespace swarm::shell {
 namespace {
 
 // Local time keeps the names readable; a number is appended when two runs begin in the same second.
-std::filesystem::path default_run_dir(const std::string& mission) {
+// The directory is made here: the one process for which it did not exist yet has claimed it.
+Result<std::filesystem::path> make_default_dir(const std::string& mission) {
   const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
   const std::string name = fmt::format("{}-{:%Y%m%d-%H%M%S}", mission, fmt::localtime(now));
   const std::filesystem::path runs = "runs";
-  std::filesystem::path dir = runs / name;
   std::error_code error;
-  for (int i = 2; std::filesystem::exists(dir, error); ++i)
+  std::filesystem::create_directories(runs, error);
+  std::filesystem::path dir = runs / name;
+  for (int i = 2; !error; ++i) {
+    // mkdir, which fails on what exists, whatever it is.
+    if (::mkdir(dir.c_str(), 0777) == 0) return dir;
+    if (errno != EEXIST) error = {errno, std::generic_category()};
     dir = runs / fmt::format("{}-{}", name, i);
-  return dir;
+  }
+  return fail(ErrorCode::kEnvironment,
+              fmt::format("cannot make a directory in {}: {}",
+                          std::filesystem::absolute(runs).string(), error.message()));
+}
+
+// A directory that the user named may exist, so making it claims nothing: a lock does, until this
+// process ends. File systems without locks are used without.
+bool claim(const std::filesystem::path& dir) {
+  const int fd = ::open(dir.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (fd < 0) return true;  // the first file that is written reports what is wrong
+  if (::flock(fd, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return true;
+  ::close(fd);
+  return false;
 }
 
 }  // namespace
 
 Result<std::filesystem::path> make_run_dir(const std::filesystem::path& out,
                                            const std::string& mission) {
-  const auto dir = std::filesystem::absolute(out.empty() ? default_run_dir(mission) : out);
+  std::filesystem::path named = out;
+  if (out.empty()) {
+    auto made = make_default_dir(mission);
+    if (!made) return tl::unexpected(made.error());
+    named = *std::move(made);
+  }
+  const auto dir = std::filesystem::absolute(named);
   std::error_code error;
+  std::filesystem::create_directories(dir, error);
+  if (!error && !claim(dir)) {
+    return fail(
+        ErrorCode::kBadInput,
+        fmt::format("--out {}: another run has begun in it; name another directory", dir.string()));
+  }
   // The run file is written by the launcher of a run, so it marks a directory that is in use. A
   // directory without it is accepted even if it exists.
   if (std::filesystem::exists(dir / kRunFile, error)) {
