@@ -8,21 +8,36 @@
 
 #include <CLI/CLI.hpp>
 
+#include "swarm_core/app/output.hpp"
 #include "swarmflow/mission/mission_file.hpp"
 
 namespace swarm::shell {
 
+namespace {
+
+int report(const std::string& name, const Error& error) {
+  std::istringstream lines(error.message);
+  for (std::string line; std::getline(lines, line);) {
+    std::fprintf(stderr, "%s: %s\n", name.c_str(), line.c_str());
+  }
+  return static_cast<int>(exit_code(error.code));
+}
+
+}  // namespace
+
 // Domain code returns errors as values; what is thrown nevertheless (for example std::bad_alloc)
-// ends here with the exit code of a failing environment.
+// ends here with the exit code of a failing environment. A result that could not be printed must
+// not look like a success; another failure keeps its own exit code.
 int run_main(const std::string& name, const std::function<Result<ExitCode>()>& body) {
+  hold_standard_streams();
   try {
     const Result<ExitCode> code = body();
-    if (code) return static_cast<int>(*code);
-    std::istringstream lines(code.error().message);
-    for (std::string line; std::getline(lines, line);) {
-      std::fprintf(stderr, "%s: %s\n", name.c_str(), line.c_str());
+    int status = code ? static_cast<int>(*code) : report(name, code.error());
+    if (const auto printed = finish_output(); !printed) {
+      const int lost = report(name, printed.error());
+      if (status == static_cast<int>(ExitCode::kOk)) status = lost;
     }
-    return static_cast<int>(exit_code(code.error().code));
+    return status;
   } catch (const std::exception& e) {
     std::fprintf(stderr, "%s: unexpected: %s\n", name.c_str(), e.what());
     return static_cast<int>(ExitCode::kEnvironment);

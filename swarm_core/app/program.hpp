@@ -17,7 +17,8 @@ class App;
 namespace swarm::shell {
 
 /// Runs a program's body: prints an error to stderr as `name: message` (every line) and turns it
-/// into the exit code. The only catch-all of a program.
+/// into the exit code. Fails too if what the body printed could not be written (output.hpp). The
+/// only catch-all of a program.
 int run_main(const std::string& name, const std::function<Result<ExitCode>()>& body);
 
 /// The name for messages and help: `own`, or argv[0] if swarm_launcher started this program as one

@@ -18,11 +18,16 @@ void on_signal(int) { requests.fetch_add(1, std::memory_order_relaxed); }
 
 // SIGPIPE is ignored because every send already checks its result, and a peer that closed its
 // socket must not end the process.
-void catch_stop_signals() {
+void catch_stop_signals(Hangup hangup) {
   struct sigaction action = {};
   action.sa_handler = on_signal;  // no SA_RESTART: a sleeping loop wakes up
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
+  if (hangup == Hangup::kStop) {
+    sigaction(SIGHUP, &action, nullptr);
+  } else {
+    std::signal(SIGHUP, SIG_IGN);
+  }
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);  // a write over the limit of file sizes fails as on a full disk
 }

@@ -53,8 +53,10 @@ Result<ExitCode> run_gateway(const GatewayCommandOptions& options) {
   using link::RefusalReason;
   const link::RefusalCounters& refused = (*gateway)->refused();
   const std::uint64_t echoes = refused[RefusalReason::kDuplicate] + refused[RefusalReason::kStale];
-  fmt::print(stderr, "{} states to topics, {} to groups, {} refused, {} echoes\n",
-             (*gateway)->to_topics(), (*gateway)->to_groups(), refused.total() - echoes, echoes);
+  const std::string counts = fmt::format(
+      "{} states to topics, {} to groups, {} refused, {} echoes\n", (*gateway)->to_topics(),
+      (*gateway)->to_groups(), refused.total() - echoes, echoes);
+  std::fputs(counts.c_str(), stderr);  // fmt::print() would throw without a reader
   return ExitCode::kOk;
 }
 

@@ -10,6 +10,7 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
+#include "swarm_core/app/output.hpp"
 #include "swarm_core/app/run_directory.hpp"
 #include "swarm_core/app/stop_signal.hpp"
 #include "swarm_core/base/clock.hpp"
@@ -98,6 +99,7 @@ Result<ExitCode> top(const std::filesystem::path& run_dir) {
     std::fputs(live ? "\x1b[H\x1b[J" : "", stdout);
     std::fputs(top_text((*source)->state(), facts, now).c_str(), stdout);
     std::fflush(stdout);
+    if (!shell::output_works()) break;
     if (std::filesystem::exists(run_dir / shell::kSummaryFile)) break;
   }
   return ExitCode::kOk;

@@ -11,6 +11,7 @@
 #include <fmt/ranges.h>
 #include <unistd.h>
 
+#include "swarm_core/app/output.hpp"
 #include "swarm_core/app/stop_signal.hpp"
 #include "swarm_monitor/cli/commands.hpp"
 #include "swarm_monitor/recording/live_recorder.hpp"
@@ -108,8 +109,10 @@ Command add_cat(CLI::App& program) {
             const auto done = print_messages(o->file, o->topics, [](const std::string& line) {
               std::fputs(line.c_str(), stdout);
               std::fputc('\n', stdout);
+              return shell::output_works();
             });
             if (!done) return tl::unexpected(done.error());
+            if (!shell::output_works()) return ExitCode::kOk;  // run_main() reports it
             if (done->damage.damaged > 0) {
               std::fprintf(stderr, "%llu damaged places left out\n",
                            static_cast<unsigned long long>(done->damage.damaged));

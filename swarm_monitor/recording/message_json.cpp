@@ -127,27 +127,30 @@ Json data_of(const mcap::Message& message, const mcap::Channel& channel, const s
 
 Result<PrintedMessages> print_messages(const std::filesystem::path& file,
                                        const std::vector<std::string>& topics,
-                                       const std::function<void(const std::string&)>& print) {
+                                       const std::function<bool(const std::string&)>& print) {
   PrintedMessages result;
   const auto wanted = [&](const std::string& topic) {
     return topics.empty() || std::any_of(topics.begin(), topics.end(), [&](const auto& begin) {
              return topic.starts_with(begin);
            });
   };
-  const auto damage =
-      mcap::read(file, {.message = [&](const mcap::Message& message, const mcap::Channel& channel,
-                                       const mcap::Schema& schema) {
+  bool wanted_more = true;
+  const auto damage = mcap::read(
+      file, {.message =
+                 [&](const mcap::Message& message, const mcap::Channel& channel,
+                     const mcap::Schema& schema) {
                    result.topics.insert(channel.topic);
-                   if (!wanted(channel.topic)) return;
+                   if (!wanted_more || !wanted(channel.topic)) return;
                    ++result.printed;
-                   print(Json{{"topic", channel.topic},
-                              {"type", schema.name},
-                              {"log_time_ns", text(message.log_time_ns)},
-                              {"publish_time_ns", text(message.publish_time_ns)},
-                              {"sequence", message.sequence},
-                              {"data", data_of(message, channel, schema.name)}}
-                             .dump(-1, ' ', false, Json::error_handler_t::replace));
-                 }});
+                   wanted_more = print(Json{{"topic", channel.topic},
+                                            {"type", schema.name},
+                                            {"log_time_ns", text(message.log_time_ns)},
+                                            {"publish_time_ns", text(message.publish_time_ns)},
+                                            {"sequence", message.sequence},
+                                            {"data", data_of(message, channel, schema.name)}}
+                                           .dump(-1, ' ', false, Json::error_handler_t::replace));
+                 },
+             .go_on = [&] { return wanted_more; }});
   if (!damage) return tl::unexpected(damage.error());
   result.damage = *damage;
   return result;

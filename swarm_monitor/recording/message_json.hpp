@@ -23,9 +23,9 @@ struct PrintedMessages {
 /// Hands over every message of a recording as a line of JSON: topic, type, times, sequence number
 /// and, as "data", its fields by their names in the IDL. 64-bit integers are texts, since many
 /// readers take JSON numbers for doubles; a message that cannot be decoded has "data": null.
-/// `topics` are prefixes; empty: all.
+/// `topics` are prefixes; empty: all. Ends when `print` returns false.
 Result<PrintedMessages> print_messages(const std::filesystem::path& file,
                                        const std::vector<std::string>& topics,
-                                       const std::function<void(const std::string&)>& print);
+                                       const std::function<bool(const std::string&)>& print);
 
 }  // namespace swarm::monitor
