@@ -10,6 +10,7 @@
 #include <libwebsockets.h>
 
 #include "swarm_monitor/view/page_files.hpp"
+#include "swarm_monitor/view/upgrade_check.hpp"
 
 namespace swarm::monitor {
 namespace {
@@ -35,6 +36,11 @@ HttpReply HttpReply::file(std::string_view mime, std::span<const unsigned char> 
   return reply;
 }
 
+HttpReply HttpReply::without_body() && {
+  headers_only_ = true;
+  return std::move(*this);
+}
+
 /// Headers only; the body follows in go_on() whenever the socket is writable.
 bool HttpReply::begin(lws* socket) const {
   std::array<unsigned char, LWS_PRE + 2048> buffer{};
@@ -45,21 +51,30 @@ bool HttpReply::begin(lws* socket) const {
                                   body().size(), &at, end) != 0) {
     return false;
   }
-  constexpr std::string_view kMethods = "GET";
-  if (status_ == HTTP_STATUS_METHOD_NOT_ALLOWED &&
-      lws_add_http_header_by_name(socket, reinterpret_cast<const unsigned char*>("allow:"),
-                                  reinterpret_cast<const unsigned char*>(kMethods.data()),
-                                  static_cast<int>(kMethods.size()), &at, end) != 0) {
+  const auto add = [&](const char* name, std::string_view value) {
+    return lws_add_http_header_by_name(socket, reinterpret_cast<const unsigned char*>(name),
+                                       reinterpret_cast<const unsigned char*>(value.data()),
+                                       static_cast<int>(value.size()), &at, end) == 0;
+  };
+  if (status_ == HTTP_STATUS_METHOD_NOT_ALLOWED && !add("allow:", "GET, HEAD")) return false;
+  if (status_ == kStatusUpgradeRequired &&
+      !(add("upgrade:", "websocket") && add("sec-websocket-version:", "13"))) {
     return false;
   }
+  if (closes() && !add("connection:", "close")) return false;
   if (lws_finalize_write_http_header(socket, begin, &at, end) != 0) return false;
   lws_callback_on_writable(socket);
   return true;
 }
 
+/// After a malformed request the connection is closed: what follows on it cannot be parsed
+/// reliably.
+bool HttpReply::closes() const { return status_ != HTTP_STATUS_OK; }
+
 /// Sends the next part. The buffer has LWS_PRE bytes in front, which libwebsockets needs for its
 /// own framing.
 bool HttpReply::go_on(lws* socket) {
+  if (headers_only_) return !closes() && lws_http_transaction_completed(socket) == 0;
   std::array<unsigned char, LWS_PRE + kPart> buffer;
   const std::size_t size = std::min(kPart, body().size() - sent_);
   const bool last = sent_ + size == body().size();
@@ -74,9 +89,7 @@ bool HttpReply::go_on(lws* socket) {
     lws_callback_on_writable(socket);
     return true;
   }
-  // After a malformed request the connection is closed: what follows on it cannot be parsed
-  // reliably.
-  return status_ == HTTP_STATUS_OK && lws_http_transaction_completed(socket) == 0;
+  return !closes() && lws_http_transaction_completed(socket) == 0;
 }
 
 HttpReply page_reply(std::string_view path) {

@@ -23,6 +23,7 @@
 #include "swarm_monitor/view/http_reply.hpp"
 #include "swarm_monitor/view/listen_check.hpp"
 #include "swarm_monitor/view/origin_check.hpp"
+#include "swarm_monitor/view/upgrade_check.hpp"
 
 namespace swarm::monitor {
 namespace {
@@ -31,6 +32,9 @@ namespace {
 /// up a silent client [s].
 constexpr const char* kPageProtocol = "swarmflow.view.v1";
 constexpr std::string_view kPagePath = "/ws";
+constexpr std::array<std::string_view, 2> kFoxgloveProtocols = {"foxglove.sdk.v1",
+                                                                "foxglove.websocket.v1"};
+constexpr std::string_view kHttp11 = "HTTP/1.1";
 constexpr std::size_t kReceive = 4096;
 constexpr std::size_t kSend = 1024 * 1024;  // what one call offers to the kernel
 constexpr unsigned kMaxHeaders = 4096;
@@ -109,7 +113,7 @@ class ViewServer::Impl {
   int on_websocket(lws* socket, lws_callback_reasons reason, std::string_view in);
 
   HttpReply reply_to(lws* socket, std::string_view path) const;
-  bool may_open(lws* socket) const;
+  bool may_open(lws* socket);
   std::unique_ptr<Session> make_session(lws* socket);
   int receive(lws* socket, Client& client, std::string_view part);
   int send(lws* socket, Client& client);
@@ -136,8 +140,8 @@ Result<void> ViewServer::Impl::listen() {
   static const std::array<lws_protocols, 5> kProtocols = {{
       {"http-only", on_event, 0, kReceive, kHttp, nullptr, kSend},
       {kPageProtocol, on_event, 0, kReceive, kPage, nullptr, kSend},
-      {"foxglove.sdk.v1", on_event, 0, kReceive, kFoxglove, nullptr, kSend},
-      {"foxglove.websocket.v1", on_event, 0, kReceive, kFoxglove, nullptr, kSend},
+      {kFoxgloveProtocols[0].data(), on_event, 0, kReceive, kFoxglove, nullptr, kSend},
+      {kFoxgloveProtocols[1].data(), on_event, 0, kReceive, kFoxglove, nullptr, kSend},
       {nullptr, nullptr, 0, 0, 0, nullptr, 0},
   }};
   // Pings find clients that disappeared without closing.
@@ -211,8 +215,8 @@ int ViewServer::Impl::on_event(lws* socket, lws_callback_reasons reason, void*, 
     case LWS_CALLBACK_SERVER_NEW_CLIENT_INSTANTIATED:
       self.connections_.insert(socket);
       return 0;
-    case LWS_CALLBACK_HTTP_CONFIRM_UPGRADE:  // to HTTP/2, of no use here; comes without a size
-      return std::strcmp(static_cast<const char*>(in), "websocket") == 0 ? 0 : -1;
+    case LWS_CALLBACK_HTTP_CONFIRM_UPGRADE:
+      return self.may_open(socket) ? 0 : -1;
     case LWS_CALLBACK_WSI_DESTROY:
       self.connections_.erase(socket);
       self.replies_.erase(socket);
@@ -240,27 +244,28 @@ int ViewServer::Impl::on_http(lws* socket, lws_callback_reasons reason, std::str
       return reply->second.go_on(socket) ? 0 : -1;
     }
     case LWS_CALLBACK_FILTER_PROTOCOL_CONNECTION:
-      return -1;  // a WebSocket of no protocol that we know
+      return -1;  // "http-only" as the name of a WebSocket's protocol
     default:
       return 0;
   }
 }
 
 HttpReply ViewServer::Impl::reply_to(lws* socket, std::string_view path) const {
-  if (lws_hdr_total_length(socket, WSI_TOKEN_GET_URI) <= 0) {
-    return HttpReply::text(HTTP_STATUS_METHOD_NOT_ALLOWED, "only GET\n");
+  const bool head = lws_hdr_total_length(socket, WSI_TOKEN_HEAD_URI) > 0;
+  if (!head && lws_hdr_total_length(socket, WSI_TOKEN_GET_URI) <= 0) {
+    return HttpReply::text(HTTP_STATUS_METHOD_NOT_ALLOWED, "only GET and HEAD\n");
   }
-  return path == "/metrics" ? HttpReply::text(HTTP_STATUS_OK, metrics()) : page_reply(path);
+  // RFC 9112, 3.2; HTTP/1.0 has no Host.
+  const bool host_needed = header(socket, WSI_TOKEN_HTTP) == kHttp11;
+  HttpReply reply = host_needed && header(socket, WSI_TOKEN_HOST).empty()
+                        ? HttpReply::text(HTTP_STATUS_BAD_REQUEST, "the Host header is missing\n")
+                    : path == "/metrics" ? HttpReply::text(HTTP_STATUS_OK, metrics())
+                                         : page_reply(path);
+  return head ? std::move(reply).without_body() : std::move(reply);
 }
 
-/// Access is decided before the upgrade; afterwards a client is a session with an input buffer.
+/// A client is a session with an input buffer; may_open() has decided about its access.
 int ViewServer::Impl::on_websocket(lws* socket, lws_callback_reasons reason, std::string_view in) {
-  if (reason == LWS_CALLBACK_FILTER_PROTOCOL_CONNECTION) {
-    if (may_open(socket)) return 0;
-    ++counters_.connections_refused;
-    lws_return_http_status(socket, HTTP_STATUS_FORBIDDEN, nullptr);
-    return -1;
-  }
   if (reason == LWS_CALLBACK_ESTABLISHED) {
     Client& client = clients_[socket];
     client.session = make_session(socket);
@@ -286,14 +291,28 @@ int ViewServer::Impl::on_websocket(lws* socket, lws_callback_reasons reason, std
   }
 }
 
-bool ViewServer::Impl::may_open(lws* socket) const {
-  // Any web page may connect by Foxglove's protocol, which only shows.
-  if (lws_get_protocol(socket)->id == kFoxglove) return true;
-  const std::string host = header(socket, WSI_TOKEN_HOST);
-  const bool with_origin = lws_hdr_total_length(socket, WSI_TOKEN_ORIGIN) > 0;
-  const std::string origin = header(socket, WSI_TOKEN_ORIGIN);
-  return header(socket, WSI_TOKEN_GET_URI) == kPagePath && with_origin == !origin.empty() &&
-         same_origin(origin, host) && trusted_host(host, options_.host_names);
+/// Decides before the upgrade, since libwebsockets closes what it cannot upgrade without an answer.
+/// A refusal is short enough for one write; then the connection is closed.
+bool ViewServer::Impl::may_open(lws* socket) {
+  UpgradeRequest request{.get = lws_hdr_total_length(socket, WSI_TOKEN_GET_URI) > 0,
+                         .http = header(socket, WSI_TOKEN_HTTP),
+                         .path = header(socket, WSI_TOKEN_GET_URI),
+                         .host = header(socket, WSI_TOKEN_HOST),
+                         .upgrade = header(socket, WSI_TOKEN_UPGRADE),
+                         .connection = header(socket, WSI_TOKEN_CONNECTION),
+                         .key = header(socket, WSI_TOKEN_KEY),
+                         .version = header(socket, WSI_TOKEN_VERSION),
+                         .protocols = header(socket, WSI_TOKEN_PROTOCOL)};
+  if (lws_hdr_total_length(socket, WSI_TOKEN_ORIGIN) > 0) {
+    request.origin = header(socket, WSI_TOKEN_ORIGIN);
+  }
+  const ServedProtocols served{kPageProtocol, kPagePath, kFoxgloveProtocols};
+  const auto refusal = upgrade_refusal(request, served, options_.host_names);
+  if (!refusal) return true;
+  ++counters_.connections_refused;
+  HttpReply reply = HttpReply::text(refusal->status, refusal->text + '\n');
+  if (reply.begin(socket)) reply.go_on(socket);
+  return false;
 }
 
 std::unique_ptr<Session> ViewServer::Impl::make_session(lws* socket) {

@@ -151,7 +151,8 @@ TEST_F(ViewServerTest, OpensThePagesSocketToThePageAlone) {
   for (const auto& [path, headers] : wrong) {
     ViewClient client(server_->port());
     client.upgrade(path, "swarmflow.view.v1", headers);
-    EXPECT_FALSE(upgraded(client)) << headers.substr(0, 60);
+    EXPECT_EQ(head(client).substr(0, 12), path == "/ws" ? "HTTP/1.1 403" : "HTTP/1.1 404")
+        << headers.substr(0, 60);
     EXPECT_TRUE(serve_until(client, [&] { return !client.open(); }));
   }
   EXPECT_EQ(server_->clients(), 0U);
@@ -159,8 +160,38 @@ TEST_F(ViewServerTest, OpensThePagesSocketToThePageAlone) {
   for (const char* protocol : {"", "something.else"}) {
     ViewClient client(server_->port());
     client.upgrade("/ws", protocol);
-    EXPECT_FALSE(upgraded(client)) << protocol;
+    EXPECT_TRUE(head(client).starts_with("HTTP/1.1 400")) << protocol;
+    EXPECT_TRUE(serve_until(client, [&] { return !client.open(); })) << protocol;
+    EXPECT_NE(client.input.find("swarmflow.view.v1"), std::string::npos) << client.input;
   }
+}
+
+TEST_F(ViewServerTest, AnswersHeadWithoutABody) {
+  start();
+  const std::string whole = get("/metrics");
+  const std::string head_only = get("/metrics", "HEAD");
+  EXPECT_TRUE(head_only.starts_with("HTTP/1.1 200")) << head_only;
+  EXPECT_TRUE(head_only.ends_with("\r\n\r\n")) << head_only;
+  EXPECT_NE(head_only.find("content-length: "), std::string::npos);
+  EXPECT_TRUE(get("/nothing", "HEAD").starts_with("HTTP/1.1 404"));
+  EXPECT_TRUE(get("/nothing", "HEAD").ends_with("\r\n\r\n"));
+  EXPECT_FALSE(whole.ends_with("\r\n\r\n"));
+}
+
+TEST_F(ViewServerTest, AnswersOldAndIncompleteRequests) {
+  start();
+  ViewClient old(server_->port());
+  old.send("GET /metrics HTTP/1.0\r\n\r\n");
+  EXPECT_NE(head(old).find(" 200"), std::string::npos);
+  EXPECT_TRUE(serve_until(old, [&] { return !old.open(); })) << "HTTP/1.0 ends with the answer";
+  ViewClient nameless(server_->port());
+  nameless.send("GET /metrics HTTP/1.1\r\n\r\n");
+  EXPECT_TRUE(head(nameless).starts_with("HTTP/1.1 400")) << "RFC 9112 demands Host";
+  ViewClient newer(server_->port());
+  newer.send(
+      "GET / HTTP/1.1\r\nHost: localhost\r\nConnection: Upgrade, HTTP2-Settings\r\n"
+      "Upgrade: h2c\r\nHTTP2-Settings: AAMAAABkAARAAAAAAAIAAAAA\r\n\r\n");
+  EXPECT_TRUE(head(newer).starts_with("HTTP/1.1 400"));
 }
 
 TEST_F(ViewServerTest, ServesFoxgloveUnderBothNamesAtAnyPathToAnyOrigin) {
