@@ -99,11 +99,12 @@ Result<ExitCode> summarise_unrecorded(const Simulation& simulation, const Measur
   if (json) {
     std::printf("%s\n", summary.dump(2).c_str());
   } else {
-    fmt::print(
+    const std::string text = fmt::format(
         "mission          {}\narrived          {}\nmission time     {:.1f} s\n"
         "wall time        {:.2f} s, {:.0f} ns per agent and step\n",
         to_string(measured.outcome), c.arrived, simulation.mission_s(), *measured.wall_s,
         *measured.ns_per_agent_step);
+    std::fputs(text.c_str(), stdout);
   }
   return measured.outcome == Outcome::kCompleted ? ExitCode::kOk : ExitCode::kCriteriaNotMet;
 }
@@ -124,9 +125,8 @@ Result<void> check_kills(const SimulateOptions& options, const Mission& mission)
 }  // namespace
 
 Result<ExitCode> simulate_mission(const SimulateOptions& options) {
-  auto mission = load_mission(options.mission_file, builtin_catalogue());
+  auto mission = load_mission(options.mission_file, builtin_catalogue(), options.robots);
   if (!mission) return tl::unexpected(mission.error());
-  if (options.robots) mission->robots.count = *options.robots;
   if (auto known = check_kills(options, *mission); !known) return tl::unexpected(known.error());
 
   std::filesystem::path dir;

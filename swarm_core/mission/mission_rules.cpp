@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "swarm_core/mission/goal_room.hpp"
+
 namespace swarm {
 namespace {
 
@@ -174,6 +176,9 @@ std::vector<BrokenRule> broken_rules(const Mission& mission) {
                           timing.planner_silence_s, 2.0 / timing.heartbeat_hz));
   }
   add_communication_radii(mission, rules);
+  if (auto lack = lack_of_goal_room(mission)) {
+    rules.add({"robots.count", "robots.radius_m"}, *std::move(lack));
+  }
   return std::move(rules.broken);
 }
 

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdio>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -36,8 +37,11 @@ bool is_good_name(std::string_view name) {
 class MissionReader {
  public:
   MissionReader(const std::filesystem::path& directory, const Catalogue& catalogue,
-                yaml::Violations& violations)
-      : violations_(violations), shapes_(violations, directory), sections_(catalogue, violations) {}
+                std::optional<std::uint32_t> robots, yaml::Violations& violations)
+      : robots_(robots),
+        violations_(violations),
+        shapes_(violations, directory),
+        sections_(catalogue, violations) {}
 
   // The order matters: robots come before the mixtures, whose means must clear obstacles by a
   // robot's radius, and the world comes before mixtures and script. Rules between keys come last.
@@ -45,7 +49,7 @@ class MissionReader {
     MapReader top(root, "", violations_);
     read_version(top);
     if (const Node* node = top.take("name")) read_name(*node);
-    sections_.read_robots(top.take("robots"), mission_.robots);
+    sections_.read_robots(top.take("robots"), mission_.robots, robots_);
     if (const Node* node = top.take("world", true)) read_world(*node);
     mission_.start = read_mixture(top, "start");
     mission_.goal = read_mixture(top, "goal", &mission_.goal_shape);
@@ -153,6 +157,7 @@ class MissionReader {
         .value_or(Mixture{});
   }
 
+  std::optional<std::uint32_t> robots_;
   yaml::Violations& violations_;
   Mission mission_;
   ShapeReader shapes_;
@@ -165,7 +170,8 @@ class MissionReader {
 /// Syntax errors end the reading at once, as the tree behind them is unknown; all other violations
 /// are collected and returned together, in order of the file.
 Result<Mission> parse_mission(std::string_view text, const std::string& name,
-                              const std::filesystem::path& directory, const Catalogue& catalogue) {
+                              const std::filesystem::path& directory, const Catalogue& catalogue,
+                              std::optional<std::uint32_t> robots) {
   if (text.size() > kMaxMissionBytes) {
     return fail(ErrorCode::kBadInput, fmt::format("{}:1:1: {} bytes; must be <= {}", name,
                                                   text.size(), kMaxMissionBytes));
@@ -176,12 +182,13 @@ Result<Mission> parse_mission(std::string_view text, const std::string& name,
     violations.add(root.error().at, root.error().what);
     return tl::unexpected(violations.to_error(name));
   }
-  Mission mission = MissionReader(directory, catalogue, violations).read(*root);
+  Mission mission = MissionReader(directory, catalogue, robots, violations).read(*root);
   if (!violations.empty()) return tl::unexpected(violations.to_error(name));
   return mission;
 }
 
-Result<Mission> load_mission(const std::filesystem::path& file, const Catalogue& catalogue) {
+Result<Mission> load_mission(const std::filesystem::path& file, const Catalogue& catalogue,
+                             std::optional<std::uint32_t> robots) {
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(file.c_str(), "rb"),
                                                                &std::fclose);
   if (!stream) {
@@ -201,7 +208,7 @@ Result<Mission> load_mission(const std::filesystem::path& file, const Catalogue&
     return fail(ErrorCode::kBadInput,
                 fmt::format("{}: cannot be read; is it a file?", file.string()));
   }
-  return parse_mission(text, file.filename().string(), file.parent_path(), catalogue);
+  return parse_mission(text, file.filename().string(), file.parent_path(), catalogue, robots);
 }
 
 }  // namespace swarm

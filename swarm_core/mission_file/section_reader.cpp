@@ -63,22 +63,25 @@ void SectionReader::read_control(const Node* node, ControlSpec& control_spec) {
 }
 
 /// The order matters: the common body and its defaults are complete before the groups copy it.
-void SectionReader::read_robots(const Node* node, RobotsSpec& robots) {
+void SectionReader::read_robots(const Node* node, RobotsSpec& robots,
+                                std::optional<std::uint32_t> count) {
   if (node != nullptr) {
     MapReader keys(*node, "robots", violations_);
     read_fields(keys, robots, kRobotsKeys);
+    if (count) robots.count = *count;
     read_body(keys, robots);
     const Node* groups = keys.take("groups");
     keys.finish();
     set_defaults(catalogue_.drivers, robots.options);
-    if (groups != nullptr) read_groups(*groups, robots);
+    if (groups != nullptr) read_groups(*groups, robots, count.has_value());
   }
+  if (count) robots.count = *count;
   // Without the key `robots` in the file this call alone sets the defaults.
   set_defaults(catalogue_.drivers, robots.options);
   set_lag(robots);
 }
 
-void SectionReader::read_groups(const Node& node, RobotsSpec& robots) {
+void SectionReader::read_groups(const Node& node, RobotsSpec& robots, bool counted) {
   const auto* items =
       yaml::read_list(node, "robots.groups", 0, reader_bounds::kMaxRobotGroups, violations_);
   if (items == nullptr) return;
@@ -98,9 +101,10 @@ void SectionReader::read_groups(const Node& node, RobotsSpec& robots) {
     robots.groups.push_back(std::move(group));
   }
   if (grouped > robots.count) {
-    violations_.add(node.at, fmt::format("robots.groups have {} robots; must be <= robots.count "
-                                         "({})",
-                                         grouped, robots.count));
+    violations_.add(node.at,
+                    fmt::format("robots.groups have {} robots; must be <= robots.count "
+                                "({}{})",
+                                grouped, robots.count, counted ? ", set by --robots" : ""));
   }
 }
 

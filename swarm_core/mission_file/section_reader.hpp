@@ -41,7 +41,8 @@ class SectionReader {
   // The sections of components; where the file leaves a key out, its default is set.
   void read_planner(const yaml::Node* node, PlannerSpec& planner);
   void read_control(const yaml::Node* node, ControlSpec& control);
-  void read_robots(const yaml::Node* node, RobotsSpec& robots);
+  /// `count` replaces the number of robots in the file, before it is compared with the groups.
+  void read_robots(const yaml::Node* node, RobotsSpec& robots, std::optional<std::uint32_t> count);
 
   /// Adds the rules that the mission violates. A violation is placed at a key of the rule that the
   /// file sets; a rule is skipped while one of its keys has a wrong value of its own.
@@ -94,7 +95,7 @@ class SectionReader {
 
   void keep_position(const std::string& path, const yaml::Node& value, bool good);
   void read_body(yaml::MapReader& keys, BodySpec& body);
-  void read_groups(const yaml::Node& node, RobotsSpec& robots);
+  void read_groups(const yaml::Node& node, RobotsSpec& robots, bool counted);
   void set_lag(BodySpec& body) const;
   void read_automatic(yaml::MapReader& keys, std::string_view key, const Range& range,
                       std::optional<double>& value);

@@ -32,9 +32,8 @@ Result<ExitCode> run_mission(const RunOptions& options) {
   if (options.urgent) become_urgent();
   const auto catalogue = catalogue_of(options.how.agent_program, options.how.planner_program);
   if (!catalogue) return tl::unexpected(catalogue.error());
-  auto mission = load_mission(options.mission_file, *catalogue);
+  auto mission = load_mission(options.mission_file, *catalogue, options.robots);
   if (!mission) return tl::unexpected(mission.error());
-  if (options.robots) mission->robots.count = *options.robots;
   const std::uint32_t robots = mission->robots.count;
   std::uint32_t per_process = options.per_process;
   if (options.processes) {

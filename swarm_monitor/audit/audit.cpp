@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "swarm_core/metrics/geodesic_bound.hpp"
+#include "swarm_core/mission/goal_room.hpp"
 #include "swarm_monitor/audit/fallen_bodies.hpp"
 #include "swarm_monitor/audit/quantile.hpp"
 #include "swarm_monitor/audit/tracking/criteria.hpp"
@@ -276,14 +277,21 @@ void judge(const AuditedRun& audited, Audit& audit) {
   }
   if (fills_shape(audited.run)) return;  // robots stay where they find room: no counts
   const auto& goals = audited.run.goal().components();
-  // Robots choose goals by their share of the mixture, which rounds: a goal may be off by two
-  // robots, or by 2 % of a large swarm.
-  const double tolerance = std::max(2.0, 0.02 * audit.robots);
+  const Mission& mission = audited.run.mission;
+  const double tolerance = goal_tolerance(audit.robots);
+  const double distance_m =
+      2.0 * largest_radius_m(mission.robots) + mission.safety.neighbour_margin_m;
   for (std::size_t g = 0; g < goals.size(); ++g) {
     const double wanted = goals[g].weight * audit.robots;
     if (std::abs(audit.arrived_per_goal[g] - wanted) <= tolerance) continue;
-    audit.reasons.push_back(fmt::format("goal {} got {} robots, its weight is {:.1f}", g,
-                                        audit.arrived_per_goal[g], wanted));
+    std::string reason = fmt::format("goal {} got {} robots, its weight is {:.1f}", g,
+                                     audit.arrived_per_goal[g], wanted);
+    // A goal that is full is no fault of the robots.
+    const std::uint32_t room = most_in_goal(goals[g].gaussian, distance_m);
+    if (audit.arrived_per_goal[g] < wanted && room < wanted) {
+      reason += fmt::format("; with safety.neighbour_margin_m it has room for {} at most", room);
+    }
+    audit.reasons.push_back(std::move(reason));
   }
 }
 

@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -22,16 +24,20 @@ inline constexpr std::size_t kMaxMissionBytes = 16U << 20U;
 /// \param catalogue components that the mission may name, and their keys, whose defaults are set
 ///   where the file leaves them out. By default names and keys of components are accepted as they
 ///   are: right for the mission of a run, which its launcher has checked.
+/// \param robots number of robots instead of the file's `robots.count`, as of a command line; all
+///   other keys are checked against it
 /// \return kBadInput with *all* violations, one per line, as `file:line:column: what is wrong;
 ///   what would be right`
 Result<Mission> parse_mission(std::string_view yaml, const std::string& name,
                               const std::filesystem::path& directory = {},
-                              const Catalogue& catalogue = open_catalogue());
+                              const Catalogue& catalogue = open_catalogue(),
+                              std::optional<std::uint32_t> robots = std::nullopt);
 
 /// Reads and parses a mission file; its bitmaps are looked for beside it. Errors as of
 /// parse_mission(), kBadInput too if the file cannot be read.
 Result<Mission> load_mission(const std::filesystem::path& file,
-                             const Catalogue& catalogue = open_catalogue());
+                             const Catalogue& catalogue = open_catalogue(),
+                             std::optional<std::uint32_t> robots = std::nullopt);
 
 /// The mission as YAML with every default written out, which parse_mission() reads back to an equal
 /// mission: a logged run does not depend on later defaults. Of options that components declare only

@@ -395,5 +395,21 @@ TEST(MissionFile, ShipsMissionsWhoseStartAndGoalKeepTheRiskPromise) {
   }
 }
 
+// The number on a command line replaces the file's before anything is compared with it.
+TEST(MissionFile, ComparesEverythingWithTheNumberOfRobotsGiven) {
+  const std::string grouped =
+      std::string(kLeast) + "robots: {count: 10, groups: [{count: 6}, {count: 4}]}\n";
+  const auto with = [&](std::uint32_t robots) {
+    return parse_mission(grouped, "m.yaml", {}, builtin_catalogue(), robots);
+  };
+  ASSERT_TRUE(with(12)) << with(12).error().message;
+  EXPECT_EQ(with(12)->robots.count, 12U);
+  ASSERT_FALSE(with(5));
+  EXPECT_EQ(with(5).error().code, ErrorCode::kBadInput);
+  EXPECT_NE(with(5).error().message.find("robots.groups have 10 robots"), std::string::npos);
+  EXPECT_NE(with(5).error().message.find("--robots"), std::string::npos);
+  EXPECT_EQ(parse_mission(kLeast, "m.yaml", {}, builtin_catalogue(), 5)->robots.count, 5U);
+}
+
 }  // namespace
 }  // namespace swarm
