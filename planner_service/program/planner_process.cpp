@@ -65,7 +65,8 @@ struct PlannerProcess::Impl {
   std::optional<PlannerInbox> inbox;
   std::uint64_t beats = 0;
   std::ofstream clock_file;
-  link::RefusalCounters reported;  // counts already announced as events
+  link::RefusalCounters reported;      // counts already announced as events
+  std::vector<std::string> unwritten;  // why files of the first plan are missing
 
   Result<void> plan_first();
   Result<void> join(const shell::RunInfo& run);
@@ -76,20 +77,20 @@ struct PlannerProcess::Impl {
   void beat(UtcTime now);
 };
 
-// Writes plan and statistics to the run directory before the planner joins the bus, so that the
-// files of a mission that has a plan always exist.
+// Writes plan and statistics to the run directory before the planner joins the bus. A file that
+// cannot be written, as on a full disk, is reported and does not keep robots waiting for the plan.
 Result<void> PlannerProcess::Impl::plan_first() {
+  const auto keep = [this](const Result<void>& written) {
+    if (!written) unwritten.push_back(written.error().message);
+  };
   const PlanningRecord promised{mission.planner.method,
                                 keeper->method().traits().density_cap_per_m2};
-  if (auto w = shell::write_file(options.run_dir / shell::kPlanningFile, to_json(promised)); !w) {
-    return w;
-  }
+  keep(shell::write_file(options.run_dir / shell::kPlanningFile, to_json(promised)));
   if (auto planned = keeper->plan_first(); !planned) return planned;
   const PlanResult& planned = keeper->newest().planned;
-  if (auto w = shell::write_file(options.run_dir / shell::kPlanFile, to_json(planned.plan)); !w) {
-    return w;
-  }
-  return write_stats(options.run_dir, planned.stats);
+  keep(shell::write_file(options.run_dir / shell::kPlanFile, to_json(planned.plan)));
+  keep(write_stats(options.run_dir, planned.stats));
+  return {};
 }
 
 // Creates all writers and readers first and takes them over only when none failed.
@@ -118,6 +119,9 @@ Result<void> PlannerProcess::Impl::join(const shell::RunInfo& run) {
   inbox.emplace(Readers{std::move(*orders), std::move(*scene_changes), std::move(*health)},
                 link::wire_limits(mission));
   clock_file.open(options.run_dir / shell::kPlanClockFile, std::ios::app);
+  for (const std::string& reason : unwritten) {
+    announce(link::Severity::kWarning, "plan-file-missing", reason);
+  }
   keeper->begin(std::chrono::steady_clock::now());
   return {};
 }

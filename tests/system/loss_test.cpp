@@ -106,6 +106,24 @@ TEST(Loss, TheBodyOfARespawnedRobotIsNoObstacleAnyMore) {
   EXPECT_EQ(summary["collisions_robot"], 0);
 }
 
+// A directory in the place of the file fails as a full disk would, also for root.
+TEST(Loss, ARestartedPlannerLeadsAlsoWithoutWritingItsFiles) {
+  FlownRun run;
+  ASSERT_TRUE(run.mission_started());
+  const auto plan = run.dir() / "plan.json", saved = run.dir() / "saved.json";
+  std::filesystem::rename(plan, saved);
+  std::filesystem::create_directory(plan);
+
+  ASSERT_EQ(run.planners().size(), 1U);
+  ::kill(run.planners().front(), SIGKILL);
+
+  EXPECT_TRUE(eventually([&] { return has_event(run.dir(), "plan-file-missing"); }));
+  std::filesystem::remove_all(plan);
+  std::filesystem::rename(saved, plan);
+  EXPECT_EQ(run.launcher().wait(), 0) << run.launcher().err();
+  EXPECT_EQ(run.summary()["arrived"], 12);
+}
+
 TEST(Loss, TheSwarmOutlivesItsPlanner) {
   FlownRun run;
   ASSERT_TRUE(run.mission_started());
