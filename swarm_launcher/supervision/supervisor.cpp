@@ -19,6 +19,8 @@ constexpr Duration kStopRepeat = std::chrono::milliseconds(100);
 constexpr std::uint32_t kStopRepeats = 15;
 // Longest wait for the robots' confirmations.
 constexpr Duration kStopTimeout = std::chrono::seconds(5);
+// Without a status for this long, a process is reported; it sends one every second.
+constexpr Duration kSilence = std::chrono::seconds(3);
 /// At the edge of a dense goal a robot may be pushed out again, so all robots must stay arrived for
 /// this long.
 constexpr Duration kStay = std::chrono::seconds(2);
@@ -92,6 +94,7 @@ void Supervisor::on_status(RobotId robot, const RobotReport& report) {
   Robot& r = robots_.at(robot.value());
   r.report = report;
   r.received = true;
+  processes_[1 + robot.value() / options_.per_process].received = true;
   // A status that a process sent before it died may arrive after its death was noticed.
   if (!r.silent_since || report.sent_at <= *r.silent_since) return;
   r.silent_since.reset();
@@ -164,6 +167,25 @@ void Supervisor::on_exit(ProcessIndex process, const ProcessExit& exit, SteadyTi
   for (std::uint32_t i = 0; i < count; ++i) robots_[first.value() + i].lost = true;
 }
 
+// A process that hangs or is cut off reports nothing, and does not end either: the user is told.
+void Supervisor::watch_silence(SteadyTime now, std::vector<Action>& actions) {
+  for (std::uint32_t i = 1; i < processes(); ++i) {
+    Process& p = processes_[i];
+    if (std::exchange(p.received, false)) p.received_at = now;
+    const bool is_silent = p.alive && p.received_at && now - *p.received_at > kSilence;
+    if (is_silent == p.is_silent) continue;
+    p.is_silent = is_silent;
+    if (!p.alive) continue;  // its end has been reported
+    const auto [first, count] = robots_of(ProcessIndex(i));
+    actions.emplace_back(LogEvent{
+        .warning = is_silent,
+        .code = is_silent ? "agent-silent" : "agent-back",
+        .text = fmt::format("agent process {} (robots {} to {}) {}", i, first.value(),
+                            first.value() + count - 1,
+                            is_silent ? "has sent no status for 3 s" : "sends its status again")});
+  }
+}
+
 // Robots without a planner hold by themselves: ending their processes would not be safer.
 void Supervisor::hold_without_planner(std::uint32_t deaths) {
   pending_log_.push_back(
@@ -225,6 +247,8 @@ void Supervisor::start_due(SteadyTime now, std::vector<Action>& actions) {
     p.alive = true;
     p.started_at = now;
     p.restarts.on_start(now);
+    p.received_at.reset();
+    p.is_silent = false;
     actions.emplace_back(StartProcess{ProcessIndex(i)});
     actions.emplace_back(LogEvent{
         .code = "respawn",
@@ -389,6 +413,7 @@ std::vector<Action> Supervisor::step(SteadyTime now) {
   }
   if (stage_ == Stage::kDone) return actions;
   keep_bodies(actions);
+  watch_silence(now, actions);
   for (const CommandKind kind : std::exchange(pending_commands_, {})) command(kind, now, actions);
   repeat_stop(now, actions);
   if (phase_ != MissionPhase::kStopped) start_due(now, actions);

@@ -168,7 +168,10 @@ class Supervisor {
     bool started = false;
     SteadyTime started_at;
     RestartPolicy restarts{};
-    SteadyTime respawn_at;  ///< when it may be restarted
+    bool received = false;                    ///< a status, since the last step
+    std::optional<SteadyTime> received_at{};  ///< the last one; none since its start
+    bool is_silent = false;                   ///< reported as such
+    SteadyTime respawn_at;                    ///< when it may be restarted
     bool respawn_due = false;
   };
   struct Robot {
@@ -195,6 +198,7 @@ class Supervisor {
   bool has_failed(const Robot& robot) const {
     return robot.report.mode == RobotMode::kStopped && phase_ != MissionPhase::kStopped;
   }
+  void watch_silence(SteadyTime now, std::vector<Action>& actions);
   void hold_without_planner(std::uint32_t deaths);
   void repeat_stop(SteadyTime now, std::vector<Action>& actions);
   void begin_ending(Outcome outcome, SteadyTime now);

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
 // The supervisor's rules, each over all small cases. Its clock is a number that the test sets.
+#include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -145,6 +146,31 @@ TEST(SupervisorRules, RestartAPlannerUnlessItReportsThatItCannotPlan) {
   Supervisor sut = running(options_of(2));
   sut.on_exit(kPlanner, {.code = 1, .signal = 11}, at_s(2));
   EXPECT_EQ(all_of<StartProcess>(sut.step(at_s(3))).size(), 1U) << "the code of a crash is none";
+}
+
+TEST(SupervisorRules, ReportAProcessThatIsSilentAndItsReturnOnce) {
+  SupervisorOptions options = options_of(4);
+  options.per_process = 2;
+  Supervisor sut = running(options);
+  constexpr RobotReport kMoves{true, true, RobotMode::kMoving, false};
+  std::vector<std::string> events;
+  const auto run_until = [&, t = 1.0](double end, bool second_reports) mutable {
+    for (; t < end; t += 0.5) {
+      sut.on_status(RobotId(0), kMoves);
+      if (second_reports) sut.on_status(RobotId(3), kMoves);
+      for (const LogEvent& event : all_of<LogEvent>(sut.step(at_s(t)))) {
+        if (event.code.starts_with("agent-")) events.push_back(event.code + ": " + event.text);
+      }
+    }
+  };
+  run_until(10, true);
+  EXPECT_TRUE(events.empty());
+  run_until(20, false);
+  ASSERT_EQ(events.size(), 1U);
+  EXPECT_EQ(events[0], "agent-silent: agent process 2 (robots 2 to 3) has sent no status for 3 s");
+  run_until(30, true);
+  ASSERT_EQ(events.size(), 2U);
+  EXPECT_EQ(events[1], "agent-back: agent process 2 (robots 2 to 3) sends its status again");
 }
 
 TEST(SupervisorRules, AllowEachProcessItsOwnRestartsAndNoMore) {
