@@ -58,7 +58,7 @@ TEST(GoalRoom, IsLittleMoreThanADensePackingHasOfMany) {
 
 TEST(GoalRoom, IsDemandedOfAMission) {
   EXPECT_TRUE(parse_mission(mission_text(12, 0.5), "m.yaml"));
-  EXPECT_TRUE(parse_mission(mission_text(2, 0.01), "m.yaml"));
+  EXPECT_TRUE(parse_mission(mission_text(2, 0.1), "m.yaml"));
   const auto refused = parse_mission(mission_text(12, 0.1), "m.yaml");
   ASSERT_FALSE(refused);
   EXPECT_NE(refused.error().message.find("goal[0] has no room for 12 robots"), std::string::npos)
