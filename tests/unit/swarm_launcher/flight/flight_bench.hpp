@@ -15,9 +15,9 @@
 
 #include "swarm_core/app/run_directory.hpp"
 #include "swarm_launcher/flight/flight_loop.hpp"
-#include "swarm_link/inproc/inproc_bus.hpp"
 #include "swarm_link/monitor_topics.hpp"
 #include "swarmflow/mission/mission_file.hpp"
+#include "tests/support/inproc/inproc_bus.hpp"
 #include "tests/unit/swarm_launcher/flight/fake_ports.hpp"
 
 namespace swarm::launcher {

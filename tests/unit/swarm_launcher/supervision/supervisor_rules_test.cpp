@@ -154,7 +154,7 @@ TEST(SupervisorRules, ReportAProcessThatIsSilentAndItsReturnOnce) {
   Supervisor sut = running(options);
   constexpr RobotReport kMoves{true, true, RobotMode::kMoving, false};
   std::vector<std::string> events;
-  const auto run_until = [&, t = 1.0](double end, bool second_reports) mutable {
+  auto run_until = [&, t = 1.0](double end, bool second_reports) mutable {
     for (; t < end; t += 0.5) {
       sut.on_status(RobotId(0), kMoves);
       if (second_reports) sut.on_status(RobotId(3), kMoves);
