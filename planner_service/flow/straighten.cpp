@@ -15,7 +15,7 @@
 #include "planner_service/flow/plan_density.hpp"
 #include "planner_service/roadmap/connect.hpp"
 #include "planner_service/roadmap/squeeze.hpp"
-#include "planner_service/same_gaussian.hpp"
+#include "swarm_core/gmm/same_gaussian.hpp"
 #include "swarm_core/base/assert.hpp"
 #include "swarm_core/gmm/wasserstein.hpp"
 

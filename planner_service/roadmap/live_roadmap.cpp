@@ -9,7 +9,7 @@
 
 #include "planner_service/roadmap/connect.hpp"
 #include "planner_service/roadmap/means.hpp"
-#include "planner_service/same_gaussian.hpp"
+#include "swarm_core/gmm/same_gaussian.hpp"
 #include "swarm_core/gmm/wasserstein.hpp"
 
 namespace swarm::planner {

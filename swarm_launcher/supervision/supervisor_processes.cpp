@@ -79,7 +79,7 @@ void Supervisor::on_exit(ProcessIndex process, const ProcessExit& exit, SteadyTi
   for (std::uint32_t i = 0; i < count; ++i) robots_[first.value() + i].lost = true;
 }
 
-// A process that hangs or is cut off reports nothing, and does not end either: the user is told.
+// A process that hangs or is cut off reports nothing, and does not end either, so an event reports it.
 void Supervisor::watch_silence(SteadyTime now, std::vector<Action>& actions) {
   for (std::uint32_t i = 1; i < processes(); ++i) {
     Process& p = processes_[i];

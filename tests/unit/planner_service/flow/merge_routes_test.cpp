@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "planner_service/flow/build_plan.hpp"
-#include "planner_service/same_gaussian.hpp"
+#include "swarm_core/gmm/same_gaussian.hpp"
 #include "swarmflow/core/random.hpp"
 
 namespace swarm::planner {

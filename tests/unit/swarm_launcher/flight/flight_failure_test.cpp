@@ -100,8 +100,9 @@ TEST_F(FlightLoopFailure, RestartsThePlannerWithAHigherOwnershipStrength) {
   EXPECT_EQ(outcome(), Outcome::kCompleted);
 }
 
-TEST_F(FlightLoopFailure, EndsWhenThePlannerCannotPlan) {
-  run_for(seconds(1));
+TEST_F(FlightLoopFailure, EndsBeforeTheStartWhenThePlannerCannotPlan) {
+  run_for(milliseconds(100));
+  ASSERT_EQ(loop->supervisor().phase(), MissionPhase::kReady);
   spawner.end(spawner.planner(),
               {.code = static_cast<int>(ExitCode::kCriteriaNotMet), .signal = 0});
   ASSERT_TRUE(run_to_the_end());

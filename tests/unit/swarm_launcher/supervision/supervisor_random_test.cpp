@@ -21,6 +21,8 @@ using Stage = Supervisor::Stage;
 struct Known {
   bool alive = false;
   std::uint32_t starts = 0;
+  SteadyTime started_at;
+  std::uint32_t deaths_in_a_row = 0;
   std::optional<EndSignal> signal{};
 };
 
@@ -108,8 +110,13 @@ class Play {
       EXPECT_LT(start->process.value(), local_) << "another host's process";
       EXPECT_FALSE(p.alive) << "it runs already";
       EXPECT_LT(stage_before_, Stage::kEnding);
-      EXPECT_LE(++p.starts, 1 + (start->process == kPlanner ? options_.launcher.respawn_planner_max
-                                                            : options_.launcher.respawn_agent_max));
+      // A process that was well may die again as often; the planner is always restarted in flight.
+      p.deaths_in_a_row = now_ - p.started_at >= RestartPolicy::kWell ? 1 : p.deaths_in_a_row + 1;
+      const bool is_first = p.starts++ == 0;
+      EXPECT_TRUE(is_first || start->process == kPlanner ||
+                  p.deaths_in_a_row <= options_.launcher.respawn_agent_max);
+      if (is_first) p.deaths_in_a_row = 0;
+      p.started_at = now_;
       EXPECT_TRUE(p.starts > 1 || start->process.value() == first_starts_++) << "in their order";
       p.alive = true;
     } else if (const auto* signal = std::get_if<SignalProcess>(&action)) {

@@ -273,8 +273,9 @@ TEST(SupervisorRules, ClimbToTheSignalThatIsDueWhenStepsAreLate) {
                {2.0, EndSignal::kKill},
                {500.0, EndSignal::kKill}};
   for (const auto& c : cases) {
-    Supervisor sut = running(options);
-    sut.on_exit(kPlanner, {.code = 1, .signal = 0}, at_s(2));  // begins the ending
+    Supervisor sut(options, at_s(0));
+    sut.step(at_s(0.9));
+    sut.on_exit(kPlanner, {.code = 1, .signal = 0}, at_s(2));  // before the start: begins the ending
     const auto signals = all_of<SignalProcess>(sut.step(at_s(2.0 + c.late_s)));
     ASSERT_EQ(signals.size(), 1U) << "the planner has ended";
     EXPECT_EQ(signals[0].process, ProcessIndex(1));

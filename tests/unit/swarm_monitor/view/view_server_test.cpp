@@ -151,7 +151,7 @@ TEST_F(ViewServerTest, OpensThePagesSocketToThePageAlone) {
   for (const auto& [path, headers] : wrong) {
     ViewClient client(server_->port());
     client.upgrade(path, "swarmflow.view.v1", headers);
-    EXPECT_EQ(head(client).substr(0, 12), path == "/ws" ? "HTTP/1.1 403" : "HTTP/1.1 404")
+    EXPECT_EQ(head(client).substr(8, 4), path == "/ws" ? " 403" : " 404")
         << headers.substr(0, 60);
     EXPECT_TRUE(serve_until(client, [&] { return !client.open(); }));
   }
@@ -160,7 +160,7 @@ TEST_F(ViewServerTest, OpensThePagesSocketToThePageAlone) {
   for (const char* protocol : {"", "something.else"}) {
     ViewClient client(server_->port());
     client.upgrade("/ws", protocol);
-    EXPECT_TRUE(head(client).starts_with("HTTP/1.1 400")) << protocol;
+    EXPECT_EQ(head(client).substr(8, 4), " 400") << protocol;
     EXPECT_TRUE(serve_until(client, [&] { return !client.open(); })) << protocol;
     EXPECT_NE(client.input.find("swarmflow.view.v1"), std::string::npos) << client.input;
   }
@@ -191,7 +191,7 @@ TEST_F(ViewServerTest, AnswersOldAndIncompleteRequests) {
   newer.send(
       "GET / HTTP/1.1\r\nHost: localhost\r\nConnection: Upgrade, HTTP2-Settings\r\n"
       "Upgrade: h2c\r\nHTTP2-Settings: AAMAAABkAARAAAAAAAIAAAAA\r\n\r\n");
-  EXPECT_TRUE(head(newer).starts_with("HTTP/1.1 400"));
+  EXPECT_EQ(head(newer).substr(8, 4), " 400");
 }
 
 TEST_F(ViewServerTest, ServesFoxgloveUnderBothNamesAtAnyPathToAnyOrigin) {
