@@ -15,8 +15,8 @@
 #include "planner_service/flow/plan_density.hpp"
 #include "planner_service/roadmap/connect.hpp"
 #include "planner_service/roadmap/squeeze.hpp"
-#include "swarm_core/gmm/same_gaussian.hpp"
 #include "swarm_core/base/assert.hpp"
+#include "swarm_core/gmm/same_gaussian.hpp"
 #include "swarm_core/gmm/wasserstein.hpp"
 
 namespace swarm::planner {

@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "planner_service/one_line.hpp"
+#include "swarm_core/base/one_line.hpp"
 
 namespace swarm::planner {
 namespace {

@@ -21,9 +21,9 @@
 #include "planner_service/flow/timed_flow.hpp"
 #include "planner_service/flow/transport_lp.hpp"
 #include "planner_service/methods/shared/route_plan.hpp"
-#include "planner_service/one_line.hpp"
 #include "planner_service/roadmap/connect.hpp"
 #include "planner_service/roadmap/edge_check.hpp"
+#include "swarm_core/base/one_line.hpp"
 
 namespace swarm::planner {
 namespace {

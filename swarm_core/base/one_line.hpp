@@ -4,7 +4,7 @@
 
 #include <string>
 
-namespace swarm::planner {
+namespace swarm {
 
 /// The text with every line break replaced by "; ": a notice is one line.
 inline std::string one_line(std::string text) {
@@ -14,4 +14,4 @@ inline std::string one_line(std::string text) {
   return text;
 }
 
-}  // namespace swarm::planner
+}  // namespace swarm
