@@ -14,15 +14,17 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr std::uint32_t kDomain = 227;
-
-/// An order to four robots in two processes, and the end of each process.
+/// An order to four robots in two processes, and the end of each process. Each test has a domain of
+/// its own, as tests run at the same time.
 class StopOrderTest : public testing::Test {
  protected:
   void SetUp() override {
     if (!link::carries_multicast()) GTEST_SKIP() << "loopback carries no multicast here";
-    for (auto& process : processes) process = *link::StopReceiver::open({.domain = kDomain});
-    order.emplace(*link::StopSender::open({.domain = kDomain}), 4);
+  }
+
+  void begin_in(std::uint32_t domain) {
+    for (auto& process : processes) process = *link::StopReceiver::open({.domain = domain});
+    order.emplace(*link::StopSender::open({.domain = domain}), 4);
   }
 
   /// One step at a time after the beginning; the processes in `alive` confirm what reaches them.
@@ -41,6 +43,7 @@ class StopOrderTest : public testing::Test {
 };
 
 TEST_F(StopOrderTest, IsCompleteOnceAllRobotsHaveConfirmed) {
+  begin_in(216);
   step(milliseconds(0), {0});
   step(milliseconds(20), {0});
   EXPECT_EQ(order->newly_confirmed(), (std::vector<RobotId>{RobotId(0), RobotId(1)}));
@@ -54,6 +57,7 @@ TEST_F(StopOrderTest, IsCompleteOnceAllRobotsHaveConfirmed) {
 }
 
 TEST_F(StopOrderTest, SendsAtEachStepOfTheFirstHalfSecondAndThenEvery50ms) {
+  begin_in(217);
   for (int ms = 0; ms < 500; ms += 20) step(milliseconds(ms), {0});
   EXPECT_EQ(sent, 25);
   for (int ms = 500; ms < 1500; ms += 10) step(milliseconds(ms), {0});
@@ -61,6 +65,7 @@ TEST_F(StopOrderTest, SendsAtEachStepOfTheFirstHalfSecondAndThenEvery50ms) {
 }
 
 TEST_F(StopOrderTest, IgnoresConfirmationsOfRobotsThatTheRunDoesNotHave) {
+  begin_in(218);
   step(milliseconds(0));
   ASSERT_TRUE(processes[0]->take());
   processes[0]->confirm({.first_robot_id = 3, .robots = 0xFFFFFFFFU});

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-// The stop channel over real multicast on loopback, in a domain that no run uses.
+// The stop channel over real multicast on loopback, each test in a domain that nothing else uses:
+// tests run at the same time.
 #include "swarm_link/channels/stop_channel.hpp"
 
 #include <gtest/gtest.h>
@@ -13,16 +14,14 @@
 namespace swarm::link {
 namespace {
 
-constexpr std::uint32_t kDomain = 228;
 constexpr CommandMessage kStopMessage{.kind = CommandKind::kStop, .command_id = 7};
 
-std::unique_ptr<StopSender> sender(std::uint32_t domain = kDomain) {
+std::unique_ptr<StopSender> sender(std::uint32_t domain) {
   auto made = StopSender::open({.domain = domain});
   return made ? std::move(*made) : nullptr;
 }
 
-std::unique_ptr<StopReceiver> receiver(std::uint32_t domain = kDomain,
-                                       const ReceptionFaults& faults = {}) {
+std::unique_ptr<StopReceiver> receiver(std::uint32_t domain, const ReceptionFaults& faults = {}) {
   auto made = StopReceiver::open({.domain = domain, .faults = faults});
   return made ? std::move(*made) : nullptr;
 }
@@ -35,8 +34,8 @@ class StopChannel : public testing::Test {
 };
 
 TEST_F(StopChannel, ReachesEveryReceiverOfTheDomain) {
-  const auto from = sender();
-  const auto first = receiver(), second = receiver(), other = receiver(kDomain - 1);
+  const auto from = sender(210);
+  const auto first = receiver(210), second = receiver(210), other = receiver(211);
   from->send(kStopMessage);  // loopback delivers within the call
   EXPECT_EQ(first->take(), kStopMessage);
   EXPECT_EQ(second->take(), kStopMessage);
@@ -45,8 +44,8 @@ TEST_F(StopChannel, ReachesEveryReceiverOfTheDomain) {
 }
 
 TEST_F(StopChannel, BringsConfirmationsToThoseWhoSent) {
-  const auto asked = sender(), silent = sender();
-  const auto robots = receiver();
+  const auto asked = sender(212), silent = sender(212);
+  const auto robots = receiver(212);
   asked->send(kStopMessage);
   asked->send(kStopMessage);
   ASSERT_TRUE(robots->take());
@@ -62,10 +61,10 @@ TEST_F(StopChannel, BringsConfirmationsToThoseWhoSent) {
 }
 
 TEST_F(StopChannel, IgnoresWhatIsNoStop) {
-  const auto robots = receiver();
-  const auto from = sender();
+  const auto robots = receiver(213);
+  const auto from = sender(213);
   const int fd = open_group_sender(to_in_addr(kLoopback));
-  sockaddr_in group = multicast_group(kDomain, 0);
+  sockaddr_in group = multicast_group(213, 0);
   group.sin_addr.s_addr = htonl(0xEFFEFFFFU);
   for (const std::string& text :
        {std::string("?"), std::string("SWSTOP"), std::string("SWSTOP\0\1", 8),
@@ -81,10 +80,10 @@ TEST_F(StopChannel, IgnoresWhatIsNoStop) {
 
 // Half of the datagrams are lost: one of twelve arrives with probability 1 − 2⁻¹².
 TEST_F(StopChannel, GetsThroughALossyNetworkByRepetition) {
-  const auto from = sender();
+  const auto from = sender(214);
   int reached = 0;
   for (std::uint64_t seed = 1; seed <= 50; ++seed) {
-    const auto robots = receiver(kDomain, {.faults = {.loss = 0.5}, .seed = seed});
+    const auto robots = receiver(214, {.faults = {.loss = 0.5}, .seed = seed});
     for (int i = 0; i < 12; ++i) from->send(kStopMessage);
     reached += robots->take().has_value() ? 1 : 0;
   }
@@ -92,7 +91,7 @@ TEST_F(StopChannel, GetsThroughALossyNetworkByRepetition) {
 }
 
 TEST_F(StopChannel, ReportsAnInterfaceThatCarriesNoMulticast) {
-  const auto made = StopReceiver::open({.domain = kDomain, .interface = "203.0.113.7"});
+  const auto made = StopReceiver::open({.domain = 215, .interface = "203.0.113.7"});
   ASSERT_FALSE(made);
   EXPECT_EQ(made.error().code, ErrorCode::kEnvironment);
   EXPECT_NE(made.error().message.find("203.0.113.7"), std::string::npos);
