@@ -26,7 +26,7 @@ namespace {
 
 /// A client gives up when the launcher sends nothing for this long.
 constexpr Duration kAnswerTimeout = std::chrono::seconds(15);
-constexpr int kWait_ms = 20;  // between two calls of on_wait
+constexpr int kWait_ms = 20;                  // between two calls of on_wait
 constexpr std::size_t kMaxLine = 256 * 1024;  // a polygon of 4096 corners
 
 /// Socket addresses hold 107 characters; a path through /proc/self/fd is short for any directory.

@@ -1,7 +1,9 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
 // Ending a run: Ctrl-C at any moment, and the emergency stop.
+#include <chrono>
 #include <csignal>
+#include <thread>
 
 #include "flown_run.hpp"
 
@@ -115,8 +117,9 @@ TEST(EmergencyStop, NeedsNoRunDirectory) {
 }
 
 TEST(EmergencyStop, ReachesAllThroughABadNetwork) {
-  FlownRun run({"--fault", "loss=0.5,delay-ms=150"});
+  FlownRun run({"--fault", "loss=0.5,delay-ms=150,from=6"});  // it begins once all are ready
   ASSERT_TRUE(run.mission_started());
+  std::this_thread::sleep_for(std::chrono::seconds(6));
 
   Program command("swarm_launcher", {"command", run.dir().string(), "stop"});
 

@@ -7,13 +7,8 @@
 namespace swarm {
 namespace {
 
-TEST(MissionRules, AllowTheDefaults) {
-  const auto broken = broken_rules(Mission{});
-
-  EXPECT_TRUE(broken.empty()) << broken[0].message;
-}
-
-TEST(MissionRules, TieTheCommunicationRadiusToTheBrakingDistance) {
+/// A mission whose least communication radius is easy to compute by hand.
+Mission mission_of_known_braking() {
   Mission mission;
   mission.robots.radius_m = 0.2;
   mission.robots.speed_max_mps = 1.5;
@@ -21,6 +16,17 @@ TEST(MissionRules, TieTheCommunicationRadiusToTheBrakingDistance) {
   mission.safety.gap_share = 0.25;
   mission.safety.neighbour_margin_m = 0.25;
   mission.link.send_interval_max_s = 0.5;
+  return mission;
+}
+
+TEST(MissionRules, AllowTheDefaults) {
+  const auto broken = broken_rules(Mission{});
+
+  EXPECT_TRUE(broken.empty()) << broken[0].message;
+}
+
+TEST(MissionRules, TieTheCommunicationRadiusToTheBrakingDistance) {
+  const Mission mission = mission_of_known_braking();
 
   // By hand: 0.4 + 0.25 + 3.0 · (0.1/0.25 + 0.5).
   EXPECT_NEAR(least_communication_radius_m(mission, mission.robots), 3.35, 1e-12);
@@ -29,13 +35,7 @@ TEST(MissionRules, TieTheCommunicationRadiusToTheBrakingDistance) {
 // A group that is larger or faster, or has a smaller radius of its own, must receive others in time
 // as well.
 TEST(MissionRules, TieTheCommunicationRadiusOfEveryBody) {
-  Mission mission;
-  mission.robots.radius_m = 0.2;
-  mission.robots.speed_max_mps = 1.5;
-  mission.control.rate_hz = 10.0;
-  mission.safety.gap_share = 0.25;
-  mission.safety.neighbour_margin_m = 0.25;
-  mission.link.send_interval_max_s = 0.5;
+  Mission mission = mission_of_known_braking();
   mission.link.communication_radius_m = 5.0;
   mission.robots.groups = {{mission.robots, 2}, {mission.robots, 3}};
   ASSERT_TRUE(broken_rules(mission).empty());

@@ -70,7 +70,7 @@ TEST(CellInterest, KeepsACellUntilTheRobotIsBeyondTheLeaveMargin) {
       ".##..\n"
       ".....\n"
       ".....\n";
-  const std::string home =
+  const std::string at_start =
       ".....\n"
       ".....\n"
       "..#..\n"
@@ -80,11 +80,11 @@ TEST(CellInterest, KeepsACellUntilTheRobotIsBeyondTheLeaveMargin) {
   CellOptions options = kOptions;
   options.communication_radius_m = 1.0;
   CellInterest sut(options);
-  EXPECT_EQ(wanted_at(sut, {{22.1, 25.0}}), home) << "not joined yet";
+  EXPECT_EQ(wanted_at(sut, {{22.1, 25.0}}), at_start) << "not joined yet";
   EXPECT_EQ(wanted_at(sut, {{21.9, 25.0}}), west) << "within radius + join margin";
   EXPECT_EQ(wanted_at(sut, {{23.9, 25.0}}), west) << "still within radius + leave margin";
-  EXPECT_EQ(wanted_at(sut, {{24.1, 25.0}}), home) << "left";
-  EXPECT_EQ(wanted_at(sut, {{23.9, 25.0}}), home) << "the leave margin does not join";
+  EXPECT_EQ(wanted_at(sut, {{24.1, 25.0}}), at_start) << "left";
+  EXPECT_EQ(wanted_at(sut, {{23.9, 25.0}}), at_start) << "the leave margin does not join";
 }
 
 TEST(CellInterest, WantsNothingWithoutRobots) {

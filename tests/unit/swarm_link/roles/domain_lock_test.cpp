@@ -134,7 +134,7 @@ TEST_F(DomainLockTest, IsReleasedByTheKernelWhenItsProcessIsKilled) {
   char answer = 0;
   EXPECT_EQ(::read(ready[0], &answer, 1), 1);
   EXPECT_EQ(answer, 'y');
-  EXPECT_FALSE(is_free(9)) << "while the process lives";
+  EXPECT_FALSE(is_free(9)) << "while the process runs";
 
   ::kill(child, SIGKILL);
   ::waitpid(child, nullptr, 0);

@@ -71,7 +71,7 @@ TEST(DensityCourse, MeasuresThePlanForAllRobotsAlsoWhenSomeHaveFallen) {
 
   const auto course = density_course(run, moments_of(run, 0.0, 60.0));
 
-  // At second 30 one of 50 robots lives, the plan holds 50 at rest or on its legs.
+  // At second 30 one of 50 robots is alive, the plan holds 50 at rest or on its legs.
   ASSERT_TRUE(course);
   const double expected =
       planned_peak_density_per_m2(run.plans[0].plan.mixture_at(MissionTime(30.0)), 50);

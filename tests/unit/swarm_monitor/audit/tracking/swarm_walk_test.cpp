@@ -62,9 +62,9 @@ TEST(SwarmWalk, EqualsTheSearchThroughAllSteps) {
       auto next = living.begin();
       for (std::uint32_t i = 0; i < tracks.size(); ++i) {
         const auto expected = by_all_steps(tracks[i], time_s);
-        const bool lives = next != living.end() && next->robot == i;
-        ASSERT_EQ(lives, expected.has_value()) << "robot " << i << " at " << time_s;
-        if (!lives) continue;
+        const bool is_alive = next != living.end() && next->robot == i;
+        ASSERT_EQ(is_alive, expected.has_value()) << "robot " << i << " at " << time_s;
+        if (!is_alive) continue;
         EXPECT_NEAR((next->position_m - *expected).norm(), 0.0, 1e-12);  // rounding
         ++next;
       }
@@ -92,7 +92,7 @@ TEST(SwarmWalk, LeavesALostRobotOutAfterItsLastStep) {
   SwarmWalk walk(std::span(&track, 1));
 
   EXPECT_TRUE(walk.at(0.999).empty());
-  EXPECT_EQ(walk.at(2.0).size(), 1U) << "at its last step it still lives";
+  EXPECT_EQ(walk.at(2.0).size(), 1U) << "at its last step it is still alive";
   EXPECT_TRUE(walk.at(2.001).empty());
 }
 
