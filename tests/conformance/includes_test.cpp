@@ -8,6 +8,7 @@
 #include <map>
 #include <regex>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -72,6 +73,58 @@ TEST(Includes, OfVendorsStayInTheirAdapters) {
         << file << " includes " << include;
   });
   EXPECT_GT(files, 20);
+}
+
+/// Builds precompile headers, so a header that lacks a standard include compiles there: this test
+/// keeps it complete.
+TEST(Includes, OfTheStandardLibraryAreDirect) {
+  const std::vector<std::pair<std::string, std::regex>> names = [] {
+    std::vector<std::pair<std::string, std::regex>> list;
+    for (const auto& [header, words] : std::map<std::string, std::string>{
+             {"array", "array"},
+             {"atomic", "atomic"},
+             {"chrono", "chrono"},
+             {"cstdint", "u?int(8|16|32|64)_t"},
+             {"deque", "deque"},
+             {"filesystem", "filesystem"},
+             {"functional", "function"},
+             {"limits", "numeric_limits"},
+             {"map", "(multi)?map"},
+             {"memory", "unique_ptr|shared_ptr|weak_ptr|make_unique|make_shared"},
+             {"mutex", "mutex|lock_guard|unique_lock"},
+             {"optional", "optional|nullopt"},
+             {"set", "(multi)?set"},
+             {"span", "span"},
+             {"string", "string"},
+             {"string_view", "string_view"},
+             {"thread", "j?thread"},
+             {"variant", "variant|visit|monostate"},
+             {"vector", "vector"}}) {
+      list.emplace_back(header, "std::(" + words + ")\\b");
+    }
+    return list;
+  }();
+  int headers = 0;
+  auto folders = kSources;
+  folders.push_back("include");
+  for (const auto& folder : folders) {
+    for (const auto& entry : fs::recursive_directory_iterator(kRoot / folder)) {
+      if (entry.path().extension() != ".hpp") continue;
+      ++headers;
+      const auto includes = includes_of(entry.path());
+      std::ifstream in(entry.path());
+      std::string code;
+      for (std::string line; std::getline(in, line);)
+        code += line.substr(0, line.find("//")) + "\n";
+      for (const auto& [header, used] : names) {
+        EXPECT_TRUE(std::find(includes.begin(), includes.end(), header) != includes.end() ||
+                    !std::regex_search(code, used))
+            << fs::relative(entry.path(), kRoot) << " uses <" << header
+            << "> and does not include it";
+      }
+    }
+  }
+  EXPECT_GT(headers, 200);
 }
 
 /// Fails where a file of `folder` includes one of our private headers that begins with none of

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <bit>
+#include <cstdint>
+#include <string>
 
 #include "swarm_link/messages.hpp"
 #include "swarm_link/topics.hpp"

@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
+#include <vector>
+
 #include "planner_service/flow/route.hpp"
 #include "planner_service/methods/adoc/adoc.hpp"
 #include "swarmflow/planning/planning_method.hpp"

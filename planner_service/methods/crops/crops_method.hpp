@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
 #include <optional>
+#include <vector>
 
 #include "planner_service/flow/route.hpp"
 #include "planner_service/methods/crops/crops_guide.hpp"

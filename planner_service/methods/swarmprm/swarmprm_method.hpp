@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
 #include <optional>
+#include <vector>
 
 #include "planner_service/methods/swarmprm/swarmprm_options.hpp"
 #include "planner_service/roadmap/live_roadmap.hpp"

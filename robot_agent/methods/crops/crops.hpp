@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
+
 #include "robot_agent/methods/crops/fields/escape_walk.hpp"
 #include "robot_agent/methods/crops/fields/give_way_field.hpp"
 #include "robot_agent/methods/crops/fields/goal_field.hpp"
