@@ -6,7 +6,8 @@ set(swarm_warnings -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wnon-virtual-
 if(SWARM_WERROR)
   list(APPEND swarm_warnings -Werror)
 endif()
-target_compile_options(swarm_options INTERFACE "$<BUILD_INTERFACE:${swarm_warnings}>")
+# -pthread for all, since some libraries ask for it and precompiled headers need the same flags everywhere.
+target_compile_options(swarm_options INTERFACE "$<BUILD_INTERFACE:${swarm_warnings};-pthread>")
 target_compile_definitions(swarm_options INTERFACE
   $<BUILD_INTERFACE:SWARM_VERSION="${PROJECT_VERSION}">)
 target_compile_features(swarm_options INTERFACE cxx_std_20)
@@ -42,6 +43,7 @@ function(swarm_precompile owner)
     <algorithm> <array> <cmath> <cstdint> <filesystem> <functional> <limits> <map> <memory> <optional> <span> <string>
     <string_view> <utility> <variant> <vector>)
   foreach(target IN LISTS ARGN)
+    target_link_libraries(${target} PRIVATE fmt::fmt)  # its flags are part of the precompiled header
     target_precompile_headers(${target} REUSE_FROM ${owner})
   endforeach()
 endfunction()
