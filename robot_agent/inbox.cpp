@@ -29,16 +29,32 @@ Inbox::Inbox(Readers readers, link::StateChannel& states, const link::WireLimits
 void Inbox::receive_plans(UtcTime utc_now) {
   plans_.clear();
   readers_.plan->take(plans_);
-  for (link::PlanMessage& message : plans_) {
-    auto plan = gate_.plan(message, utc_now);
-    if (!plan) continue;
-    plan_time_.on_plan(message.version, plan->digest() == plan_digest_);
-    plan_digest_ = plan->digest();
-    new_plan_ = {std::move(*plan), std::move(message.entries)};
-    plan_epoch_ = message.epoch;
-    plan_version_ = message.version;
-    plan_scene_version_ = message.scene_version;
+  for (link::PlanMessage& message : plans_) receive_plan(message, utc_now);
+}
+
+/// A plan of a planner that does not rule is kept: the topic delivers it once, and its sender may
+/// be about to take over.
+void Inbox::receive_plan(link::PlanMessage& message, UtcTime utc_now) {
+  auto plan = gate_.plan(message, utc_now);
+  if (!plan) {
+    if (plan.error() == link::RefusalReason::kStale && message.epoch != gate_.planner_epoch()) {
+      waiting_plan_ = std::move(message);
+    }
+    return;
   }
+  plan_time_.on_plan(message.version, plan->digest() == plan_digest_);
+  plan_digest_ = plan->digest();
+  new_plan_ = {std::move(*plan), std::move(message.entries)};
+  plan_epoch_ = message.epoch;
+  plan_version_ = message.version;
+  plan_scene_version_ = message.scene_version;
+}
+
+/// Its sender rules since the last heartbeat.
+void Inbox::take_waiting_plan(UtcTime utc_now) {
+  if (!waiting_plan_ || waiting_plan_->epoch != gate_.planner_epoch()) return;
+  auto message = *std::exchange(waiting_plan_, std::nullopt);
+  receive_plan(message, utc_now);
 }
 
 void Inbox::receive_scenes(UtcTime utc_now) {
@@ -56,6 +72,7 @@ void Inbox::receive_heartbeats(SteadyTime now, UtcTime utc_now) {
   readers_.heartbeat->take(heartbeats_);
   for (const link::HeartbeatMessage& beat : heartbeats_) {
     if (!gate_.heartbeat(beat, utc_now)) continue;
+    take_waiting_plan(utc_now);
     mission_.on_heartbeat(now);
     plan_time_.on_heartbeat({.version = beat.version,
                              .plan_time_s = beat.plan_time_s,

@@ -94,6 +94,8 @@ class Inbox {
  private:
   void receive_fixed_topics(SteadyTime now, UtcTime utc_now);
   void receive_plans(UtcTime utc_now);
+  void receive_plan(link::PlanMessage& message, UtcTime utc_now);
+  void take_waiting_plan(UtcTime utc_now);
   void receive_scenes(UtcTime utc_now);
   void receive_heartbeats(SteadyTime now, UtcTime utc_now);
   void receive_commands(UtcTime utc_now);
@@ -109,6 +111,7 @@ class Inbox {
   std::uint64_t plan_digest_ = 0;
   link::Gate gate_;
   std::optional<NewPlan> new_plan_;
+  std::optional<link::PlanMessage> waiting_plan_;  // of a planner that does not rule, the newest
   std::optional<Scene> new_scene_;
   std::uint64_t plan_scene_version_ = 0;
   std::uint64_t plan_epoch_ = 0;

@@ -29,16 +29,20 @@ bool set_membership(int fd, int option, const in_addr& group, const in_addr& int
   return ::setsockopt(fd, IPPROTO_IP, option, &request, sizeof request) == 0;
 }
 
-/// Time at which the kernel received a datagram, if the socket has SO_TIMESTAMPNS set.
-UtcTime received_at(msghdr& message, UtcTime otherwise) {
+/// Time at which the kernel received a datagram, if the socket has SO_TIMESTAMPNS set. The kernel
+/// stamps by the wall clock; the age by it counts, unless that clock was set in between.
+UtcTime received_at(msghdr& message, UtcTime now) {
+  constexpr Duration kMostAge = std::chrono::seconds(10);
   for (cmsghdr* part = CMSG_FIRSTHDR(&message); part != nullptr;
        part = CMSG_NXTHDR(&message, part)) {
     if (part->cmsg_level != SOL_SOCKET || part->cmsg_type != SCM_TIMESTAMPNS) continue;
     timespec stamp{};
     std::memcpy(&stamp, CMSG_DATA(part), sizeof stamp);
-    return UtcTime(std::chrono::seconds(stamp.tv_sec) + Duration(stamp.tv_nsec));
+    const UtcTime at(std::chrono::seconds(stamp.tv_sec) + Duration(stamp.tv_nsec));
+    const Duration age = wall_clock_now() - at;
+    return age >= Duration::zero() && age <= kMostAge ? now - age : now;
   }
-  return otherwise;
+  return now;
 }
 
 }  // namespace

@@ -27,8 +27,13 @@ void PlannerInbox::receive(UtcTime now) {
   readers_.status->take(statuses_);
   std::erase_if(statuses_,
                 [&](const link::StatusMessage& status) { return !gate_.status(status, now); });
+  heartbeats_.clear();
+  readers_.heartbeat->take(heartbeats_);
+  std::erase_if(heartbeats_, [&](const link::HeartbeatMessage& beat) {
+    return !gate_.any_heartbeat(beat, now);
+  });
   gate_.set_undecodable(readers_.command->undecodable() + readers_.scene->undecodable() +
-                        readers_.status->undecodable());
+                        readers_.status->undecodable() + readers_.heartbeat->undecodable());
 }
 
 // t0 is the stamp of the command that starts the mission, also when it arrives late.

@@ -19,6 +19,7 @@ struct Readers {
   link::ReaderPtr<link::CommandMessage> command;
   link::ReaderPtr<link::SceneMessage> scene;
   link::ReaderPtr<link::StatusMessage> status;
+  link::ReaderPtr<link::HeartbeatMessage> heartbeat;
 };
 
 /// The messages that the planner receives: takes all that arrived, validates them at the gate, and
@@ -38,6 +39,8 @@ class PlannerInbox {
   std::span<Scene> scenes() { return new_scenes_; }
   /// Of the last receive(); robot ids are those of the mission.
   std::span<const link::StatusMessage> statuses() const { return statuses_; }
+  /// Of the last receive(), of all planners, this one included.
+  std::span<const link::HeartbeatMessage> heartbeats() const { return heartbeats_; }
 
   const link::RefusalCounters& refused() const { return gate_.refused(); }
 
@@ -52,6 +55,7 @@ class PlannerInbox {
   std::vector<link::CommandMessage> commands_;
   std::vector<link::SceneMessage> scenes_;
   std::vector<link::StatusMessage> statuses_;
+  std::vector<link::HeartbeatMessage> heartbeats_;
 };
 
 }  // namespace swarm::planner

@@ -14,6 +14,7 @@
 #include <unistd.h>
 
 #include "planner_service/keeper/plan_keeper.hpp"
+#include "planner_service/keeper/rival_watch.hpp"
 #include "planner_service/program/planner_inbox.hpp"
 #include "swarm_core/app/run_directory.hpp"
 #include "swarm_core/app/stop_signal.hpp"
@@ -55,6 +56,8 @@ Result<void> write_stats(const std::filesystem::path& run_dir, const PlanStats& 
 
 struct PlannerProcess::Impl {
   ProcessOptions options;
+  const PlanningRegistry* registry = nullptr;
+  std::uint64_t seed = 0;
   Mission mission;
   std::optional<PlanKeeper> keeper;
   PlannerEpoch epoch;
@@ -63,19 +66,32 @@ struct PlannerProcess::Impl {
   link::WriterPtr<link::HeartbeatMessage> heartbeat_writer;
   link::WriterPtr<link::EventMessage> event_writer;
   std::optional<PlannerInbox> inbox;
+  std::optional<RivalWatch> rivals;
   std::uint64_t beats = 0;
   std::ofstream clock_file;
   link::RefusalCounters reported;      // counts already announced as events
   std::vector<std::string> unwritten;  // why files of the first plan are missing
 
+  Result<void> make_keeper();
   Result<void> plan_first();
   Result<void> join(const shell::RunInfo& run);
   void receive(SteadyTime now);
+  void watch_rivals(SteadyTime now);
+  void take_over(SteadyTime now);
   void keep_planned(SteadyTime now);
   void publish();
   void announce(link::Severity severity, const std::string& code, const std::string& text);
   void beat(UtcTime now);
 };
+
+// The epoch is the time of this call, so that the plans supersede those before.
+Result<void> PlannerProcess::Impl::make_keeper() {
+  auto planner = Planner::make(*registry, mission);
+  if (!planner) return tl::unexpected(planner.error());
+  keeper.emplace(mission, *std::move(planner), seed, &std::chrono::steady_clock::now);
+  epoch = PlannerEpoch(static_cast<std::uint64_t>(utc_now().time_since_epoch().count()));
+  return {};
+}
 
 // Writes plan and statistics to the run directory before the planner joins the bus. A file that
 // cannot be written, as on a full disk, is reported and does not keep robots waiting for the plan.
@@ -107,17 +123,22 @@ Result<void> PlannerProcess::Impl::join(const shell::RunInfo& run) {
   auto orders = participant->make_reader(link::command_topic());
   auto scene_changes = participant->make_reader(link::scene_topic());
   auto health = participant->make_reader(link::status_topic_unacknowledged());
+  auto planners = participant->make_reader(link::heartbeat_topic());
   if (!plans) return tl::unexpected(plans.error());
   if (!heartbeats) return tl::unexpected(heartbeats.error());
   if (!events) return tl::unexpected(events.error());
   if (!orders) return tl::unexpected(orders.error());
   if (!scene_changes) return tl::unexpected(scene_changes.error());
   if (!health) return tl::unexpected(health.error());
+  if (!planners) return tl::unexpected(planners.error());
   plan_writer = std::move(*plans);
   heartbeat_writer = std::move(*heartbeats);
   event_writer = std::move(*events);
-  inbox.emplace(Readers{std::move(*orders), std::move(*scene_changes), std::move(*health)},
-                link::wire_limits(mission));
+  const link::WireLimits limits = link::wire_limits(mission);
+  inbox.emplace(Readers{std::move(*orders), std::move(*scene_changes), std::move(*health),
+                        std::move(*planners)},
+                limits);
+  rivals.emplace(epoch.value(), limits.planner_takeover, std::chrono::steady_clock::now());
   clock_file.open(options.run_dir / shell::kPlanClockFile, std::ios::app);
   for (const std::string& reason : unwritten) {
     announce(link::Severity::kWarning, "plan-file-missing", reason);
@@ -142,6 +163,34 @@ void PlannerProcess::Impl::receive(SteadyTime now) {
                       robot.mode == RobotMode::kMoving, now);
     }
   }
+}
+
+// A planner that stands by neither plans nor beats.
+void PlannerProcess::Impl::watch_rivals(SteadyTime now) {
+  for (const link::HeartbeatMessage& beat : inbox->heartbeats()) {
+    rivals->on_heartbeat(beat.epoch, now);
+  }
+  const auto change = rivals->step(now);
+  if (change == RivalWatch::Change::kStoodBy) {
+    announce(link::Severity::kWarning, "planner-standby",
+             "another planner leads the robots: this one stands by");
+  } else if (change == RivalWatch::Change::kTookOver) {
+    announce(link::Severity::kWarning, "planner-takeover",
+             "the planner that led the robots is silent: this one takes over");
+    take_over(now);
+  }
+}
+
+// Like a planner that has just been started, in the scene as it is now.
+void PlannerProcess::Impl::take_over(SteadyTime now) {
+  Scene scene = keeper->scene();
+  Result<void> made = make_keeper();
+  if (made) made = keeper->plan_first();
+  if (!made) announce(link::Severity::kWarning, "replan-failed", made.error().message);
+  keeper->begin(now);
+  keeper->take_scene(std::move(scene));
+  beats = 0;
+  rivals.emplace(epoch.value(), link::wire_limits(mission).planner_takeover, now);
 }
 
 // One step of the keeper: events, the plan and the clock go out in this order. A new clock reading
@@ -221,22 +270,19 @@ void PlannerProcess::Impl::beat(UtcTime now) {
 PlannerProcess::PlannerProcess(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 PlannerProcess::~PlannerProcess() = default;
 
-// The epoch is the start time of the process, so that the plans of a restarted planner supersede
-// those before.
 Result<std::unique_ptr<PlannerProcess>> PlannerProcess::make(const ProcessOptions& options,
                                                              const PlanningRegistry& registry) {
   auto impl = std::make_unique<Impl>();
   impl->options = options;
   const auto run = shell::read_run_info(options.run_dir);
   if (!run) return tl::unexpected(run.error());
+  shell::follow(run->clock);
   auto mission = load_mission(options.run_dir / shell::kMissionFile, registry.catalogue());
   if (!mission) return tl::unexpected(mission.error());
   impl->mission = std::move(*mission);
-  auto planner = Planner::make(registry, impl->mission);
-  if (!planner) return tl::unexpected(planner.error());
-  impl->keeper.emplace(impl->mission, *std::move(planner), run->seed,
-                       &std::chrono::steady_clock::now);
-  impl->epoch = PlannerEpoch(static_cast<std::uint64_t>(utc_now().time_since_epoch().count()));
+  impl->registry = &registry;
+  impl->seed = run->seed;
+  if (auto made = impl->make_keeper(); !made) return tl::unexpected(made.error());
   if (auto planned = impl->plan_first(); !planned) return tl::unexpected(planned.error());
   if (auto joined = impl->join(*run); !joined) return tl::unexpected(joined.error());
   return std::unique_ptr<PlannerProcess>(new PlannerProcess(std::move(impl)));
@@ -251,8 +297,13 @@ Result<void> PlannerProcess::run() {
   while (shell::stop_requests() == 0) {
     const SteadyTime now = std::chrono::steady_clock::now();
     p.receive(now);
-    p.keep_planned(now);
-    if (now >= next_beat) {
+    p.watch_rivals(now);
+    if (p.rivals->stands_by()) {
+      next_beat = now;
+    } else {
+      p.keep_planned(now);
+    }
+    if (now >= next_beat && !p.rivals->stands_by()) {
       p.beat(utc_now());
       next_beat = std::max(next_beat + beat_period, now);
     }

@@ -62,6 +62,7 @@ Result<std::unique_ptr<AgentProcess>> AgentProcess::make(const ProcessOptions& o
                                                          const RobotRegistry& registry) {
   const auto run = shell::read_run_info(options.run_dir);
   if (!run) return tl::unexpected(run.error());
+  shell::follow(run->clock);
   auto mission = load_mission(options.run_dir / shell::kMissionFile, catalogue_of(registry));
   if (!mission) return tl::unexpected(mission.error());
   auto impl = std::make_unique<Impl>();

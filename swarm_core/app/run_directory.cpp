@@ -67,7 +67,9 @@ Result<void> write_run_info(const std::filesystem::path& run_dir, const RunInfo&
                                {"interface", info.interface},
                                {"channel", to_string(info.channel)},
                                {"seed", info.seed},
-                               {"began_utc_ns", info.began.time_since_epoch().count()}};
+                               {"began_utc_ns", info.began.time_since_epoch().count()},
+                               {"boot_id", info.clock.boot_id},
+                               {"utc_minus_steady_ns", info.clock.utc_minus_steady_ns}};
   return write_file(run_dir / kRunFile, json.dump(2) + "\n");
 }
 
@@ -81,20 +83,23 @@ Result<RunInfo> read_run_info(const std::filesystem::path& run_dir) {
     const auto vendor = [&json](const char* is_cyclone) {
       return json.at(is_cyclone).get<bool>() ? link::Vendor::kCycloneDds : link::Vendor::kFastDds;
     };
-    return RunInfo{.domain = json.at("domain").get<std::uint32_t>(),
-                   .discovery_host = json.at("discovery_host").get<std::string>(),
-                   .discovery_port = json.at("discovery_port").get<std::uint16_t>(),
-                   .agents = json.at("agents").get<std::uint32_t>(),
-                   .relays = json.at("hubs").get<std::uint32_t>(),
-                   .launcher = vendor("cyclone_launcher"),
-                   .planner = vendor("cyclone_planner"),
-                   .host = json.at("host").get<std::string>(),
-                   .interface = json.at("interface").get<std::string>(),
-                   .channel = json.at("channel").get<std::string>() == to_string(Channel::kGroups)
-                                  ? Channel::kGroups
-                                  : Channel::kTopics,
-                   .seed = json.at("seed").get<std::uint64_t>(),
-                   .began = UtcTime(Duration(json.at("began_utc_ns").get<std::int64_t>()))};
+    return RunInfo{
+        .domain = json.at("domain").get<std::uint32_t>(),
+        .discovery_host = json.at("discovery_host").get<std::string>(),
+        .discovery_port = json.at("discovery_port").get<std::uint16_t>(),
+        .agents = json.at("agents").get<std::uint32_t>(),
+        .relays = json.at("hubs").get<std::uint32_t>(),
+        .launcher = vendor("cyclone_launcher"),
+        .planner = vendor("cyclone_planner"),
+        .host = json.at("host").get<std::string>(),
+        .interface = json.at("interface").get<std::string>(),
+        .channel = json.at("channel").get<std::string>() == to_string(Channel::kGroups)
+                       ? Channel::kGroups
+                       : Channel::kTopics,
+        .seed = json.at("seed").get<std::uint64_t>(),
+        .began = UtcTime(Duration(json.at("began_utc_ns").get<std::int64_t>())),
+        .clock = {.boot_id = json.at("boot_id").get<std::string>(),
+                  .utc_minus_steady_ns = json.at("utc_minus_steady_ns").get<std::int64_t>()}};
   } catch (const nlohmann::json::exception& e) {
     return fail(ErrorCode::kBadInput, fmt::format("{}: not a run directory: {}",
                                                   (run_dir / kRunFile).string(), e.what()));

@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "swarm_core/app/run_clock.hpp"
 #include "swarm_core/mission/channel.hpp"
 #include "swarm_core/mission/vendor.hpp"
 #include "swarmflow/core/result.hpp"
@@ -45,6 +46,7 @@ struct RunInfo {
   Channel channel = Channel::kTopics;
   std::uint64_t seed = 0;
   UtcTime began{};
+  RunClock clock{};  ///< of the host that this file is on
 };
 
 /// Writes `run.json`, atomically.

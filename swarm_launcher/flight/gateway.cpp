@@ -33,6 +33,7 @@ Result<ExitCode> run_gateway(const GatewayCommandOptions& options) {
   if (!mission) return tl::unexpected(mission.error());
   const auto run = shell::read_run_info(options.run_dir);
   if (!run) return tl::unexpected(run.error());
+  shell::follow(run->clock);
   if (run->channel != Channel::kGroups) {
     return fail(ErrorCode::kBadInput, "this run's states go by topics: no gateway is needed");
   }

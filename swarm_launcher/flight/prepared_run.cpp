@@ -61,7 +61,8 @@ Result<void> PreparedRun::join() {
            .interface = how.interface,
            .channel = checked_.channel.channel,
            .seed = how.seed,
-           .began = utc_now()};
+           .began = utc_now(),
+           .clock = shell::own_clock()};
   if (auto written = shell::write_run_info(dir_, info_); !written) return written;
   auto participant = link::join_as_launcher(link::meeting_of(info_));
   if (!participant) return tl::unexpected(participant.error());

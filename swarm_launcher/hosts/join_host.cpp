@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 #include <unistd.h>
 
+#include "swarm_core/app/run_clock.hpp"
 #include "swarm_core/app/run_dir.hpp"
 #include "swarm_core/app/stop_signal.hpp"
 #include "swarm_core/robot_log/robot_log_file.hpp"
@@ -33,14 +34,22 @@ constexpr std::size_t kMaxLogBytes = 1U << 30U;
 
 SteadyTime now() { return std::chrono::steady_clock::now(); }
 
-// Requests robots and waits for the offer.
+// Requests robots and waits for the offer. It was sent between our request and its arrival: taking
+// the middle, the two hosts' clocks agree to half of that time, a few hundredths of a second.
 Result<HostOffer> ask(LineSocket& socket, std::uint32_t robots) {
+  const SteadyTime asked = now();
   socket.send(nlohmann::json{{"join", robots}}.dump());
   for (const SteadyTime until = now() + kAnswerTimeout; now() < until && !socket.gone();) {
     socket.wait(kStep_ms);
     socket.flush();
     socket.receive();
-    if (const auto line = socket.line()) return parse_offer(*line);
+    const auto line = socket.line();
+    if (!line) continue;
+    auto offer = parse_offer(*line);
+    if (!offer) return offer;
+    shell::follow(offer->sent_at, asked + (now() - asked) / 2);
+    offer->run.clock = shell::own_clock();
+    return offer;
   }
   return fail(ErrorCode::kEnvironment, "no launcher answers there");
 }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "swarm_launcher/hosts/offer.hpp"
 
+#include <cstdint>
 #include <stdexcept>
 #include <utility>
 
@@ -13,7 +14,7 @@ namespace swarm::launcher {
 namespace {
 
 // Raise it with every change of the offer or of the lines between the hosts.
-constexpr int kVersion = 2;
+constexpr int kVersion = 3;
 constexpr std::uint32_t kMaxRobots = 20'000;
 
 /// A field that is a whole number and fits into T. The JSON library would convert a fraction, a
@@ -33,6 +34,13 @@ T whole(const nlohmann::json& json, const char* key) {
   throw std::out_of_range(fmt::format("'{}' is no whole number of its range", key));
 }
 
+/// Far from the ends of the range: receivers subtract from it.
+bool is_plausible(UtcTime time) {
+  constexpr std::int64_t kMost_ns = INT64_MAX / 2;
+  const std::int64_t ns = time.time_since_epoch().count();
+  return ns > 0 && ns < kMost_ns;
+}
+
 }  // namespace
 
 // The keys are the protocol between hosts; "hubs" is the number of relay participants.
@@ -50,7 +58,8 @@ std::string to_line(const HostOffer& offer) {
                         {"per_process", offer.per_process},
                         {"first_process", offer.first_process},
                         {"fault", offer.fault},
-                        {"mission", offer.mission_yaml}}
+                        {"mission", offer.mission_yaml},
+                        {"sent_at_utc_ns", offer.sent_at.time_since_epoch().count()}}
       .dump();
 }
 
@@ -85,14 +94,17 @@ Result<HostOffer> parse_offer(const std::string& line) {
                     .per_process = whole<std::uint32_t>(json, "per_process"),
                     .first_process = whole<std::uint32_t>(json, "first_process"),
                     .fault = json.at("fault").get<std::string>(),
-                    .mission_yaml = json.at("mission").get<std::string>()};
+                    .mission_yaml = json.at("mission").get<std::string>(),
+                    .sent_at = UtcTime(Duration(whole<std::int64_t>(json, "sent_at_utc_ns")))};
     // It becomes a part of the DDS configuration: nothing but an address may be in it.
     in_addr address{};
-    const bool plausible =
-        ::inet_pton(AF_INET, offer.run.host.c_str(), &address) == 1 && offer.run.domain < 230 && offer.run.relays >= 1 && offer.run.relays <= 1000 &&
-        offer.robots >= 1 && offer.robots <= kMaxRobots && offer.first_robot <= kMaxRobots &&
-        offer.first_robot + offer.robots <= kMaxRobots && offer.per_process >= 1 &&
-        offer.per_process <= kMaxRobots && offer.first_process <= kMaxRobots;
+    const bool plausible = ::inet_pton(AF_INET, offer.run.host.c_str(), &address) == 1 &&
+                           offer.run.domain < 230 && offer.run.relays >= 1 &&
+                           offer.run.relays <= 1000 && offer.robots >= 1 &&
+                           offer.robots <= kMaxRobots && offer.first_robot <= kMaxRobots &&
+                           offer.first_robot + offer.robots <= kMaxRobots &&
+                           offer.per_process >= 1 && offer.per_process <= kMaxRobots &&
+                           offer.first_process <= kMaxRobots && is_plausible(offer.sent_at);
     if (plausible) return offer;
     return fail(ErrorCode::kBadInput, "what answered is no launcher: its offer makes no sense");
   } catch (const std::exception& e) {

@@ -7,6 +7,7 @@
 
 #include "swarm_core/app/run_directory.hpp"
 #include "swarmflow/core/result.hpp"
+#include "swarmflow/core/time.hpp"
 
 namespace swarm::launcher {
 
@@ -20,6 +21,7 @@ struct HostOffer {
   std::uint32_t first_process = 0;  ///< number of its first agent process in the run, from 0
   std::string fault{};              ///< simulated network faults, see parse_link_faults()
   std::string mission_yaml;         ///< the resolved mission
+  UtcTime sent_at{};                ///< by the launcher's clock, which is that of the run
 };
 
 /// One line of JSON. A received one is not trusted: every field is checked.

@@ -75,6 +75,7 @@ bool RemoteHosts::answer(Host& host, std::uint32_t robots) {
   block.robots -= given;
   if (block.robots == 0) free_.erase(free_.begin());
   joined_.push_back(static_cast<std::size_t>(&host - hosts_.data()));
+  part.sent_at = utc_now();
   host.socket.send(to_line(part));
   return true;
 }

@@ -28,7 +28,8 @@ bool is_after(std::int64_t stamp_utc_ns, std::uint64_t latest_ns) {
 
 }  // namespace
 
-Gate::Gate(const GateOptions& options) : options_(options) {}
+Gate::Gate(const GateOptions& options)
+    : options_(options), ruler_(options.limits.planner_takeover) {}
 
 std::uint64_t Gate::latest_ns(UtcTime now) const {
   return to_ns(now + options_.limits.clock_skew_refuse);
@@ -49,7 +50,19 @@ Checked<void> Gate::order(const PlanMessage& message, UtcTime now) {
       !is_reached(message.version, message.epoch, latest)) {
     return refuse(RefusalReason::kForged);
   }
-  return plan_.accept({message.epoch, message.version});
+  if (!ruler_.admits_plan(message.epoch, now)) return refuse(RefusalReason::kStale);
+  PlannerOrder order = order_of(message.epoch);
+  const auto accepted = order.version.accept(message.version);
+  if (accepted) {
+    planner_ = order;
+    ruler_.on_plan(message.epoch);
+  }
+  return accepted;
+}
+
+/// Versions and numbers of another planner begin anew.
+Gate::PlannerOrder Gate::order_of(std::uint64_t epoch) const {
+  return planner_.epoch == epoch ? planner_ : PlannerOrder{.epoch = epoch};
 }
 
 Checked<Scene> Gate::scene(const SceneMessage& message, UtcTime now) {
@@ -71,13 +84,37 @@ Checked<void> Gate::heartbeat(const HeartbeatMessage& message, UtcTime now) {
   return counted(checked);
 }
 
-Checked<void> Gate::order(const HeartbeatMessage& message, UtcTime now) {
+Checked<void> Gate::any_heartbeat(const HeartbeatMessage& message, UtcTime now) {
+  auto checked = check_heartbeat(message);
+  if (checked) checked = reach(message, now);
+  return counted(checked);
+}
+
+/// Whether nothing in the message is from the future.
+Checked<void> Gate::reach(const HeartbeatMessage& message, UtcTime now) const {
   const std::uint64_t latest = latest_ns(now);
   if (message.epoch > latest || is_after(message.stamp_utc_ns, latest) ||
       !is_reached(message.sequence_number, message.epoch, latest)) {
     return refuse(RefusalReason::kForged);
   }
-  return heartbeat_.accept({message.epoch, message.sequence_number});
+  return {};
+}
+
+Checked<void> Gate::order(const HeartbeatMessage& message, UtcTime now) {
+  if (const auto reached = reach(message, now); !reached) return reached;
+  if (!ruler_.admits_heartbeat(message.epoch, now)) {
+    ++foreign_heartbeats_;
+    return refuse(RefusalReason::kStale);
+  }
+  PlannerOrder order = order_of(message.epoch);
+  // After a silence any number passes: an invented one must not keep the real ones out for ever.
+  if (!ruler_.is_heard(now)) order.beat = NewestKey<std::uint64_t>{0};
+  const auto accepted = order.beat.accept(message.sequence_number);
+  if (accepted) {
+    planner_ = order;
+    ruler_.on_heartbeat(message.epoch, now);
+  }
+  return accepted;
 }
 
 Checked<void> Gate::command(const CommandMessage& message, UtcTime now) {

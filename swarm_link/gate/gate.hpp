@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <cstdint>
 #include <optional>
-#include <utility>
 #include <vector>
 
 #include "swarm_link/gate/content_checks.hpp"
 #include "swarm_link/gate/echo_guard.hpp"
 #include "swarm_link/gate/newest_key.hpp"
+#include "swarm_link/gate/ruling_planner.hpp"
 
 namespace swarm::link {
 
@@ -34,8 +34,8 @@ struct GateOptions {
 /// Each function checks, in this order: the message by itself (content_checks.hpp); that it is not
 /// from the future: no epoch, scene version, command id or stamp may lie further ahead of `now`
 /// than clock_skew_refuse, because these are UTC stamps of their senders and an invented one would
-/// outrank everything real; its order: newer than the newest that passed. A planner that takes over
-/// has a higher epoch, so its version 1 passes and messages of its predecessor do not.
+/// outrank everything real; its order: newer than the newest that passed. Of several planners only
+/// the ruling one passes (ruling_planner.hpp); its versions and numbers count anew.
 ///
 /// Pure: no clock, no bus. Linear in the size of the message; state() and batch() do not allocate.
 /// Not thread-safe.
@@ -43,12 +43,14 @@ class Gate {
  public:
   explicit Gate(const GateOptions& options);
 
-  /// Ordered by (epoch, version).
+  /// Ordered by version; of the ruling planner.
   Checked<FlowPlan> plan(const PlanMessage& message, UtcTime now);
   /// Ordered by version; the first one passes with any.
   Checked<Scene> scene(const SceneMessage& message, UtcTime now);
-  /// Ordered by (epoch, number).
+  /// Ordered by number; of the ruling planner.
   Checked<void> heartbeat(const HeartbeatMessage& message, UtcTime now);
+  /// Of any planner, in any order: for planners, which watch each other.
+  Checked<void> any_heartbeat(const HeartbeatMessage& message, UtcTime now);
   /// Ordered by id, except that a stop passes whatever its stamp and id are, and again and again.
   Checked<void> command(const CommandMessage& message, UtcTime now);
   /// Not ordered: statuses have no number, and DDS keeps each writer's order.
@@ -78,8 +80,18 @@ class Gate {
 
   const RefusalCounters& refused() const { return refused_; }
 
+  /// Epoch of the planner whose messages pass; 0 before the first.
+  std::uint64_t planner_epoch() const { return ruler_.epoch(); }
+  /// Heartbeats of planners that do not rule, since the start.
+  std::uint64_t foreign_heartbeats() const { return foreign_heartbeats_; }
+
  private:
-  using Version = std::pair<std::uint64_t, std::uint64_t>;  // epoch, number in it
+  /// The newest plan and heartbeat of one planner.
+  struct PlannerOrder {
+    std::uint64_t epoch = 0;
+    NewestKey<std::uint64_t> version{0};
+    NewestKey<std::uint64_t> beat{0};
+  };
 
   /// Counts a refusal and returns the result unchanged.
   template <class T>
@@ -99,15 +111,18 @@ class Gate {
   Checked<void> order(const PlanMessage& message, UtcTime now);
   Checked<void> order(const SceneMessage& message, UtcTime now);
   Checked<void> order(const HeartbeatMessage& message, UtcTime now);
+  Checked<void> reach(const HeartbeatMessage& message, UtcTime now) const;
   Checked<void> order(const CommandMessage& message, UtcTime now);
   Checked<void> order(const StatusMessage& message, UtcTime now) const;
+  PlannerOrder order_of(std::uint64_t epoch) const;
 
   GateOptions options_;
-  RefusalCounters refused_;          ///< since the start
-  std::uint64_t undecodable_ = 0;    ///< already counted
-  NewestKey<Version> plan_{{0, 0}};  ///< the newest of each topic
-  NewestKey<std::uint64_t> scene_;
-  NewestKey<Version> heartbeat_{{0, 0}};
+  RefusalCounters refused_;        ///< since the start
+  std::uint64_t undecodable_ = 0;  ///< already counted
+  RulingPlanner ruler_;
+  PlannerOrder planner_;  ///< of the ruling one
+  std::uint64_t foreign_heartbeats_ = 0;
+  NewestKey<std::uint64_t> scene_;  ///< the newest of each topic
   NewestKey<std::uint64_t> command_{0};
   std::vector<NewestKey<std::int64_t>> newest_state_;  // by robot, once newer_state() is used
 };

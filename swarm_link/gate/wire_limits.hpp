@@ -18,6 +18,7 @@ struct WireLimits {
   double speed_max_mps = 1.5;    ///< speeds are at most twice this
   Duration clock_skew_warn{};    ///< a stamp further from our clock is used and reported
   Duration clock_skew_refuse{};  ///< a stamp further from our clock is refused
+  Duration planner_takeover{};   ///< silence of a planner after which another one is followed
 };
 
 /// Limits of a mission; the slack of the bounds is the default.

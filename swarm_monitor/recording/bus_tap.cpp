@@ -175,6 +175,7 @@ Result<std::unique_ptr<BusTap>> tap_bus(const std::filesystem::path& run_dir,
   if (!mission) return tl::unexpected(mission.error());
   const auto run = shell::read_run_info(run_dir);
   if (!run) return tl::unexpected(run.error());
+  shell::follow(run->clock);
   auto participant = link::join_as_monitor(link::meeting_of(*run), run->agents, number);
   if (!participant) return tl::unexpected(participant.error());
   auto tap = std::make_unique<RunTap>(std::move(*participant));

@@ -13,8 +13,8 @@ using Duration = std::chrono::nanoseconds;
 /// and means nothing to another machine.
 using SteadyTime = std::chrono::steady_clock::time_point;
 
-/// A UTC time, for stamps that cross processes: in messages, files and robot logs. The system clock
-/// behind it may be off or be set while a program runs.
+/// A UTC time, for stamps that cross processes: in messages, files and robot logs. In a run it is
+/// the run's clock, which no setting of a machine's clock changes.
 using UtcTime = std::chrono::sys_time<std::chrono::nanoseconds>;
 
 /// Seconds of mission time or plan time. Mission time counts from t0, the stamp of the start

@@ -28,7 +28,8 @@ RunInfo unusual_run() {
           .interface = "10.1.2.5",
           .channel = Channel::kGroups,
           .seed = std::numeric_limits<std::uint64_t>::max(),
-          .began = UtcTime(Duration(1'700'000'000'123'456'789))};
+          .began = UtcTime(Duration(1'700'000'000'123'456'789)),
+          .clock = {.boot_id = "a boot", .utc_minus_steady_ns = -12}};
 }
 
 TEST(RunInfo, ComesBackFromItsFileAsItWas) {
@@ -51,13 +52,15 @@ TEST(RunInfo, ComesBackFromItsFileAsItWas) {
   EXPECT_EQ(read->channel, wrote.channel);
   EXPECT_EQ(read->seed, wrote.seed);
   EXPECT_EQ(read->began, wrote.began);
+  EXPECT_EQ(read->clock.boot_id, wrote.clock.boot_id);
+  EXPECT_EQ(read->clock.utc_minus_steady_ns, wrote.clock.utc_minus_steady_ns);
 }
 
 TEST(RunInfo, IsRefusedWithoutAnyOneOfItsKeys) {
   const ScratchFolder folder;
   ASSERT_TRUE(write_run_info(folder.path(), unusual_run()));
   const auto whole = nlohmann::json::parse(folder.read("run.json"));
-  ASSERT_EQ(whole.size(), 12U);
+  ASSERT_EQ(whole.size(), 14U);
 
   for (const auto& [key, value] : whole.items()) {
     auto part = whole;

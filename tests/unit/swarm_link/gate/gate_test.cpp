@@ -14,6 +14,7 @@ namespace {
 
 constexpr UtcTime kNow{std::chrono::seconds(1'700'000'000)};
 constexpr Duration kRefuse = std::chrono::seconds(10);
+constexpr Duration kTakeover = std::chrono::milliseconds(700);
 constexpr auto kHuge = std::numeric_limits<std::uint64_t>::max();
 
 std::int64_t ns(UtcTime t) { return t.time_since_epoch().count(); }
@@ -24,7 +25,8 @@ WireLimits limits() {
   return {.robots = 100,
           .bounds_m = {.min_m = {0.0, 0.0}, .max_m = {50.0, 40.0}},
           .clock_skew_warn = std::chrono::milliseconds(250),
-          .clock_skew_refuse = kRefuse};
+          .clock_skew_refuse = kRefuse,
+          .planner_takeover = kTakeover};
 }
 
 /// One leg from (10, 10) to (20, 10).
@@ -73,18 +75,58 @@ TEST_F(GateTest, LetsPlansThroughInTheOrderOfEpochAndVersion) {
   EXPECT_TRUE(counted(RefusalReason::kStale));
 }
 
-TEST_F(GateTest, FollowsAPlannerThatTakesOver) {
+TEST_F(GateTest, FollowsAnotherPlannerOnlyAfterSilence) {
   const std::uint64_t first = id(s_later(-100)), second = id(s_later(-50));
   EXPECT_TRUE(sut.plan(plan(first, 7), kNow));
   EXPECT_TRUE(sut.heartbeat(heartbeat(first, 500), kNow));
 
-  EXPECT_TRUE(sut.plan(plan(second, 1), kNow));
-  EXPECT_TRUE(sut.heartbeat(heartbeat(second, 1), kNow));
+  EXPECT_FALSE(sut.plan(plan(second, 1), kNow + kTakeover));
+  EXPECT_TRUE(counted(RefusalReason::kStale));
+  EXPECT_FALSE(sut.heartbeat(heartbeat(second, 1), kNow + kTakeover));
+  EXPECT_TRUE(counted(RefusalReason::kStale));
+  EXPECT_EQ(sut.foreign_heartbeats(), 1U);
+  EXPECT_EQ(sut.planner_epoch(), first);
 
-  EXPECT_FALSE(sut.plan(plan(first, 8), kNow));
+  const UtcTime later = kNow + kTakeover + std::chrono::nanoseconds(1);
+  EXPECT_TRUE(sut.heartbeat(heartbeat(second, 2), later));
+  EXPECT_EQ(sut.planner_epoch(), second);
+  EXPECT_TRUE(sut.plan(plan(second, 1), later));
+  EXPECT_FALSE(sut.plan(plan(first, 8), later));
   EXPECT_TRUE(counted(RefusalReason::kStale));
-  EXPECT_FALSE(sut.heartbeat(heartbeat(first, 501), kNow));
+  EXPECT_FALSE(sut.heartbeat(heartbeat(first, 501), later));
   EXPECT_TRUE(counted(RefusalReason::kStale));
+}
+
+// A planner with a later epoch that was followed by mistake is left when it is silent.
+TEST_F(GateTest, ComesBackToAnOlderPlanner) {
+  const std::uint64_t real = id(s_later(-100)), foreign = id(kNow);
+  EXPECT_TRUE(sut.heartbeat(heartbeat(foreign, 1), kNow));
+  EXPECT_FALSE(sut.heartbeat(heartbeat(real, 300), kNow));
+  EXPECT_TRUE(sut.heartbeat(heartbeat(real, 301), kNow + 2 * kTakeover));
+  EXPECT_TRUE(sut.plan(plan(real, 4), kNow + 2 * kTakeover));
+}
+
+// A plan shows a planner's epoch; only heartbeats show that it lives.
+TEST_F(GateTest, FollowsTheHeartbeatsOfAnyPlannerAfterAPlanAlone) {
+  EXPECT_TRUE(sut.plan(plan(id(kNow), 1), kNow));
+  EXPECT_TRUE(sut.heartbeat(heartbeat(id(s_later(-100)), 300), kNow));
+  EXPECT_EQ(sut.planner_epoch(), id(s_later(-100)));
+}
+
+// An invented number may be as high as the epoch allows: it holds for the takeover time only.
+TEST_F(GateTest, ForgetsTheNumberOfAHeartbeatAfterSilence) {
+  const std::uint64_t epoch = id(s_later(-100));
+  EXPECT_TRUE(sut.heartbeat(heartbeat(epoch, 90'000), kNow));
+  EXPECT_FALSE(sut.heartbeat(heartbeat(epoch, 500), kNow + kTakeover));
+  EXPECT_TRUE(sut.heartbeat(heartbeat(epoch, 501), kNow + 2 * kTakeover));
+  EXPECT_TRUE(sut.heartbeat(heartbeat(epoch, 502), kNow + 2 * kTakeover));
+}
+
+TEST_F(GateTest, RefusesAHeartbeatWithoutNumberWithoutForgettingThePlan) {
+  const std::uint64_t epoch = id(s_later(-100));
+  EXPECT_TRUE(sut.plan(plan(epoch, 3), kNow));
+  EXPECT_FALSE(sut.heartbeat(heartbeat(id(s_later(-50)), 0), kNow));
+  EXPECT_FALSE(sut.plan(plan(epoch, 3), kNow));
 }
 
 TEST_F(GateTest, RefusesEpochsOfTheFuture) {
@@ -114,7 +156,8 @@ TEST_F(GateTest, RefusesNumbersThatAnEpochCannotHaveReached) {
   EXPECT_TRUE(counted(RefusalReason::kForged));
   EXPECT_TRUE(sut.plan(plan(epoch, 100'000), kNow));
   EXPECT_TRUE(sut.heartbeat(heartbeat(epoch, 100'000), kNow));
-  EXPECT_TRUE(sut.heartbeat(heartbeat(id(s_later(10)), 900), kNow)) << "of a planner just begun";
+  EXPECT_TRUE(sut.heartbeat(heartbeat(id(s_later(9)), 900), kNow + 2 * kTakeover))
+      << "of a planner just begun";
 }
 
 TEST_F(GateTest, RefusesHeartbeatsStampedInTheFuture) {
