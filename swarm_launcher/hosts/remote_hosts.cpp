@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "swarm_core/base/clock.hpp"
 #include "swarm_core/robot_log/robot_log_file.hpp"
 
 namespace swarm::launcher {

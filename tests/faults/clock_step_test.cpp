@@ -1,0 +1,121 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+// The wall clock of the host is set while robots fly.
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <csignal>
+#include <cstdint>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <optional>
+#include <string>
+#include <thread>
+#include <variant>
+#include <vector>
+
+#include "swarm_core/robot_log/robot_log_file.hpp"
+#include "tests/system/flown_run.hpp"
+
+namespace swarm::test {
+namespace {
+
+/// The wall clock of all programs started while it lives, as the shim has it.
+class SteppedClock {
+ public:
+  SteppedClock() {
+    set_s(0);
+    ::setenv("LD_PRELOAD", SWARM_CLOCK_SHIM, 1);
+    ::setenv("SWARM_CLOCK_OFFSET_FILE", file().c_str(), 1);
+  }
+  ~SteppedClock() {
+    ::unsetenv("LD_PRELOAD");
+    ::unsetenv("SWARM_CLOCK_OFFSET_FILE");
+  }
+  SteppedClock(const SteppedClock&) = delete;
+  SteppedClock& operator=(const SteppedClock&) = delete;
+
+  /// In place, since the programs have the file mapped.
+  void set_s(std::int64_t offset_s) {
+    std::ofstream out(file(), std::ios::binary | (is_made_ ? std::ios::in : std::ios::out));
+    out.write(reinterpret_cast<const char*>(&offset_s), sizeof offset_s);
+    is_made_ = true;
+  }
+
+ private:
+  std::string file() const { return (folder_.path() / "offset").string(); }
+
+  TemporaryFolder folder_;
+  bool is_made_ = false;
+};
+
+/// How often a robot began to hold, and the longest time from one of its log's steps to the next.
+struct Flown {
+  int holds = 0;
+  Duration longest_gap{};
+  bool is_in_order = true;
+};
+Flown read_log(const std::filesystem::path& run_dir, std::uint32_t robot) {
+  Flown flown;
+  std::optional<UtcTime> last;
+  const auto read = robot_log::read_records(
+      robot_log::file_of(run_dir, RobotId(robot)), [&](const robot_log::Record& record) {
+        if (const auto* note = std::get_if<robot_log::Note>(&record)) {
+          if (note->code == "mode" && note->text == "holding") ++flown.holds;
+        } else if (const auto* step = std::get_if<robot_log::Step>(&record)) {
+          if (last) flown.longest_gap = std::max(flown.longest_gap, step->stamp - *last);
+          if (last && step->stamp < *last) flown.is_in_order = false;
+          last = step->stamp;
+        }
+      });
+  EXPECT_TRUE(read) << read.error().message;
+  return flown;
+}
+
+class ClockStep : public testing::TestWithParam<const char*> {};
+
+// Commands, plans, scenes and heartbeats of before a step do not outrank those after it.
+TEST_P(ClockStep, ChangesNothingInFlight) {
+  SteppedClock clock;
+  FlownRun run({"--channel", GetParam()});
+  ASSERT_TRUE(run.mission_started()) << run.launcher().err();
+  const auto command = [&](const std::vector<std::string>& words) {
+    std::vector<std::string> line = {"command", run.dir().string()};
+    line.insert(line.end(), words.begin(), words.end());
+    Program program("swarm_launcher", line);
+    EXPECT_EQ(program.wait(), 0) << words.front() << ": " << program.out() << program.err();
+  };
+  bool planner_killed = false;
+  constexpr std::array<std::int64_t, 5> kSteps_s = {-8, -60, 3600, -3600, 60};
+  for (const std::int64_t step_s : kSteps_s) {
+    clock.set_s(step_s);
+    command({"pause"});
+    std::this_thread::sleep_for(std::chrono::milliseconds(500));  // each robot holds for some ticks
+    command({"resume"});
+    if (planner_killed) continue;
+    planner_killed = true;
+    ASSERT_EQ(run.planners().size(), 1U);
+    ::kill(run.planners().front(), SIGKILL);
+    command({"add_obstacle", "circle_m: {center: [10, 19], radius: 0.3}"});
+  }
+
+  EXPECT_EQ(run.launcher().wait(), 0) << run.launcher().err();
+
+  const auto summary = run.summary();
+  EXPECT_EQ(summary["arrived"], 12);
+  EXPECT_EQ(summary["collisions_robot"], 0);
+  EXPECT_EQ(summary["collisions_obstacle"], 0);
+  EXPECT_LT(summary["mission_s"].get<double>(), 300.0) << "not by the wall clock";
+  for (std::uint32_t robot = 0; robot < 12; ++robot) {
+    const Flown flown = read_log(run.dir(), robot);
+    EXPECT_GE(flown.holds, static_cast<int>(kSteps_s.size())) << robot;
+    EXPECT_TRUE(flown.is_in_order) << robot;
+    EXPECT_LT(flown.longest_gap, std::chrono::seconds(8)) << robot;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Channels, ClockStep, testing::Values("topics", "groups"));
+
+}  // namespace
+}  // namespace swarm::test
