@@ -27,9 +27,9 @@ class RivalWatch {
   /// third within the takeover time on.
   void on_heartbeat(std::uint64_t epoch, SteadyTime now) {
     if (epoch == epoch_) return;
-    if (!heard_at_ || epoch != rival_ || now - *heard_at_ > takeover_) beats_ = 0;
+    if (!last_beat_at_ || epoch != rival_ || now - *last_beat_at_ > takeover_) beats_ = 0;
     rival_ = epoch;
-    heard_at_ = now;
+    last_beat_at_ = now;
     ++beats_;
   }
 
@@ -37,15 +37,15 @@ class RivalWatch {
   std::optional<Change> step(SteadyTime now) {
     if (now - stepped_at_ > takeover_) woke_at_ = now;
     stepped_at_ = now;
-    if (woke_at_ && now - *woke_at_ > 2 * takeover_ && beats_ < kBeatsToBelieve) woke_at_.reset();
-    const bool rival_lives = heard_at_ && now - *heard_at_ <= 2 * takeover_;
+    if (woke_at_ && now - *woke_at_ > 2 * takeover_ && beats_ < kBeatsThatCount) woke_at_.reset();
+    const bool rival_lives = last_beat_at_ && now - *last_beat_at_ <= 2 * takeover_;
     if (stands_by_) {
       if (rival_lives) return std::nullopt;
       stands_by_ = false;
       woke_at_.reset();
       return Change::kTookOver;
     }
-    if (!rival_lives || beats_ < kBeatsToBelieve || (rival_ > epoch_ && !woke_at_))
+    if (!rival_lives || beats_ < kBeatsThatCount || (rival_ > epoch_ && !woke_at_))
       return std::nullopt;
     stands_by_ = true;
     return Change::kStoodBy;
@@ -54,13 +54,13 @@ class RivalWatch {
   bool stands_by() const { return stands_by_; }
 
  private:
-  static constexpr int kBeatsToBelieve = 3;
+  static constexpr int kBeatsThatCount = 3;
 
   std::uint64_t epoch_;
   Duration takeover_;
   SteadyTime stepped_at_;
-  std::uint64_t rival_ = 0;  ///< epoch of the last other planner heard
-  std::optional<SteadyTime> heard_at_{};
+  std::uint64_t rival_ = 0;  ///< epoch of the last other planner received
+  std::optional<SteadyTime> last_beat_at_{};
   int beats_ = 0;  ///< of the rival in a row
   /// When this planner went on after a suspension, for as long as it does not know of a rival.
   std::optional<SteadyTime> woke_at_{};

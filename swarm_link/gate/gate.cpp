@@ -108,7 +108,7 @@ Checked<void> Gate::order(const HeartbeatMessage& message, UtcTime now) {
   }
   PlannerOrder order = order_of(message.epoch);
   // After a silence any number passes: an invented one must not keep the real ones out for ever.
-  if (!ruler_.is_heard(now)) order.beat = NewestKey<std::uint64_t>{0};
+  if (!ruler_.is_alive(now)) order.beat = NewestKey<std::uint64_t>{0};
   const auto accepted = order.beat.accept(message.sequence_number);
   if (accepted) {
     planner_ = order;

@@ -21,33 +21,33 @@ class RulingPlanner {
   std::uint64_t epoch() const { return epoch_; }
 
   /// Whether plans of this planner pass: of the ruling one, and while that is silent or has never
-  /// been heard, of one that started later.
+  /// been received, of one that started later.
   bool admits_plan(std::uint64_t epoch, UtcTime now) const {
-    return epoch == epoch_ || (epoch > epoch_ && !is_heard(now));
+    return epoch == epoch_ || (epoch > epoch_ && !is_alive(now));
   }
   /// A plan has passed. By itself it does not show that its planner lives.
   void on_plan(std::uint64_t epoch) {
     if (epoch == epoch_) return;
     epoch_ = epoch;
-    heard_at_.reset();
+    last_beat_at_.reset();
   }
 
   /// Whether heartbeats of this planner pass.
   bool admits_heartbeat(std::uint64_t epoch, UtcTime now) const {
-    return epoch == epoch_ || !is_heard(now);
+    return epoch == epoch_ || !is_alive(now);
   }
   /// A heartbeat has passed: its sender rules.
   void on_heartbeat(std::uint64_t epoch, UtcTime now) {
     epoch_ = epoch;
-    heard_at_ = now;
+    last_beat_at_ = now;
   }
-  /// Whether the ruling planner is heard.
-  bool is_heard(UtcTime now) const { return heard_at_ && now - *heard_at_ <= takeover_; }
+  /// Whether the ruling planner is alive: it beats.
+  bool is_alive(UtcTime now) const { return last_beat_at_ && now - *last_beat_at_ <= takeover_; }
 
  private:
   Duration takeover_;
   std::uint64_t epoch_ = 0;
-  std::optional<UtcTime> heard_at_{};  ///< last heartbeat of the ruling planner
+  std::optional<UtcTime> last_beat_at_{};  ///< last heartbeat of the ruling planner
 };
 
 }  // namespace swarm::link

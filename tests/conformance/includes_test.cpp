@@ -80,7 +80,7 @@ TEST(Includes, OfVendorsStayInTheirAdapters) {
 TEST(Includes, OfTheStandardLibraryAreDirect) {
   const std::vector<std::pair<std::string, std::regex>> names = [] {
     std::vector<std::pair<std::string, std::regex>> list;
-    for (const auto& [header, words] : std::map<std::string, std::string>{
+    for (const auto& [header, used] : std::map<std::string, std::string>{
              {"array", "array"},
              {"atomic", "atomic"},
              {"chrono", "chrono"},
@@ -100,7 +100,7 @@ TEST(Includes, OfTheStandardLibraryAreDirect) {
              {"thread", "j?thread"},
              {"variant", "variant|visit|monostate"},
              {"vector", "vector"}}) {
-      list.emplace_back(header, "std::(" + words + ")\\b");
+      list.emplace_back(header, "std::(" + used + ")\\b");
     }
     return list;
   }();

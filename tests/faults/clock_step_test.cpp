@@ -80,11 +80,11 @@ TEST_P(ClockStep, ChangesNothingInFlight) {
   SteppedClock clock;
   FlownRun run({"--channel", GetParam()});
   ASSERT_TRUE(run.mission_started()) << run.launcher().err();
-  const auto command = [&](const std::vector<std::string>& words) {
+  const auto command = [&](const std::vector<std::string>& arguments) {
     std::vector<std::string> line = {"command", run.dir().string()};
-    line.insert(line.end(), words.begin(), words.end());
+    line.insert(line.end(), arguments.begin(), arguments.end());
     Program program("swarm_launcher", line);
-    EXPECT_EQ(program.wait(), 0) << words.front() << ": " << program.out() << program.err();
+    EXPECT_EQ(program.wait(), 0) << arguments.front() << ": " << program.out() << program.err();
   };
   bool planner_killed = false;
   constexpr std::array<std::int64_t, 5> kSteps_s = {-8, -60, 3600, -3600, 60};

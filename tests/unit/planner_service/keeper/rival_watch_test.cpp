@@ -19,14 +19,14 @@ constexpr std::uint64_t kOwn = 50, kEarlier = 40, kLater = 60;
 
 struct RivalWatchTest : testing::Test {
   /// Heartbeats of a rival at 5 Hz for a while; steps of the planner in between.
-  void hear(std::uint64_t epoch, Duration span) {
+  void receive(std::uint64_t epoch, Duration span) {
     for (const SteadyTime until = now + span; now < until;) {
       now += milliseconds(200);
       sut.on_heartbeat(epoch, now);
       step();
     }
   }
-  void hear_nothing(Duration span) {
+  void receive_nothing(Duration span) {
     for (const SteadyTime until = now + span; now < until;) {
       now += milliseconds(100);
       step();
@@ -41,36 +41,36 @@ struct RivalWatchTest : testing::Test {
   std::vector<Change> changes;
 };
 
-TEST_F(RivalWatchTest, LeadsAloneAndDoesNotHearItself) {
-  hear(kOwn, milliseconds(3000));
+TEST_F(RivalWatchTest, LeadsAloneAndIgnoresItsOwn) {
+  receive(kOwn, milliseconds(3000));
   EXPECT_TRUE(changes.empty());
   EXPECT_FALSE(sut.stands_by());
 }
 
 TEST_F(RivalWatchTest, StandsByForAPlannerThatBeganBeforeAndTakesOverWhenItIsSilent) {
-  hear(kEarlier, milliseconds(2000));
+  receive(kEarlier, milliseconds(2000));
   EXPECT_EQ(changes, (std::vector{Change::kStoodBy}));
   EXPECT_TRUE(sut.stands_by());
 
-  hear_nothing(2 * kTakeover - milliseconds(200));
+  receive_nothing(2 * kTakeover - milliseconds(200));
   EXPECT_TRUE(sut.stands_by());
-  hear_nothing(milliseconds(400));
+  receive_nothing(milliseconds(400));
   EXPECT_EQ(changes, (std::vector{Change::kStoodBy, Change::kTookOver}));
 }
 
 TEST_F(RivalWatchTest, LeadsOnWhenALaterOneBeats) {
-  hear(kLater, milliseconds(5000));
+  receive(kLater, milliseconds(5000));
   EXPECT_TRUE(changes.empty());
 }
 
 // One or two forged heartbeats do not end a plan.
-TEST_F(RivalWatchTest, BelievesTheThirdHeartbeatInARow) {
-  hear(kEarlier, milliseconds(400));
+TEST_F(RivalWatchTest, CountsTheThirdHeartbeatInARow) {
+  receive(kEarlier, milliseconds(400));
   EXPECT_TRUE(changes.empty());
-  hear_nothing(milliseconds(1000));
-  hear(kEarlier, milliseconds(400));
+  receive_nothing(milliseconds(1000));
+  receive(kEarlier, milliseconds(400));
   EXPECT_TRUE(changes.empty());
-  hear(kEarlier, milliseconds(200));
+  receive(kEarlier, milliseconds(200));
   EXPECT_EQ(changes, (std::vector{Change::kStoodBy}));
 }
 
@@ -78,15 +78,15 @@ TEST_F(RivalWatchTest, BelievesTheThirdHeartbeatInARow) {
 TEST_F(RivalWatchTest, StandsByAfterASuspensionForAPlannerThatTookOver) {
   now += std::chrono::seconds(30);
   step();
-  hear(kLater, milliseconds(1000));
+  receive(kLater, milliseconds(1000));
   EXPECT_EQ(changes, (std::vector{Change::kStoodBy}));
 }
 
 TEST_F(RivalWatchTest, LeadsOnAfterASuspensionInWhichNoneTookOver) {
   now += std::chrono::seconds(30);
   step();
-  hear_nothing(milliseconds(3000));
-  hear(kLater, milliseconds(3000));
+  receive_nothing(milliseconds(3000));
+  receive(kLater, milliseconds(3000));
   EXPECT_TRUE(changes.empty());
 }
 
