@@ -18,6 +18,9 @@ if(SWARM_SANITIZE)
   add_compile_options(-fsanitize=${SWARM_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
   add_link_options(-fsanitize=${SWARM_SANITIZE})
 endif()
+if(SWARM_FUZZ)
+  add_compile_options(-fsanitize=fuzzer-no-link)
+endif()
 
 # SWARM_FAST_BUILD makes the compiler read less: headers of others that most sources include are precompiled, and
 # swarm_unity() below compiles a library eight sources at a time. Not the libraries of the control loop (swarm_math,
