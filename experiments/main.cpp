@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-// `swarm_launcher table` and `swarm_launcher soak` start this program.
+// `swarm_launcher table`, `soak` and `chaos` start this program.
 #include <functional>
 #include <memory>
 #include <string>
@@ -8,6 +8,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "experiments/chaos/chaos.hpp"
 #include "experiments/papers/table.hpp"
 #include "experiments/soak/soak.hpp"
 #include "swarm_core/app/program.hpp"
@@ -74,6 +75,25 @@ Act add_soak(CLI::App& program) {
   return [o] { return soak(*o); };
 }
 
+Act add_chaos(CLI::App& program) {
+  using namespace cli;
+  const auto o = std::make_shared<ChaosOptions>();
+  CLI::App* const chaos_app = program.add_subcommand(
+      "chaos", "Fly a mission again and again under random faults; audit each flight");
+  chaos_app->add_option("mission", o->mission, "Mission file")->required();
+  chaos_app
+      ->add_option("--minutes", o->minutes,
+                   "No flight begins later (default: 5); 0: one flight, to repeat a failure")
+      ->check(CLI::Range(0.0, 1e5));
+  chaos_app->add_option("--robots", o->robots, "Number of robots, instead of the mission's")
+      ->check(CLI::Range(1, kMostRobots));
+  chaos_app->add_option("--seed", o->seed,
+                        "Seed of the first flight and its faults (default: 1); +1 a flight");
+  chaos_app->add_option("--out", o->out, "Directory of the flights (default: runs/chaos-<time>)");
+  chaos_app->add_flag("--json", o->json, "Print the result as JSON");
+  return [o] { return chaos(*o); };
+}
+
 }  // namespace
 }  // namespace swarm::launcher
 
@@ -81,15 +101,18 @@ int main(int argc, char** argv) {
   using namespace swarm;
   const std::string name = shell::program_name(argv[0], "swarm_experiments");
   return shell::run_main(name, [&]() -> Result<ExitCode> {
-    CLI::App app("Simulates the experiments of the papers, and runs endurance tests (soak)", name);
+    CLI::App app("Simulates the experiments of the papers, and runs endurance tests (soak, chaos)",
+                 name);
     app.require_subcommand(1);
     shell::add_common_options(app);
     const launcher::Act table = launcher::add_table(app);
     const launcher::Act soak = launcher::add_soak(app);
+    const launcher::Act chaos = launcher::add_chaos(app);
     const auto done = shell::parse(app, argc, argv, builtin_catalogue());
     if (!done) return tl::unexpected(done.error());
     if (*done) return **done;
     shell::catch_stop_signals();
-    return app.got_subcommand("table") ? table() : soak();
+    if (app.got_subcommand("table")) return table();
+    return app.got_subcommand("chaos") ? chaos() : soak();
   });
 }

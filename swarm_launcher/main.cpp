@@ -33,7 +33,10 @@ int main(int argc, char** argv) {
                     {"swarm_experiments", "table"}),
         add_sibling(app, "soak",
                     "Keep a swarm moving; measure latency, loss, memory and late ticks",
-                    {"swarm_experiments", "soak"})};
+                    {"swarm_experiments", "soak"}),
+        add_sibling(app, "chaos",
+                    "Fly a mission again and again under random faults; audit each flight",
+                    {"swarm_experiments", "chaos"})};
     // Parsing may already complete the program: --help, --version or an error.
     const auto done = shell::parse(app, argc, argv, builtin_catalogue());
     if (!done) return tl::unexpected(done.error());
