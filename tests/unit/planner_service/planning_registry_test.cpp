@@ -67,13 +67,13 @@ TEST(PlanningRegistry, MakesTheMethodThatTheMissionNames) {
   PlanningRegistry registry;
   register_builtin_methods(registry);
   Calls calls;
-  registry.add(
-      {.spec = {.name = "straight", .doc = "Straight lines", .options = {}},
-       .make = [&](const MethodContext& context) -> Result<std::unique_ptr<PlanningMethod>> {
-         EXPECT_EQ(context.mission.planner.method, "straight");
-         EXPECT_GT(context.limits.packing_per_m2, 0.0);
-         return std::make_unique<StraightMethod>(calls);
-       }});
+  registry.add(PlanningEntry{
+      .spec = {.name = "straight", .doc = "Straight lines", .options = {}},
+      .make = [&](const MethodContext& context) -> Result<std::unique_ptr<PlanningMethod>> {
+        EXPECT_EQ(context.mission.planner.method, "straight");
+        EXPECT_GT(context.limits.packing_per_m2, 0.0);
+        return std::make_unique<StraightMethod>(calls);
+      }});
   Mission mission = testing::KeeperBench::small_mission();
   mission.planner.method = "straight";
 
@@ -84,6 +84,24 @@ TEST(PlanningRegistry, MakesTheMethodThatTheMissionNames) {
   EXPECT_TRUE(planner->plan({mission.world, mission.start, mission.goal}, {rng, &testing::no_time})
                   .has_value());
   EXPECT_EQ(calls.plans, 1);
+}
+
+// Audits and checks ask the method what it promises, not for its name.
+TEST(PlanningRegistry, BuiltInMethodsPromiseWhatTheyKeep) {
+  PlanningRegistry registry;
+  register_builtin_methods(registry);
+  Mission mission = testing::KeeperBench::small_mission();
+  const auto traits = [&](const char* method) -> PlanningTraits {
+    mission.planner.method = method;
+    auto planner = Planner::make(registry, mission);
+    EXPECT_TRUE(planner.has_value()) << method;
+    return planner->method().traits();
+  };
+  EXPECT_EQ(traits("swarmprm").risk_promise, RiskPromise::kEveryGaussian);
+  EXPECT_TRUE(traits("swarmprm").is_kept_in_time);
+  EXPECT_EQ(traits("rover").risk_promise, RiskPromise::kMixture);
+  EXPECT_EQ(traits("crops").risk_promise, RiskPromise::kEveryGaussian);
+  EXPECT_FALSE(traits("crops").is_kept_in_time);
 }
 
 TEST(PlanningRegistry, NamesItsMethodsWhereTheMissionNamesAnother) {

@@ -51,12 +51,12 @@ class Drift final : public ControlMethod {
 ControlRegistry with_drift() {
   ControlRegistry registry;
   register_builtin_control(registry);
-  registry.add({.spec = {.name = "drift", .doc = "Goes east", .options = drift_table().specs()},
-                .prepare = [](const ControlContext& context) -> Result<PreparedControl> {
-                  const DriftOptions options = drift_table().read(context.options());
-                  return PreparedControl{
-                      .make = [options] { return ControlSlot::of<Drift>(options); }};
-                }});
+  registry.add(ControlEntry{
+      .spec = {.name = "drift", .doc = "Goes east", .options = drift_table().specs()},
+      .prepare = [](const ControlContext& context) -> Result<PreparedControl> {
+        const DriftOptions options = drift_table().read(context.options());
+        return PreparedControl{.make = [options] { return ControlSlot::of<Drift>(options); }};
+      }});
   return registry;
 }
 

@@ -19,6 +19,13 @@ namespace {
 using std::chrono::milliseconds;
 SteadyTime at(int ms) { return SteadyTime(milliseconds(ms)); }
 
+TEST(SimulatedRobot, IsAlwaysWell) {
+  const SimulatedRobot sut(at(0), {1, 1});
+  const DriverHealth health = sut.health();
+  EXPECT_EQ(health.level, DriverHealth::Level::kGood);
+  EXPECT_TRUE(health.text.empty());
+}
+
 TEST(SimulatedRobot, MovesWithItsCommand) {
   SimulatedRobot sut(at(0), {1, 1});
   sut.command(at(0), {1, -2}, milliseconds(200));

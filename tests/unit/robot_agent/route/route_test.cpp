@@ -57,6 +57,24 @@ TEST(Route, EndsInsideTheGoalsEllipseFromWhereverItStarts) {
   }
 }
 
+/// The path of a robot of this radius past a corner.
+Route route_past_a_corner(double radius_m, const World& world) {
+  const auto plan =
+      FlowPlan::make({node({0, 0}, 2, 0, 1), node({15, 9}, 2, 10, 1), node({30, 0}, 2, 20, 1)},
+                     {{0, 1, 1}, {1, 2, 1}});
+  return route_from_start(*plan, 0.5, {0, 0}, world, RouteOptions{.radius_m = radius_m});
+}
+
+TEST(Route, KeepsLargeRobotsFartherFromObstacles) {
+  const auto block = Polygon::make({{12, -3}, {18, -3}, {18, 3}, {12, 3}});
+  const World world = *World::make({{-50, -50}, {80, 80}}, {*block});
+  const Route route = route_past_a_corner(1.0, world);
+  const auto& v = route.path.vertices_m();
+  for (std::size_t k = 0; k + 1 < v.size(); ++k) {
+    EXPECT_TRUE(world.segment_is_free(v[k], v[k + 1], 1.29));
+  }
+}
+
 TEST(Route, KeepsItsClearanceAtObstacles) {
   const auto block = Polygon::make({{12, -3}, {18, -3}, {18, 3}, {12, 3}});
   ASSERT_TRUE(block.has_value());

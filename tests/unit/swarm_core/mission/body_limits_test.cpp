@@ -3,6 +3,7 @@
 #include "swarmflow/mission/body_limits.hpp"
 
 #include <cmath>
+#include <numbers>
 
 #include <gtest/gtest.h>
 
@@ -29,6 +30,16 @@ TEST(BodyLimits, PackRobotsAtTheDistanceTheFilterKeeps) {
   EXPECT_NEAR(limits.cap_per_m2, 2.05, 0.01);
   EXPECT_NEAR(limits.plan_speed_mps, 0.9 * ControlSpec{}.cruise_mps, 1e-12);
   EXPECT_GT(limits.robot_speed_mps, limits.plan_speed_mps);
+}
+
+TEST(BodyLimits, AddUpTheLagThatABodyDeclares) {
+  RobotsSpec robots;
+  robots.speed_max_mps = 1.2;
+  robots.acceleration_max_mps2 = 0.6;
+  robots.turn_rate_max_radps = 2.0;
+  EXPECT_EQ(declared_lag_s(robots, LagSpec{}), 0.0);
+  EXPECT_NEAR(declared_lag_s(robots, LagSpec{.fixed_s = 0.1, .accelerates = true}), 2.1, 1e-12);
+  EXPECT_NEAR(declared_lag_s(robots, LagSpec{.turns = true}), 0.25 * std::numbers::pi, 1e-12);
 }
 
 TEST(BodyLimits, GiveBodiesWithLagMoreRoomAndTime) {

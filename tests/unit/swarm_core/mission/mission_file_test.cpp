@@ -176,8 +176,9 @@ void expect_same(const Mission& a, const Mission& b) {
   expect_same(a.criteria, b.criteria, kCriteriaKeys);
   ASSERT_EQ(a.script.size(), b.script.size());
   for (std::size_t i = 0; i < a.script.size(); ++i) {
-    EXPECT_EQ(a.script[i].at_s, b.script[i].at_s);
-    ASSERT_EQ(a.script[i].action.index(), b.script[i].action.index());
+    const ScriptEvent &event = a.script[i], &same = b.script[i];
+    EXPECT_EQ(event.at_s, same.at_s);
+    ASSERT_EQ(event.action.index(), same.action.index());
     if (const auto* kind = std::get_if<CommandKind>(&a.script[i].action)) {
       EXPECT_EQ(*kind, std::get<CommandKind>(b.script[i].action));
     } else {

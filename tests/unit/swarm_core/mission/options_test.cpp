@@ -25,7 +25,9 @@ OptionTable<Spiral> table() {
 TEST(OptionTable, TakesDefaultsFromTheStruct) {
   const auto specs = table().specs();
   ASSERT_EQ(specs.size(), 3U);
-  EXPECT_EQ(specs[0].fallback, "0.1");
+  const OptionSpec& first = specs[0];
+  EXPECT_EQ(first.key, "gain_hz");
+  EXPECT_EQ(first.fallback, "0.1");
   EXPECT_EQ(specs[1].fallback, "3");
   EXPECT_EQ(specs[2].fallback, "left");
   EXPECT_EQ(table().read({}).gain_hz, 0.1);

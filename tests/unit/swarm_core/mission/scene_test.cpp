@@ -42,7 +42,9 @@ TEST(Scene, NumbersAddedObstaclesInOrderAndNeverTwice) {
 
   EXPECT_FALSE(after(scene, RemoveObstacle{2}, mission_world(), at_s(4)).has_value());
   ASSERT_EQ(scene.obstacles.size(), 1U);
-  EXPECT_EQ(scene.obstacles[0].id, 3U);
+  const SceneObstacle& added = scene.obstacles[0];
+  EXPECT_EQ(added.id, 3U);
+  EXPECT_FALSE(added.owner.has_value());
   const World world = world_at(mission_world(), scene, at_s(4));
   EXPECT_EQ(world.obstacles().size(), 3U);
   EXPECT_EQ(world.distance_m({30, 10}), -1.0);

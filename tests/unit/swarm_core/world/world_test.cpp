@@ -171,6 +171,24 @@ TEST(World, ConvexPartsSeeTheSameSurfaceFromOutside) {
   }
 }
 
+TEST(World, EdgesOfConvexPartsAreUnitVectorsAlongAndOutOfThem) {
+  Rng rng(46);
+  const World world = world_of(random_obstacles(rng));
+  int edges = 0;
+  for (const ConvexObstacle& part : world.convex_obstacles()) {
+    for (const ConvexEdge& edge : part.edges) {
+      ++edges;
+      EXPECT_GT(edge.length_m, 0.0);
+      EXPECT_NEAR(edge.direction.norm(), 1.0, 1e-12);
+      EXPECT_NEAR(edge.normal.norm(), 1.0, 1e-12);
+      EXPECT_NEAR(edge.direction.dot(edge.normal), 0.0, 1e-12);
+      const Vec2 middle_m = edge.from_m + 0.5 * edge.length_m * edge.direction;
+      EXPECT_NEAR(part.signed_distance(middle_m + 0.01 * edge.normal).distance_m, 0.01, 1e-9);
+    }
+  }
+  EXPECT_GT(edges, 3);
+}
+
 TEST(World, SegmentIsFreeIffItsNearestSampleIs) {
   Rng rng(45);
   int free_segments = 0;
