@@ -73,6 +73,7 @@ struct PlannerProcess::Impl {
   std::vector<std::string> unwritten;  // why files of the first plan are missing
 
   Result<void> make_keeper();
+  Result<void> make_plan_writer();
   Result<void> plan_first();
   Result<void> join(const shell::RunInfo& run);
   void receive(SteadyTime now);
@@ -109,6 +110,13 @@ Result<void> PlannerProcess::Impl::plan_first() {
   return {};
 }
 
+Result<void> PlannerProcess::Impl::make_plan_writer() {
+  auto plans = participant->make_writer(link::plan_topic());
+  if (!plans) return tl::unexpected(plans.error());
+  plan_writer = std::move(*plans);
+  return {};
+}
+
 // Creates all writers and readers first and takes them over only when none failed.
 Result<void> PlannerProcess::Impl::join(const shell::RunInfo& run) {
   auto made = link::join_as_planner(link::meeting_of(run, {.faults = options.faults,
@@ -117,21 +125,19 @@ Result<void> PlannerProcess::Impl::join(const shell::RunInfo& run) {
                                     options.ownership_strength);
   if (!made) return tl::unexpected(made.error());
   participant = std::move(*made);
-  auto plans = participant->make_writer(link::plan_topic());
+  if (auto made_plans = make_plan_writer(); !made_plans) return made_plans;
   auto heartbeats = participant->make_writer(link::heartbeat_topic());
   auto events = participant->make_writer(link::event_topic());
   auto orders = participant->make_reader(link::command_topic());
   auto scene_changes = participant->make_reader(link::scene_topic());
   auto health = participant->make_reader(link::status_topic_unacknowledged());
   auto planners = participant->make_reader(link::heartbeat_topic());
-  if (!plans) return tl::unexpected(plans.error());
   if (!heartbeats) return tl::unexpected(heartbeats.error());
   if (!events) return tl::unexpected(events.error());
   if (!orders) return tl::unexpected(orders.error());
   if (!scene_changes) return tl::unexpected(scene_changes.error());
   if (!health) return tl::unexpected(health.error());
   if (!planners) return tl::unexpected(planners.error());
-  plan_writer = std::move(*plans);
   heartbeat_writer = std::move(*heartbeats);
   event_writer = std::move(*events);
   const link::WireLimits limits = link::wire_limits(mission);
@@ -165,16 +171,19 @@ void PlannerProcess::Impl::receive(SteadyTime now) {
   }
 }
 
-// A planner that stands by neither plans nor beats.
+// A planner that does not lead neither plans nor beats, and has no plan on the bus: the topic's
+// ownership is exclusive.
 void PlannerProcess::Impl::watch_rivals(SteadyTime now) {
   for (const link::HeartbeatMessage& beat : inbox->heartbeats()) {
     rivals->on_heartbeat(beat.epoch, now);
   }
-  const auto change = rivals->step(now);
-  if (change == RivalWatch::Change::kStoodBy) {
+  const bool led_before = rivals->role() != RivalWatch::Role::kJoining;
+  const auto role = rivals->step(now);
+  if (role == RivalWatch::Role::kStandingBy) {
+    plan_writer.reset();
     announce(link::Severity::kWarning, "planner-standby",
              "another planner leads the robots: this one stands by");
-  } else if (change == RivalWatch::Change::kTookOver) {
+  } else if (role == RivalWatch::Role::kLeading && led_before) {
     announce(link::Severity::kWarning, "planner-takeover",
              "the planner that led the robots is silent: this one takes over");
     take_over(now);
@@ -186,11 +195,12 @@ void PlannerProcess::Impl::take_over(SteadyTime now) {
   Scene scene = keeper->scene();
   Result<void> made = make_keeper();
   if (made) made = keeper->plan_first();
+  if (made) made = make_plan_writer();
   if (!made) announce(link::Severity::kWarning, "replan-failed", made.error().message);
   keeper->begin(now);
   keeper->take_scene(std::move(scene));
+  rivals->begin_epoch(epoch.value());
   beats = 0;
-  rivals.emplace(epoch.value(), link::wire_limits(mission).planner_takeover, now);
 }
 
 // One step of the keeper: events, the plan and the clock go out in this order. A new clock reading
@@ -298,12 +308,9 @@ Result<void> PlannerProcess::run() {
     const SteadyTime now = std::chrono::steady_clock::now();
     p.receive(now);
     p.watch_rivals(now);
-    if (p.rivals->stands_by()) {
-      next_beat = now;
-    } else {
-      p.keep_planned(now);
-    }
-    if (now >= next_beat && !p.rivals->stands_by()) {
+    const bool leads = p.rivals->role() == RivalWatch::Role::kLeading && p.plan_writer;
+    if (leads) p.keep_planned(now);
+    if (leads && now >= next_beat) {
       p.beat(utc_now());
       next_beat = std::max(next_beat + beat_period, now);
     }
