@@ -53,6 +53,9 @@ endfunction()
 
 # The control loop's libraries are compiled with -O3: its rate is what a run of hundreds of robots costs.
 function(swarm_hot)
+  if(SWARM_SANITIZE)
+    return()
+  endif()
   foreach(target IN LISTS ARGN)
     target_compile_options(${target} PRIVATE $<$<CONFIG:RelWithDebInfo>:-O3>)
   endforeach()
