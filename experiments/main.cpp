@@ -58,7 +58,9 @@ Act add_soak(CLI::App& program) {
   add_channel(*soak_app, o->channel);
   soak_app
       ->add_option("--fault", o->fault,
-                   "Degrades what is received:\nloss=0.2,delay-ms=150,jitter-ms=50,from=10,to=60")
+                   "Degrades what is "
+                   "received:\nloss=0.2,delay-ms=150,jitter-ms=50,duplicate=0.1,from=10,to=60,"
+                   "robots=3-5,launcher=1")
       ->type_name("FAULT");
   soak_app->add_option("--max-p99-ms", o->criteria.max_p99_ms,
                        "Fail if 1 % of the states take longer to a receiver");

@@ -55,6 +55,12 @@ void add_options(CLI::App& app, const std::shared_ptr<CommandLine>& line) {
 Result<ExitCode> simulate(CommandLine& line) {
   const auto faults = parse_link_faults(line.fault);
   if (!faults) return tl::unexpected(faults.error());
+  if (faults->duplicate > 0.0 || faults->at_launcher || !faults->at_planner()) {
+    return fail(
+        ErrorCode::kBadInput,
+        "--fault: duplicate, robots and launcher are for runs of processes; here all robots "
+        "receive by the same network");
+  }
   line.options.faults = *faults;
   for (const std::string& text : line.kills) {
     auto kill = parse_kill(text);

@@ -32,9 +32,10 @@ Result<std::optional<ExitCode>> read_options(int argc, char** argv,
   app.add_option(
       "--strength", options.ownership_strength,
       "Ownership strength of the plan topic: agents follow the strongest living planner");
-  app.add_option("--fault", fault,
-                 "Degrades what this process receives:\n"
-                 "loss=0.2,delay-ms=150,jitter-ms=50,from=10,to=60");
+  app.add_option(
+      "--fault", fault,
+      "Degrades what this process receives:\n"
+      "loss=0.2,delay-ms=150,jitter-ms=50,duplicate=0.1,from=10,to=60,robots=3-5,launcher=1");
   bool describe = false;
   app.add_flag("--describe", describe,
                "Print its planning methods with their options as JSON, and exit");
@@ -50,7 +51,7 @@ Result<std::optional<ExitCode>> read_options(int argc, char** argv,
   }
   const auto faults = parse_link_faults(fault);
   if (!faults) return tl::unexpected(faults.error());
-  options.faults = *faults;
+  if (faults->at_planner()) options.faults = *faults;
   return done;
 }
 

@@ -34,9 +34,10 @@ void add_options(CLI::App& app, CommandLine& line) {
   shell::add_vendor_option(app, line.options.vendor, "DDS vendor of this process");
   app.add_flag("--by-gateway", line.options.by_gateway,
                "Publish states on DDS topics; a gateway carries them to the multicast groups");
-  app.add_option("--fault", line.fault,
-                 "Degrades what this process receives:\n"
-                 "loss=0.2,delay-ms=150,jitter-ms=50,from=10,to=60");
+  app.add_option(
+      "--fault", line.fault,
+      "Degrades what this process receives:\n"
+      "loss=0.2,delay-ms=150,jitter-ms=50,duplicate=0.1,from=10,to=60,robots=3-5,launcher=1");
   app.add_flag("--describe", line.describe,
                "Print its control methods and drivers with their options as JSON, and exit");
   shell::add_common_options(app);
@@ -65,7 +66,9 @@ Result<ExitCode> run(int argc, char** argv, const RobotRegistry& registry) {
   }
   const auto faults = parse_link_faults(line.fault);
   if (!faults) return tl::unexpected(faults.error());
-  line.options.faults = *faults;
+  if (faults->at_robots(line.first, line.options.count)) {
+    line.options.faults = *faults;
+  }
   line.options.first = RobotId(line.first);
 
   shell::catch_stop_signals();

@@ -68,9 +68,10 @@ Command add_run(CLI::App& program) {
   add_domain(*run, o->how.domain);
   add_channel(*run, o->how.channel);
   add_dds(*run, o);
-  run->add_option("--fault", o->how.fault,
-                  "Simulate a degraded network for what planner and robots receive, such as\n"
-                  "loss=0.2,delay-ms=150,jitter-ms=50,from=10,to=60")
+  run->add_option(
+         "--fault", o->how.fault,
+         "Simulate a degraded network for what planner and robots receive, such as\n"
+         "loss=0.2,delay-ms=150,jitter-ms=50,duplicate=0.1,from=10,to=60,robots=3-5,launcher=1")
       ->type_name("FAULT");
   run->add_option("--interface", o->how.interface, "IPv4 address of the interface to other hosts")
       ->check(CLI::ValidIPV4);
@@ -84,8 +85,9 @@ Command add_run(CLI::App& program) {
   run->add_flag("--allow-control", o->how.monitors.allow_control,
                 "Let anyone with the view's address pause, stop and change the mission")
       ->needs(view);
-  run->add_flag("--urgent", o->urgent,
-                "Raise the launcher's priority (niceness -10, for root), for hundreds of processes");
+  run->add_flag(
+      "--urgent", o->urgent,
+      "Raise the launcher's priority (niceness -10, for root), for hundreds of processes");
   run->add_flag("--json", o->json, "Print the summary as JSON");
   return {run, [o] { return run_mission(*o); }};
 }

@@ -6,10 +6,24 @@
 
 #include "swarm_core/app/run_dir.hpp"
 #include "swarm_core/base/clock.hpp"
+#include "swarm_core/mission/link_faults.hpp"
 #include "swarm_link/roles/run_meeting.hpp"
+#include "swarmflow/core/random.hpp"
 #include "swarmflow/mission/mission_file.hpp"
 
 namespace swarm::launcher {
+
+namespace {
+
+/// The simulated network faults of what the launcher itself receives.
+link::ReceptionFaults own_faults(const shell::RunInfo& run, const std::string& fault) {
+  constexpr std::uint64_t kSeed = 0x1A2C;  // own random numbers for the link
+  const auto faults = parse_link_faults(fault);
+  if (!faults || !faults->at_launcher) return {};
+  return {.faults = *faults, .seed = mix_seed(run.seed, kSeed), .run_began = run.began};
+}
+
+}  // namespace
 
 PreparedRun::PreparedRun(CheckedRun checked, link::DomainLock lock, std::filesystem::path dir)
     : checked_(std::move(checked)), lock_(std::move(lock)), dir_(std::move(dir)) {}
@@ -64,7 +78,7 @@ Result<void> PreparedRun::join() {
            .began = utc_now(),
            .clock = shell::own_clock()};
   if (auto written = shell::write_run_info(dir_, info_); !written) return written;
-  auto participant = link::join_as_launcher(link::meeting_of(info_));
+  auto participant = link::join_as_launcher(link::meeting_of(info_, own_faults(info_, how.fault)));
   if (!participant) return tl::unexpected(participant.error());
   participant_ = std::move(*participant);
   auto bus = open_launcher_bus(*participant_, link::wire_limits(mission));

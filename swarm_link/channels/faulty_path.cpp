@@ -6,17 +6,23 @@
 
 namespace swarm::link {
 
-// Draws the fate of a datagram: lost, or delivered after a delay. Outside the fault window no
-// number is consumed, so the sequence of fates does not depend on the traffic before it. The queue
-// is sorted by due time; equal times keep the order of arrival.
+// Draws the fate of a datagram: lost, or delivered after a delay, or twice. Outside the fault
+// window no number is consumed, so the sequence of fates does not depend on the traffic before it.
+// The queue is sorted by due time; equal times keep the order of arrival.
 void FaultyPath::receive(int fd, std::span<const std::byte> bytes, const sockaddr_in& sender,
                          UtcTime at) {
-  UtcTime due = at;
-  if (reception_.faults.at(at - reception_.run_began)) {
-    const auto delay = fate(reception_.faults, reception_.seed, received_++);
-    if (!delay) return;
-    due += *delay;
+  if (!reception_.faults.at(at - reception_.run_began)) return keep(at, fd, bytes, sender);
+  const std::uint64_t number = received_++;
+  const auto delay = fate(reception_.faults, reception_.seed, number);
+  if (!delay) return;
+  keep(at + *delay, fd, bytes, sender);
+  if (const auto copy = fate_of_copy(reception_.faults, reception_.seed, number)) {
+    keep(at + *copy, fd, bytes, sender);
   }
+}
+
+void FaultyPath::keep(UtcTime due, int fd, std::span<const std::byte> bytes,
+                      const sockaddr_in& sender) {
   if (late_.size() >= kMostKept) return;
   const auto place =
       std::upper_bound(late_.begin(), late_.end(), due,

@@ -29,7 +29,7 @@ class DatagramSink {
   virtual void datagram(std::span<std::byte> bytes, const sockaddr_in& sender) = 0;
 };
 
-/// Discards datagrams or delivers them late. The outcome of the n-th datagram that a process
+/// Discards datagrams, delivers them late or twice. The outcome of the n-th datagram that a process
 /// receives while faults are active depends only on n and the seed. Not thread-safe.
 class FaultyPath {
  public:
@@ -47,6 +47,8 @@ class FaultyPath {
   static constexpr std::size_t kMostKept = 8192;
   /// Datagrams that are overdue by this much belong to a socket that was closed: they are deleted.
   static constexpr Duration kAbandoned = std::chrono::seconds(5);
+
+  void keep(UtcTime due, int fd, std::span<const std::byte> bytes, const sockaddr_in& sender);
 
   /// A datagram that waits for its delivery time.
   struct Late {

@@ -36,6 +36,39 @@ TEST(ParseLinkFaults, LeavesOutWhatIsNotGiven) {
   EXPECT_TRUE(late->at(seconds(1'000'000)));
 }
 
+TEST(ParseLinkFaults, ChoosesWhoReceivesBadly) {
+  const auto all = parse_link_faults("loss=1");
+  EXPECT_TRUE(all->at_robots(0, 1));
+  EXPECT_TRUE(all->at_planner());
+  EXPECT_FALSE(all->at_launcher);
+  const auto some = parse_link_faults("duplicate=0.5,robots=3-5,launcher=1");
+  ASSERT_TRUE(some) << some.error().message;
+  EXPECT_DOUBLE_EQ(some->duplicate, 0.5);
+  EXPECT_TRUE(some->any());
+  EXPECT_FALSE(some->at_robots(0, 3));
+  EXPECT_TRUE(some->at_robots(0, 4));
+  EXPECT_TRUE(some->at_robots(5, 1));
+  EXPECT_FALSE(some->at_robots(6, 10));
+  EXPECT_FALSE(some->at_planner());
+  EXPECT_TRUE(some->at_launcher);
+  EXPECT_TRUE(parse_link_faults("robots=7")->at_robots(7, 1));
+}
+
+TEST(Fate, OfCopiesHasItsShareAndDelays) {
+  const LinkFaults faults{
+      .delay = milliseconds(150), .jitter = milliseconds(50), .duplicate = 0.25};
+  int copies = 0;
+  for (std::uint64_t message = 0; message < 10'000; ++message) {
+    const auto delay = fate_of_copy(faults, 7, message);
+    if (!delay) continue;
+    ++copies;
+    EXPECT_GE(*delay, milliseconds(100));
+    EXPECT_LE(*delay, milliseconds(200));
+  }
+  EXPECT_NEAR(copies, 2500, 150);
+  EXPECT_FALSE(fate_of_copy({.delay = milliseconds(1)}, 7, 1));
+}
+
 TEST(ParseLinkFaults, ReportsWhatIsWrong) {
   const std::pair<const char*, const char*> cases[] = {
       {"loss", "'loss' is not KEY=NUMBER"},
@@ -46,6 +79,10 @@ TEST(ParseLinkFaults, ReportsWhatIsWrong) {
       {"delay-ms=-1", "'delay-ms=-1' is not in 0 to 60000"},
       {"drop=0.1", "'drop=0.1' has an unknown key"},
       {"loss=0.1,,", "'' is not KEY=NUMBER"},
+      {"robots=5-3", "'robots=5-3' names no robots"},
+      {"robots=-3", "'robots=-3' names no robots"},
+      {"robots=3-", "'robots=3-' names no robots"},
+      {"launcher=2", "'launcher=2' is not in 0 to 1"},
       {"from=5,to=5", "'to' is not after 'from'"}};
   for (const auto& [text, complaint] : cases) {
     const auto faults = parse_link_faults(text);

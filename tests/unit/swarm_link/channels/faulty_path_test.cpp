@@ -38,6 +38,15 @@ TEST(FaultyPath, KeepsWhatIsLateUntilItIsDue) {
   EXPECT_EQ(received.numbers, std::vector({1, 2}));
 }
 
+TEST(FaultyPath, DeliversSomeTwice) {
+  FaultyPath path({.faults = {.delay = milliseconds(10), .duplicate = 1.0}, .run_began = kBegan});
+  Received received;
+  receive(path, 3, 1, kBegan);
+
+  path.hand_due(3, kBegan + seconds(1), received);
+  EXPECT_EQ(received.numbers, std::vector({1, 1}));
+}
+
 TEST(FaultyPath, KeepsSocketsApart) {
   FaultyPath path({.faults = {.delay = milliseconds(10)}, .run_began = kBegan});
   Received received;
