@@ -9,6 +9,9 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "swarm_core/base/printable.hpp"
+#include "swarm_core/base/stamp.hpp"
+
 namespace swarm::launcher {
 namespace {
 
@@ -89,7 +92,9 @@ Result<HostOffer> parse_offer(const std::string& line) {
     // It becomes a part of the DDS configuration: nothing but an address may be in it.
     in_addr address{};
     const bool plausible =
-        ::inet_pton(AF_INET, offer.run.host.c_str(), &address) == 1 && offer.run.domain < 230 && offer.run.relays >= 1 && offer.run.relays <= 1000 &&
+        ::inet_pton(AF_INET, offer.run.host.c_str(), &address) == 1 && offer.run.domain < 230 &&
+        offer.run.relays >= 1 && offer.run.relays <= 1000 &&
+        is_stamp(offer.run.began.time_since_epoch().count()) && is_printable(offer.fault) &&
         offer.robots >= 1 && offer.robots <= kMaxRobots && offer.first_robot <= kMaxRobots &&
         offer.first_robot + offer.robots <= kMaxRobots && offer.per_process >= 1 &&
         offer.per_process <= kMaxRobots && offer.first_process <= kMaxRobots;

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "swarm_core/base/stamp.hpp"
+
 namespace swarm::link {
 namespace {
 
@@ -77,6 +79,7 @@ Checked<void> Gate::order(const HeartbeatMessage& message, UtcTime now) {
       !is_reached(message.sequence_number, message.epoch, latest)) {
     return refuse(RefusalReason::kForged);
   }
+  if (!is_stamp(message.stamp_utc_ns)) return refuse(RefusalReason::kOutOfRange);
   return heartbeat_.accept({message.epoch, message.sequence_number});
 }
 
@@ -93,6 +96,7 @@ Checked<void> Gate::order(const CommandMessage& message, UtcTime now) {
   if (message.command_id > latest || is_after(message.stamp_utc_ns, latest)) {
     return refuse(RefusalReason::kForged);
   }
+  if (!is_stamp(message.stamp_utc_ns)) return refuse(RefusalReason::kOutOfRange);
   return command_.accept(message.command_id);
 }
 
@@ -108,6 +112,7 @@ Checked<void> Gate::order(const StatusMessage& message, UtcTime now) const {
     return refuse(RefusalReason::kForged);
   }
   if (is_after(message.stamp_utc_ns, latest)) return refuse(RefusalReason::kClockSkew);
+  if (!is_stamp(message.stamp_utc_ns)) return refuse(RefusalReason::kOutOfRange);
   return {};
 }
 
