@@ -113,7 +113,7 @@ int main(int argc, char** argv) {
     const auto done = shell::parse(app, argc, argv, builtin_catalogue());
     if (!done) return tl::unexpected(done.error());
     if (*done) return **done;
-    shell::catch_stop_signals();
+    shell::catch_stop_signals(shell::Hangup::kStop);
     if (app.got_subcommand("table")) return table();
     return app.got_subcommand("chaos") ? chaos() : soak();
   });

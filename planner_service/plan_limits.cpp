@@ -17,7 +17,7 @@ void check_limits(PlanResult& result, const PlanningTraits& traits, const SwarmL
   const bool is_bounded =
       result.stats.cap_is_timed && cap_per_m2 > 0.0 && cap_per_m2 <= limits.packing_per_m2;
   if (!is_bounded) {
-    const DensityPeak densest = densest_disc_of(result.plan, robots);
+    const DensityPeak densest = densest_disc_of(result.plan, robots, limits.length_scale);
     result.stats.densest = densest;
     if (densest.per_m2 > limits.packing_per_m2) {
       result.warnings.push_back(

@@ -7,7 +7,11 @@
 namespace swarm::planner {
 
 Result<std::vector<RobotGroup>> PlanningMethod::measure(const MeasuredSwarm& swarm) {
-  return group_robots(swarm, risk(), {});
+  const GroupOptions usual;
+  return group_robots(swarm, risk(),
+                      {.radius_m = swarm.length_scale * usual.radius_m,
+                       .sigma_floor_m = swarm.length_scale * usual.sigma_floor_m,
+                       .sigma_least_m = swarm.length_scale * usual.sigma_least_m});
 }
 
 }  // namespace swarm::planner

@@ -14,11 +14,12 @@ namespace {
 /// Whether a robot is still near the position that the planner last received from it. One whose
 /// process was down for longer enters the plan from where it is, instead of driving back to where
 /// its group was.
-bool is_near_source(const FlowPlan& plan, std::uint32_t source, const Vec2& position_m) {
+bool is_near_source(const FlowPlan& plan, std::uint32_t source, const Vec2& position_m,
+                    double scale) {
   constexpr double kNear_m = 15.0;
   constexpr double kNearSigmas = 5.0;
   const Gaussian& g = plan.nodes()[plan.sources()[source]].gaussian;
-  return (position_m - g.mean_m()).norm() <= kNear_m ||
+  return (position_m - g.mean_m()).norm() <= scale * kNear_m ||
          g.mahalanobis_squared(position_m) <= kNearSigmas * kNearSigmas;
 }
 
@@ -51,7 +52,7 @@ void Agent::accept_plan(const FlowPlan& plan, const Vec2& position_m,
   if (has_route_ && plan.digest() == followed_route_.plan_digest) return;
   const RouteOptions& o = options_->route;
   Route route =
-      entry && is_near_source(plan, entry->source, position_m)
+      entry && is_near_source(plan, entry->source, position_m, options_->scale)
           ? route_from_source(plan, entry->source, entry->share, position_m, *world_, o)
       : moved_ || entry
           ? route_from_here(plan, followed_route_.share, position_m, *world_, o, plan_time_s)
@@ -120,7 +121,8 @@ AgentOutput Agent::tick(const AgentInput& input, Rng& rng) {
     const bool drives = out.mode == RobotMode::kMoving || out.mode == RobotMode::kArrived;
     const Vec2 desired =
         drives ? method_.desired_velocity(view, arrived_, rng) : method_.hold(view);
-    const bool gives_way = out.mode == RobotMode::kMoving && out.remaining_m > kFinalApproach_m;
+    const bool gives_way =
+        out.mode == RobotMode::kMoving && out.remaining_m > options_->scale * kFinalApproach_m;
     out.velocity_mps = filter_.filter(input.position_m, desired, view.close, gives_way);
   }
   if (has_route_) out.tracking = method_.tracking();
@@ -128,7 +130,7 @@ AgentOutput Agent::tick(const AgentInput& input, Rng& rng) {
   // velocity, now or averaged over two seconds, is negligible.
   mean_mps_ += mean_share_ * (out.velocity_mps - mean_mps_);
   out.settled = out.mode == RobotMode::kArrived &&
-                std::min(out.velocity_mps.norm(), mean_mps_.norm()) < kAtRest_mps;
+                std::min(out.velocity_mps.norm(), mean_mps_.norm()) < options_->scale * kAtRest_mps;
 
   // Followers rely on the published velocity: a body with a lag publishes the measured one.
   out.reported_mps = input.velocity_mps.value_or(out.velocity_mps);

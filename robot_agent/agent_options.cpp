@@ -13,6 +13,7 @@
 
 #include "robot_agent/margins.hpp"
 #include "swarm_core/base/assert.hpp"
+#include "swarm_core/mission/body_scale.hpp"
 
 namespace swarm::agent {
 namespace {
@@ -39,7 +40,7 @@ double close_m(const Mission& mission, const BodySpec& body, double press_gap_m)
   // to it, the two periods that a command lasts, and the lag.
   const double unnoticed_s = 2.0 * period_s + lag_s + mission.link.send_interval_max_s;
   const double follows_m = margin_m + fastest_mps(mission.robots) * unnoticed_s;
-  const double pressing_m = std::max(press_gap_m, room_gap_m(mission));
+  const double pressing_m = std::max(press_gap_m, room_gap_m(mission, body));
   return body.radius_m + largest_radius_m(mission.robots) +
          std::max({brake_m, follows_m, mission.link.send_near_m, pressing_m});
 }
@@ -59,6 +60,7 @@ Result<Shared<AgentOptions>> agent_options(const Mission& mission, RobotId robot
   const ControlSpec& c = mission.control;
   const LinkSpec& l = mission.link;
   const Duration period = from_seconds(1.0 / c.rate_hz);
+  const double scale = length_scale(body);
   const double communication_radius_m =
       body.communication_radius_m > 0.0 ? body.communication_radius_m : l.communication_radius_m;
   const ControlEntry* entry = registry.find(c.method);
@@ -75,7 +77,10 @@ Result<Shared<AgentOptions>> agent_options(const Mission& mission, RobotId robot
       std::isinf(control->reach_m) ? communication_radius_m : std::max(near_m, control->reach_m);
   return Shared<AgentOptions>(AgentOptions{
       .control = std::move(*control),
-      .route = {.radius_m = body.radius_m},
+      .route = {.radius_m = body.radius_m,
+                .vertex_clearance_m = scale * RouteOptions{}.vertex_clearance_m,
+                .leg_clearance_m = scale * RouteOptions{}.leg_clearance_m,
+                .scale = scale},
       .safety = {.radius_m = body.radius_m,
                  .speed_max_mps = body.speed_max_mps,
                  .period = period,
@@ -84,7 +89,8 @@ Result<Shared<AgentOptions>> agent_options(const Mission& mission, RobotId robot
                  .stale_gain = mission.safety.stale_gain,
                  .neighbour_margin_m = mission.safety.neighbour_margin_m,
                  .obstacle_margin_m = obstacle_margin_m(mission, body),
-                 .follow_share = mission.safety.follow_share},
+                 .follow_share = mission.safety.follow_share,
+                 .scale = scale},
       .neighbours = {.radius_m = body.radius_m,
                      .fleet = Fleet(mission.robots),
                      .communication_radius_m = communication_radius_m,
@@ -97,11 +103,14 @@ Result<Shared<AgentOptions>> agent_options(const Mission& mission, RobotId robot
                      .near_m = l.send_near_m,
                      .period = period,
                      .expected_silence = from_seconds(l.send_interval_max_s) + 2 * period,
-                     .forget_after = from_seconds(mission.timing.neighbour_forget_s)},
+                     .forget_after = from_seconds(mission.timing.neighbour_forget_s),
+                     .scale = scale},
       .send = {.error_m = l.send_error_m,
                .interval_max = from_seconds(l.send_interval_max_s),
                .near_m = l.send_near_m,
-               .period = period},
+               .period = period,
+               .scale = scale},
+      .scale = scale,
   });
 }
 

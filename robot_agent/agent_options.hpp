@@ -23,6 +23,7 @@ struct AgentOptions {
   SafetyOptions safety;
   NeighbourOptions neighbours;
   SendOptions send;
+  double scale = 1.0;  ///< of the constants of the agent (body_scale.hpp)
 };
 
 /// The options of a robot of a mission, and of any other with its body.

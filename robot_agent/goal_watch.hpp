@@ -12,11 +12,12 @@ namespace swarm::agent {
 
 /// Whether a robot has arrived: inside its goal's 99 % ellipse and within 1 m of its own end point,
 /// or within 4 m if other robots have let it no nearer for 3 s. Once arrived it stays so while it
-/// is inside the ellipse.
+/// is inside the ellipse. The lengths are multiplied by `scale` (body_scale.hpp).
 class GoalWatch {
  public:
   GoalWatch() = default;
-  GoalWatch(const Gaussian& goal, const Vec2& end_m) : goal_(goal), end_m_(end_m) {}
+  GoalWatch(const Gaussian& goal, const Vec2& end_m, double scale = 1.0)
+      : goal_(goal), end_m_(end_m), scale_(scale) {}
 
   /// Whether it watches this end point in this goal: then a new plan does not reset it.
   bool is_for(const Gaussian& goal, const Vec2& end_m) const {
@@ -29,12 +30,12 @@ class GoalWatch {
     const bool inside = goal_.contains_99(position_m);
     if (arrived_) return arrived_ = inside;
     const double left_m = (end_m_ - position_m).norm();
-    if (left_m < nearest_m_ - kProgress_m) {
+    if (left_m < nearest_m_ - scale_ * kProgress_m) {
       nearest_m_ = left_m;
       progress_at_ = now;
     }
-    const bool dense = left_m < kDense_m && now - progress_at_ > kDenseAfter;
-    return arrived_ = inside && (left_m < kNear_m || dense);
+    const bool dense = left_m < scale_ * kDense_m && now - progress_at_ > kDenseAfter;
+    return arrived_ = inside && (left_m < scale_ * kNear_m || dense);
   }
 
  private:
@@ -45,6 +46,7 @@ class GoalWatch {
 
   Gaussian goal_;
   Vec2 end_m_ = Vec2::Zero();
+  double scale_ = 1.0;
   double nearest_m_ = std::numeric_limits<double>::infinity();
   SteadyTime progress_at_;
   bool arrived_ = false;

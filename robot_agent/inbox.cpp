@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "swarm_core/base/stamp.hpp"
+
 namespace swarm::agent {
 
 namespace {
@@ -88,7 +90,7 @@ void Inbox::receive(const link::CommandMessage& command, UtcTime utc_now) {
   const MissionPhase before = mission_.phase();
   mission_.on_command(command.kind);
   if (mission_.phase() == MissionPhase::kStopped && before != MissionPhase::kStopped) {
-    stop_stamp_utc_ns_ = command.stamp_utc_ns;
+    stop_stamp_utc_ns_ = to_stamp(command.stamp_utc_ns);  // a stop passes with any stamp
   }
 }
 

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "swarm_core/mission/body_scale.hpp"
 #include "swarmflow/mission/mission.hpp"
 
 namespace swarm::agent {
@@ -17,6 +18,8 @@ inline double obstacle_margin_m(const Mission& mission, const BodySpec& body) {
 
 /// Gap above which a robot has room [m]. In a dense region gaps shrink to the filter's margin, so
 /// fields that push robots apart begin well above it.
-inline double room_gap_m(const Mission& mission) { return mission.safety.neighbour_margin_m + 0.5; }
+inline double room_gap_m(const Mission& mission, const BodySpec& body) {
+  return mission.safety.neighbour_margin_m + length_scale(body) * 0.5;
+}
 
 }  // namespace swarm::agent

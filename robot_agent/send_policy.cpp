@@ -25,7 +25,7 @@ bool SendPolicy::must_send(const SendInput& input) const {
   // and the next chance to send is a period away: send while one of them still fits in.
   if (silent_s + std::max(period_s, input.link.late_s) > input.listeners.timeout_s) return true;
   const bool is_stopped = input.velocity_mps == last_->velocity_mps &&
-                          input.velocity_mps.norm() < kSendsNothingBelow_mps;
+                          input.velocity_mps.norm() < options_->scale * kSendsNothingBelow_mps;
   // Messages may be lost: near others every tick carries a state, except where nothing changes.
   if (input.link.poor && input.listeners.nearest_gap_m < options_->near_m && !is_stopped)
     return true;
@@ -35,7 +35,8 @@ bool SendPolicy::must_send(const SendInput& input) const {
   const Vec2 soon_off_m = off_m + period_s * (last_->velocity_mps - input.velocity_mps);
   // Where robots nearly touch, a few centimetres decide which of them may move.
   const double error_m =
-      std::min(std::max(kOfGap * input.listeners.nearest_gap_m, kLeastError_m), options_->error_m);
+      std::min(std::max(kOfGap * input.listeners.nearest_gap_m, options_->scale * kLeastError_m),
+               options_->error_m);
   return std::max(off_m.norm(), soon_off_m.norm()) > error_m;
 }
 

@@ -19,6 +19,7 @@ struct SendOptions {
   Duration interval_max{};  ///< publish when the last published state is this old
   double near_m = 1.0;  ///< on a degraded link, publish at every tick with a neighbour this near
   Duration period{};    ///< of control: the time until the next chance to publish
+  double scale = 1.0;   ///< of the constants of the policy (body_scale.hpp)
 };
 
 /// What the decision depends on: the own state, the neighbours that receive it and the link.

@@ -42,7 +42,7 @@ int main(int argc, char** argv) {
     if (!done) return tl::unexpected(done.error());
     if (*done) return **done;
     // Before the command starts threads and children.
-    shell::catch_stop_signals();
+    shell::catch_stop_signals(shell::Hangup::kStop);
     for (const Command& command : commands) {
       if (command.app->parsed()) return command.act();
     }

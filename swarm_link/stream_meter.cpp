@@ -4,6 +4,8 @@
 
 #include <utility>
 
+#include "swarm_core/base/stamp.hpp"
+
 namespace swarm::link {
 
 // Bit k of `received` stands for the number highest − k. A new highest number shifts the window and
@@ -35,6 +37,7 @@ void StreamMeter::receive(const RobotStateMessage& state, UtcTime at) {
     if (number > stream.first) --counts_.lost;  // one before the first was never counted as lost
   }
   ++counts_.received;
+  if (!is_stamp(state.stamp_utc_ns)) return;  // no age to measure
   const std::int64_t age_us = (at.time_since_epoch().count() - state.stamp_utc_ns) / 1000;
   latency_.add(age_us);
   recent_.add(age_us);

@@ -87,7 +87,7 @@ int main(int argc, char** argv) {
     const auto done = shell::parse(app, argc, argv, builtin_catalogue());
     if (!done) return tl::unexpected(done.error());
     if (*done) return **done;
-    shell::catch_stop_signals();
+    shell::catch_stop_signals(shell::Hangup::kStop);
     return launcher::simulate(*line);
   });
 }

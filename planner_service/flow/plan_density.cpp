@@ -163,9 +163,9 @@ DensityPeak densest_disc(const FlowPlan& plan, double robots, double radius_m, d
   return highest;
 }
 
-DensityPeak densest_disc_of(const FlowPlan& plan, double robots) {
+DensityPeak densest_disc_of(const FlowPlan& plan, double robots, double scale) {
   constexpr double kStep_s = 2.0;  // a mean moves 2.5 m, about a disc's radius
-  return densest_disc(plan, robots, kDisc_m, kStep_s);
+  return densest_disc(plan, robots, scale * kDisc_m, kStep_s);
 }
 
 // Peaks with the legs that cause them, for lowering capacities and undoing moves.

@@ -47,11 +47,12 @@ DensityPeak max_density(std::span<const Gaussian> components, std::span<const do
 /// counts there, so that it may miss the densest disc by a few per cent, always from below.
 DensityPeak densest_disc(const FlowPlan& plan, double robots, double radius_m, double step_s);
 
-/// Radius of the discs in which densities are compared with what fits [m]: ten robots or more.
+/// Radius of the discs in which densities are compared with what fits [m]: ten robots of the
+/// default body or more.
 inline constexpr double kDisc_m = 2.0;
 
-/// The densest disc of kDisc_m of a plan, searched at every 2 s of it.
-DensityPeak densest_disc_of(const FlowPlan& plan, double robots);
+/// The densest disc of `scale` times kDisc_m of a plan, searched at every 2 s of it.
+DensityPeak densest_disc_of(const FlowPlan& plan, double robots, double scale = 1.0);
 
 /// All peaks above `limit_per_m2`, in order of time.
 std::vector<SharedPeak> peaks_above(const FlowPlan& plan, double robots, double step_s,

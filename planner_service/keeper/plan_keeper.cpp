@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "swarm_core/base/one_line.hpp"
+#include "swarm_core/mission/body_scale.hpp"
 
 namespace swarm::planner {
 namespace {
@@ -39,7 +40,8 @@ PlanKeeper::PlanKeeper(const Mission& mission, Planner planner, std::uint64_t se
       seed_(seed),
       clock_(std::move(clock)),
       planner_(std::move(planner)),
-      robots_(mission.robots.count, from_seconds(3.0 + 3.0 / mission.link.status_hz)),
+      robots_(mission.robots.count, from_seconds(3.0 + 3.0 / mission.link.status_hz),
+              length_scale(mission.robots)),
       scene_(first_scene(mission.world.obstacles().size())),
       governor_(mission.plan_clock) {}
 
@@ -70,7 +72,8 @@ Result<Replan> PlanKeeper::plan_anew(const World& world, std::span<const Reporte
                      .delta_m = mission_.planner.risk_delta_m});
   Rng rng(mix_seed(seed_, version_));
   if (!robots.empty()) {
-    return replan(planner_, {world, goal, robots}, mission_.robots.count, {rng, clock_});
+    return replan(planner_, {world, goal, robots, length_scale(mission_.robots)},
+                  mission_.robots.count, {rng, clock_});
   }
   auto planned = planner_.plan({world, mission_.start, goal}, {rng, clock_});
   if (!planned) return tl::unexpected(planned.error());

@@ -15,17 +15,17 @@ namespace swarm::planner {
 /// robots under way have made no progress.
 class RobotWatch {
  public:
-  /// Less than this is no progress.
+  /// Less than this is no progress, of default bodies (body_scale.hpp).
   static constexpr double kProgress_m = 0.5;
 
-  RobotWatch(std::uint32_t robots, Duration forget_after)
-      : received_(robots), forget_after_(forget_after) {}
+  RobotWatch(std::uint32_t robots, Duration forget_after, double scale = 1.0)
+      : received_(robots), forget_after_(forget_after), progress_m_(scale * kProgress_m) {}
 
   /// `moving`: the robot is under way. \pre the id is below the number of robots
   void receive(const ReportedRobot& robot, bool moving, SteadyTime now) {
     std::optional<Received>& received = received_.at(robot.robot.value());
     const bool is_stopped = received && moving && received->moving &&
-                            (robot.position_m - received->stopped_at_m).norm() < kProgress_m;
+                            (robot.position_m - received->stopped_at_m).norm() < progress_m_;
     received = Received{.robot = robot,
                         .at = now,
                         .moving = moving,
@@ -81,6 +81,7 @@ class RobotWatch {
 
   std::vector<std::optional<Received>> received_;
   Duration forget_after_;
+  double progress_m_;
 };
 
 }  // namespace swarm::planner

@@ -9,8 +9,8 @@
 
 namespace swarm::planner {
 
-EdgeChecker::EdgeChecker(const World& world, const RiskLimit& risk)
-    : world_(&world), k_(cvar_coefficient(risk.alpha)), delta_m_(risk.delta_m) {}
+EdgeChecker::EdgeChecker(const World& world, const RiskLimit& risk, double scale)
+    : world_(&world), k_(cvar_coefficient(risk.alpha)), delta_m_(risk.delta_m), scale_(scale) {}
 
 // Coefficients of the polynomials of Σ(t) for its three distinct entries.
 EdgeChecker::Sweep::Sweep(const Gaussian& a, const Gaussian& b)
@@ -100,7 +100,7 @@ bool EdgeChecker::is_free(EdgeEnd& a, EdgeEnd& b, double tolerance_m) {
   std::optional<Sweep> sweep;
   for (std::size_t i = 0; i < open_.size(); ++i) {
     const Interval interval = open_[i];
-    if (is_proven(interval, rates, tolerance_m)) continue;
+    if (is_proven(interval, rates, scale_ * tolerance_m)) continue;
     if (i >= kMostIntervals) return false;
     if (!sweep) sweep.emplace(a.gaussian(), b.gaussian());
     const Sample middle =

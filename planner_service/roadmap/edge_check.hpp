@@ -66,8 +66,9 @@ class EdgeChecker {
   /// A hundred times what any edge of a plan in metres needs.
   static constexpr std::size_t kMostIntervals = 1U << 14U;
 
-  /// Keeps a reference to the world.
-  EdgeChecker(const World& world, const RiskLimit& risk);
+  /// Keeps a reference to the world. Tolerances are those of default bodies: `scale` is the factor
+  /// on them for others (body_scale.hpp).
+  EdgeChecker(const World& world, const RiskLimit& risk, double scale = 1.0);
 
   /// True proves CVaR ≤ δ + tolerance on the whole edge; false means a point with CVaR > δ, or that
   /// kMostIntervals did not prove it: cost grows with 1/tolerance where the edge runs along the
@@ -127,6 +128,7 @@ class EdgeChecker {
   const World* world_;
   double k_;
   double delta_m_;
+  double scale_;
   std::vector<Interval> open_;
 };
 

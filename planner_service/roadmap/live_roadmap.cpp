@@ -65,7 +65,7 @@ LiveRoadmap::LiveRoadmap(World world, std::vector<Gaussian> terminals,
     : options_(options),
       k_(cvar_coefficient(options.risk.alpha)),
       world_(std::make_unique<const World>(std::move(world))),
-      checker_(*world_, options.risk) {
+      checker_(*world_, options.risk, options.scale) {
   samples_ = sample_free(*world_, options.risk, options.sampler, options.samples, rng);
   work_.samples_drawn = samples_.size();
   const double clearance_m = k_ * options.sampler.sigma_min_m - options.risk.delta_m;

@@ -25,6 +25,7 @@ struct LiveRoadmapOptions {
   double connection_radius_m = 20.0;  ///< r of Alg. 1, in W₂
   RiskLimit risk;
   SamplerOptions sampler;
+  double scale = 1.0;  ///< of the tolerance of its edges, see EdgeChecker
 };
 
 /// A roadmap that is kept while the world changes, and repaired where it does.

@@ -282,7 +282,8 @@ void NeighbourTable::estimate(std::size_t known, const Vec2& own_position_m, con
   n.information_age_s = std::min(age_s, std::max(in_s(block.late_us[lane]), link_.late_s));
   // On a degraded link robots this near publish at every tick (see SendPolicy): if none has
   // arrived, the information is as old as the last state, not only as late as messages are.
-  if (link_.poor && n.velocity_mps.squaredNorm() > kStopped_mps * kStopped_mps) {
+  const double stopped_mps = options_->scale * kStopped_mps;
+  if (link_.poor && n.velocity_mps.squaredNorm() > stopped_mps * stopped_mps) {
     const double updates_within_m = options_->near_m + options_->radius_m + radius_m;
     const Vec2 sent_at_m = here_m_ + Vec2(block.x_m[lane], block.y_m[lane]);
     if ((sent_at_m - own_position_m).squaredNorm() < updates_within_m * updates_within_m) {

@@ -54,6 +54,7 @@ struct NeighbourOptions {
   Duration period{};            ///< of control: a body stops two periods after its last command
   Duration expected_silence{};  ///< a healthy robot publishes at least this often
   Duration forget_after{};
+  double scale = 1.0;  ///< of the speed below which a robot counts as stopped (body_scale.hpp)
 };
 
 /// The robots near us, as known from their published states. Between two state updates the position

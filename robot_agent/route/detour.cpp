@@ -35,11 +35,11 @@ class Detour {
       if (!is_free(from_m, bent, to_m)) continue;
       Vec2 at_m = from_m;
       for (const Vec2& next_m : bent) {
-        bend(at_m, next_m, kSkim_m, deep - 1, points);
+        bend(at_m, next_m, options_.scale * kSkim_m, deep - 1, points);
         points.push_back(next_m);
         at_m = next_m;
       }
-      bend(at_m, to_m, kSkim_m, deep - 1, points);
+      bend(at_m, to_m, options_.scale * kSkim_m, deep - 1, points);
       return;
     }
   }
@@ -57,7 +57,9 @@ class Detour {
       }
     }
     const bool moved = p != point_m;
-    return moved && inside(p) && world_.is_clear(p, options_.radius_m + kWall_m) ? p : point_m;
+    return moved && inside(p) && world_.is_clear(p, options_.radius_m + options_.scale * kWall_m)
+               ? p
+               : point_m;
   }
 
  private:
@@ -92,7 +94,8 @@ class Detour {
       for (std::size_t i = 0; i < bodies_.size(); ++i) {
         const double gap_m =
             (bodies_[i].center_m - a.center_m).norm() - bodies_[i].radius_m - a.radius_m;
-        if (gap_m < 2.0 * options_.radius_m + kBetween_m && !contains(members, i)) {
+        if (gap_m < 2.0 * options_.radius_m + options_.scale * kBetween_m &&
+            !contains(members, i)) {
           members.push_back(i);
         }
       }
@@ -156,7 +159,7 @@ class Detour {
 
   // Whether the lines through the points are free of walls; bodies on them are bent around later.
   bool is_free(const Vec2& from_m, const std::vector<Vec2>& points, const Vec2& to_m) const {
-    const double clearance_m = options_.radius_m + kWall_m;
+    const double clearance_m = options_.radius_m + options_.scale * kWall_m;
     const World& walls = world_.without_bodies();
     Vec2 at_m = from_m;
     for (const Vec2& next_m : points) {

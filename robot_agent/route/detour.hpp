@@ -13,6 +13,7 @@ struct DetourOptions {
   double radius_m = 0.2;
   double touch_m = 0.3;  ///< a path nearer than this to a body is bent
   double keep_m = 0.5;   ///< surface distance of the bent path to the body
+  double scale = 1.0;    ///< of the other distances (body_scale.hpp)
 };
 
 /// Points that lead from a point to another around the bodies of dead robots on the straight line

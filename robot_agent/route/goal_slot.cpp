@@ -30,7 +30,7 @@ bool GoalSlot::has_arrived(SteadyTime now, const Vec2& position_m) {
     return arrived_ = inside;
   }
   const double left_m = (aim_m() - position_m).norm();
-  if (left_m < nearest_m_ - kProgress_m) {
+  if (left_m < nearest_m_ - options_->scale * kProgress_m) {
     nearest_m_ = left_m;
     progress_at_ = now;
   }
@@ -45,7 +45,7 @@ bool GoalSlot::has_arrived(SteadyTime now, const Vec2& position_m) {
   }
   // Within the rim only: between rim and ellipse other robots could push it out again.
   const bool well_inside = goal_.mahalanobis_squared(position_m) <= kRim;
-  return arrived_ = well_inside && (slot_m_ - position_m).norm() < kNear_m;
+  return arrived_ = well_inside && (slot_m_ - position_m).norm() < options_->scale * kNear_m;
 }
 
 /// The push u of goal_slot.hpp. O(close neighbours).
@@ -84,7 +84,7 @@ Vec2 GoalSlot::keep(const ControlView& view) {
   }
   const Vec2 path_m = slot_m_ - view.position_m;
   const double left_m = path_m.norm();
-  if (left_m < kAtRest_m) return Vec2::Zero();
+  if (left_m < options_->scale * kAtRest_m) return Vec2::Zero();
   const double speed = std::min(options_->approach_max_mps, options_->approach_gain_hz * left_m);
   return speed / left_m * path_m;
 }

@@ -19,6 +19,7 @@ struct GoalSlotOptions {
   double outside_share = 3.0;  ///< factor on the push of a neighbour outside of the goal
   double approach_gain_hz = 0.8;
   double approach_max_mps = 0.4;  ///< of a robot that has arrived, to its slot
+  double scale = 1.0;             ///< of the other distances (body_scale.hpp)
 };
 
 /// A robot's slot in the goal, and how all robots find room in it.

@@ -29,7 +29,8 @@ bool GuidePoints::sees(const Vec2& position_m, const World& world, std::size_t p
   // still sees points in the open.
   const double least_m = std::min({world.distance_m(position_m), world.distance_m(points_m_[point]),
                                    options_->radius_m + clearance_m});
-  return world.segment_is_free(position_m, points_m_[point], std::max(0.0, least_m - 1e-3));
+  return world.segment_is_free(position_m, points_m_[point],
+                               std::max(0.0, least_m - options_->scale * 1e-3));
 }
 
 /// Takes the first of these that is in sight:
@@ -70,7 +71,8 @@ const Vec2& GuidePoints::update(const Vec2& position_m, const World& world, bool
   }
   const double distance_m = (points_m_[at_] - position_m).norm();
   if (!is_last() && distance_m < options_->goal_radius_m &&
-      (distance_m < kReached_m || sees(position_m, world, at_ + 1, options_->passable_m))) {
+      (distance_m < options_->scale * kReached_m ||
+       sees(position_m, world, at_ + 1, options_->passable_m))) {
     ++at_;
   }
   return points_m_[at_];

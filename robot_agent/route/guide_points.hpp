@@ -19,6 +19,7 @@ struct GuidePointsOptions {
   double clearance_m = 0.3;      ///< surface clearance of a line of sight to a later one
   double sight_m = 12.0;         ///< later ones are looked for this far ahead on the path
   std::uint32_t look_every = 4;  ///< ticks between two looks
+  double scale = 1.0;            ///< of the other distances (body_scale.hpp)
 };
 
 /// The intermediate goals of a path and which of them is the robot's present one [CRoPS, guiding

@@ -28,8 +28,9 @@ struct PaceOptions {
 class Pace {
  public:
   static constexpr double kFeed_s = 1.0;
-  static constexpr double kPast_m = 0.8;      ///< a robot this far past the carrot returns to it
-  static constexpr double kReturn_mps = 0.5;  ///< largest speed of that return
+  /// A robot this far past the carrot returns to it, at this speed at most; for default bodies.
+  static constexpr double kPast_m = 0.8;
+  static constexpr double kReturn_mps = 0.5;
 
   /// The pace at one plan time.
   struct Now {

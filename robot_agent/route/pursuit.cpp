@@ -12,11 +12,13 @@ constexpr double kStep_m = 0.25;    // step by which progress moves on
 constexpr double kReached_m = 0.5;  // an aim this near counts as reached
 // How far back along the path a visible point is looked for.
 constexpr double kBackTrack_m = 30.0;
-constexpr double kSample_m = 0.5;    // spacing of the samples of planned clearance
-constexpr double kLeast_m = 0.05;    // surface clearance of any line of sight
-constexpr double kTouch_m = 1e-3;    // tolerance at the robot's end of a line of sight
-constexpr double kKeepAim_m = 1.5;   // an aim this far ahead is kept between two looks,
-constexpr double kAtCarrot_m = 0.1;  // and one this near the carrot
+constexpr double kSample_m = 0.5;      // spacing of the samples of planned clearance
+constexpr double kLeast_m = 0.05;      // surface clearance of any line of sight
+constexpr double kTouch_m = 1e-3;      // tolerance at the robot's end of a line of sight
+constexpr double kKeepAim_m = 1.5;     // an aim this far ahead is kept between two looks,
+constexpr double kAtCarrot_m = 0.1;    // and one this near the carrot
+constexpr double kLeastAhead_m = 0.1;  // nearer aims are no aims
+constexpr double kBackStep_m = 1.0;    // step of the search back along the path
 
 }  // namespace
 
@@ -28,22 +30,23 @@ Pursuit::Pursuit(Polyline path, const World& world, Shared<PursuitOptions> optio
       segment_(path_.segment(0.0)),
       here_(segment_.position(0.0)) {
   const double most_m = options_->radius_m + options_->keep_clearance_m;
-  const auto pieces = static_cast<std::size_t>(path_.length_m() / kSample_m) + 1;
+  const double sample_m = scaled(kSample_m);
+  const auto pieces = static_cast<std::size_t>(path_.length_m() / sample_m) + 1;
   clearance_m_.reserve(pieces);
   std::size_t segment = 0;
   for (std::size_t i = 0; i < pieces; ++i) {
     // The distance field has slope 1 at most: within half a piece of the sample the clearance is
     // less by at most that half.
-    const double s = (static_cast<double>(i) + 0.5) * kSample_m;
+    const double s = (static_cast<double>(i) + 0.5) * sample_m;
     const Polyline::Segment on = path_.segment(s, segment);
     segment = on.index;
-    const double least_m = world.distance_m(on.position(s).point_m) - 0.5 * kSample_m;
+    const double least_m = world.distance_m(on.position(s).point_m) - 0.5 * sample_m;
     clearance_m_.push_back(static_cast<float>(std::clamp(least_m, 0.0, most_m)));
   }
 }
 
 std::size_t Pursuit::piece_of(double s_m) const {
-  return std::min(clearance_m_.size() - 1, static_cast<std::size_t>(s_m / kSample_m));
+  return std::min(clearance_m_.size() - 1, static_cast<std::size_t>(s_m / scaled(kSample_m)));
 }
 
 /// Least planned clearance between two arc lengths. O(pieces between them).
@@ -65,7 +68,7 @@ void Pursuit::move_to(double s_m) {
 /// Moves progress on past all points that count as passed: nearer than passed_m, or beside the path
 /// and behind the robot. An aim that was reached by a short cut is progress at once.
 void Pursuit::advance(const Vec2& position_m) {
-  if (aim_s_m_ > s_m_ && (aim_m_ - position_m).norm() < kReached_m) move_to(aim_s_m_);
+  if (aim_s_m_ > s_m_ && (aim_m_ - position_m).norm() < scaled(kReached_m)) move_to(aim_s_m_);
   const double length = path_.length_m();
   while (s_m_ < length) {
     const Vec2 offset = position_m - here_.point_m;
@@ -74,7 +77,7 @@ void Pursuit::advance(const Vec2& position_m) {
     // it holds at points far off, too.
     const bool beside = offset.norm() < options_->look_ahead_m && offset.dot(here_.tangent) > 0.0;
     if (!near && !beside) break;
-    move_to(std::min(length, s_m_ + kStep_m));
+    move_to(std::min(length, s_m_ + scaled(kStep_m)));
   }
 }
 
@@ -97,8 +100,8 @@ Pursuit::Aim Pursuit::update(const Vec2& position_m, const World& world, double 
   carrot_m_ = std::min(carrot_m, path_.length_m());
   advance(position_m);
   // Between two looks the last visible aim is kept, while it is well ahead or at the carrot.
-  const bool is_kept =
-      aim_s_m_ <= carrot_m_ && (aim_s_m_ - s_m_ > kKeepAim_m || carrot_m_ - aim_s_m_ < kAtCarrot_m);
+  const bool is_kept = aim_s_m_ <= carrot_m_ && (aim_s_m_ - s_m_ > scaled(kKeepAim_m) ||
+                                                 carrot_m_ - aim_s_m_ < scaled(kAtCarrot_m));
   if (looks_in_ > 0 && is_kept) {
     --looks_in_;
     return aim(position_m);
@@ -111,13 +114,14 @@ Pursuit::Aim Pursuit::update(const Vec2& position_m, const World& world, double 
 /// robot that sees no point at all aims at its progress and looks again at the next tick.
 Pursuit::Aim Pursuit::look(const Vec2& position_m, const World& world) {
   const double length = path_.length_m();
-  const double most_m = options_->radius_m + std::max(kLeast_m, options_->keep_clearance_m);
+  const double most_m = options_->radius_m + std::max(scaled(kLeast_m), options_->keep_clearance_m);
+  const double touch_m = scaled(kTouch_m);
   const double own_clearance =
-      std::max(0.0, world.distance_up_to_m(position_m, most_m + kTouch_m) - kTouch_m);
+      std::max(0.0, world.distance_up_to_m(position_m, most_m + touch_m) - touch_m);
   // As wide as the clearance planned for the stretch, but no wider than the room at the robot.
   const auto visible = [&](double s) {
     const double planned = planned_clearance_m(std::min(s_m_, s), std::max(s_m_, s));
-    const double wanted = std::max(options_->radius_m + kLeast_m, planned);
+    const double wanted = std::max(options_->radius_m + scaled(kLeast_m), planned);
     return world.segment_is_free(position_m, path_.at(s, segment_.index),
                                  std::min(wanted, own_clearance));
   };
@@ -126,12 +130,13 @@ Pursuit::Aim Pursuit::look(const Vec2& position_m, const World& world) {
     aim_m_ = path_.at(s, segment_.index);
     return aim(position_m);
   };
-  for (double ahead = options_->look_ahead_m; ahead > 0.1; ahead *= 0.5) {
+  for (double ahead = options_->look_ahead_m; ahead > scaled(kLeastAhead_m); ahead *= 0.5) {
     const double s = std::min(carrot_m_, s_m_ + ahead);
     if (visible(s)) return aim_at(s);
     if (s <= s_m_) break;
   }
-  for (double back = 0.0; back <= std::min(kBackTrack_m, s_m_); back += 1.0) {
+  for (double back = 0.0; back <= std::min(scaled(kBackTrack_m), s_m_);
+       back += scaled(kBackStep_m)) {
     if (visible(s_m_ - back)) {
       move_to(s_m_ - back);
       return aim_at(s_m_);

@@ -19,6 +19,7 @@ struct PursuitOptions {
   double passed_m = 0.7;          ///< a point of the path this near counts as passed
   double keep_clearance_m = 2.0;  ///< planned surface clearance up to this is kept by short cuts
   std::uint32_t look_every = 5;   ///< ticks between two looks for a farther aim
+  double scale = 1.0;             ///< of the constants of the pursuit (body_scale.hpp)
 };
 
 /// Follows a path up to a carrot on it: progress s moves on when the robot has passed the point at
@@ -63,6 +64,7 @@ class Pursuit {
   Aim aim(const Vec2& position_m) const;
   Aim look(const Vec2& position_m, const World& world);
   double planned_clearance_m(double from_s_m, double to_s_m) const;
+  double scaled(double length_m) const { return options_->scale * length_m; }
 
   Polyline path_;
   Shared<PursuitOptions> options_;

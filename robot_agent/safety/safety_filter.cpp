@@ -221,7 +221,7 @@ Vec2 SafetyFilter::filter(const Vec2& position_m, const Vec2& desired_mps,
   collect_neighbours(position_m, neighbours, lines);
   const Vec2 u = nearest(desired_mps, lines);
   const double desired = desired_mps.norm();
-  if (!gives_way || desired < kLeastDesired_mps) return u;
+  if (!gives_way || desired < options_->scale * kLeastDesired_mps) return u;
   if (u.dot(desired_mps) > kBlocked * desired * desired) return u;
   Vec2 turned = u;
   for (const double turn_rad : kTurns_rad) {

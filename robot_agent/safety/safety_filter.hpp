@@ -24,6 +24,7 @@ struct SafetyOptions {
   double neighbour_margin_m = 0.25;  ///< m
   double obstacle_margin_m = 0.05;   ///< m_o
   double follow_share = 0.8;         ///< β
+  double scale = 1.0;  ///< of the least desired speed that is worth a turn (body_scale.hpp)
 };
 
 /// What a robot means to the neighbours that receive its states.

@@ -139,6 +139,16 @@ void ControlServer::answer(ClientId id, const std::string& text) {
   clients_.erase(client);
 }
 
+bool launcher_listens(const std::filesystem::path& run_dir) {
+  const int fd = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+  if (fd < 0) return false;
+  const ShortAddress address(run_dir);
+  // EAGAIN: one that hangs has a full queue.
+  const bool listens = ::connect(fd, address.get(), sizeof(sockaddr_un)) == 0 || errno == EAGAIN;
+  ::close(fd);
+  return listens;
+}
+
 /// Blocks until the launcher closes the connection, which it does after the last line of its
 /// answer. The result is decided by that last line.
 Result<bool> send_command(const std::filesystem::path& run_dir, const std::string& line,

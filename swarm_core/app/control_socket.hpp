@@ -57,6 +57,9 @@ class ControlServer {
   ClientId next_id_ = 0;
 };
 
+/// Whether a launcher listens in a run directory.
+bool launcher_listens(const std::filesystem::path& run_dir);
+
 /// Sends a line and calls `on_line` for every line of the answer, and `on_wait`, if there is one,
 /// every 20 ms meanwhile; it returns false to give up waiting. Waits 15 s at most. True when the
 /// last line starts with "done"; kEnvironment if no launcher listens or none answers.

@@ -8,17 +8,20 @@
 
 #include <CLI/CLI.hpp>
 
+#include "swarm_core/app/foreign_settings.hpp"
 #include "swarm_core/app/output.hpp"
+#include "swarm_core/base/printable.hpp"
 #include "swarmflow/mission/mission_file.hpp"
 
 namespace swarm::shell {
 
 namespace {
 
+/// Messages quote mission files, arguments and what other hosts answered, with any bytes.
 int report(const std::string& name, const Error& error) {
   std::istringstream lines(error.message);
   for (std::string line; std::getline(lines, line);) {
-    std::fprintf(stderr, "%s: %s\n", name.c_str(), line.c_str());
+    std::fprintf(stderr, "%s: %s\n", name.c_str(), printable(line).c_str());
   }
   return static_cast<int>(exit_code(error.code));
 }
@@ -30,6 +33,7 @@ int report(const std::string& name, const Error& error) {
 // not look like a success; another failure keeps its own exit code.
 int run_main(const std::string& name, const std::function<Result<ExitCode>()>& body) {
   hold_standard_streams();
+  drop_foreign_settings();
   try {
     const Result<ExitCode> code = body();
     int status = code ? static_cast<int>(*code) : report(name, code.error());
@@ -39,7 +43,7 @@ int run_main(const std::string& name, const std::function<Result<ExitCode>()>& b
     }
     return status;
   } catch (const std::exception& e) {
-    std::fprintf(stderr, "%s: unexpected: %s\n", name.c_str(), e.what());
+    std::fprintf(stderr, "%s: unexpected: %s\n", name.c_str(), printable(e.what()).c_str());
     return static_cast<int>(ExitCode::kEnvironment);
   }
 }

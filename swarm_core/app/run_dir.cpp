@@ -13,10 +13,18 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "swarm_core/app/control_socket.hpp"
 #include "swarm_core/app/run_directory.hpp"
 
 namespace swarm::shell {
 namespace {
+
+// The current directory may have been deleted: then the name stays relative.
+std::filesystem::path absolute_or_same(const std::filesystem::path& path) {
+  std::error_code error;
+  auto absolute = std::filesystem::absolute(path, error);
+  return error ? path : absolute;
+}
 
 // Local time keeps the names readable; a number is appended when two runs begin in the same second.
 // The directory is made here: the one process for which it did not exist yet has claimed it.
@@ -34,8 +42,8 @@ Result<std::filesystem::path> make_default_dir(const std::string& mission) {
     dir = runs / fmt::format("{}-{}", name, i);
   }
   return fail(ErrorCode::kEnvironment,
-              fmt::format("cannot make a directory in {}: {}",
-                          std::filesystem::absolute(runs).string(), error.message()));
+              fmt::format("cannot make a directory in {}: {}; name one with --out",
+                          absolute_or_same(runs).string(), error.message()));
 }
 
 // A directory that the user named may exist, so making it claims nothing: a lock does, until this
@@ -50,6 +58,16 @@ bool claim(const std::filesystem::path& dir) {
 
 }  // namespace
 
+// A shared lock is refused only while the maker's exclusive one is there. On file systems without
+// locks, a launcher is found by its socket.
+bool is_run_alive(const std::filesystem::path& run_dir) {
+  const int fd = ::open(run_dir.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (fd < 0) return false;
+  const bool claimed = ::flock(fd, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+  ::close(fd);
+  return claimed || launcher_listens(run_dir);
+}
+
 Result<std::filesystem::path> make_run_dir(const std::filesystem::path& out,
                                            const std::string& mission) {
   std::filesystem::path named = out;
@@ -58,7 +76,13 @@ Result<std::filesystem::path> make_run_dir(const std::filesystem::path& out,
     if (!made) return tl::unexpected(made.error());
     named = *std::move(made);
   }
-  const auto dir = std::filesystem::absolute(named);
+  const auto dir = absolute_or_same(named);
+  if (!dir.is_absolute()) {
+    return fail(ErrorCode::kEnvironment,
+                fmt::format("--out {}: the current directory does not exist any more; give an "
+                            "absolute path",
+                            dir.string()));
+  }
   std::error_code error;
   std::filesystem::create_directories(dir, error);
   if (!error && !claim(dir)) {

@@ -16,4 +16,7 @@ namespace swarm::shell {
 Result<std::filesystem::path> make_run_dir(const std::filesystem::path& out,
                                            const std::string& mission);
 
+/// Whether the process that made the directory of a run, its launcher as a rule, still runs.
+bool is_run_alive(const std::filesystem::path& run_dir);
+
 }  // namespace swarm::shell

@@ -14,6 +14,18 @@ static_assert(std::atomic<int>::is_always_lock_free, "used in a signal handler")
 // A signal handler may only touch lock-free atomics; the loops of the program poll the count.
 void on_signal(int) { requests.fetch_add(1, std::memory_order_relaxed); }
 
+std::atomic<bool> hung_up{false};
+static_assert(std::atomic<bool>::is_always_lock_free, "used in a signal handler");
+
+void on_hangup(int) {
+  if (!hung_up.exchange(true, std::memory_order_relaxed)) on_signal(SIGHUP);
+}
+
+bool is_ignored(int signal) {
+  struct sigaction action = {};
+  return sigaction(signal, nullptr, &action) == 0 && action.sa_handler == SIG_IGN;
+}
+
 }  // namespace
 
 // SIGPIPE is ignored because every send already checks its result, and a peer that closed its
@@ -23,10 +35,11 @@ void catch_stop_signals(Hangup hangup) {
   action.sa_handler = on_signal;  // no SA_RESTART: a sleeping loop wakes up
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
-  if (hangup == Hangup::kStop) {
-    sigaction(SIGHUP, &action, nullptr);
-  } else {
+  if (hangup == Hangup::kIgnore) {
     std::signal(SIGHUP, SIG_IGN);
+  } else if (!is_ignored(SIGHUP)) {
+    action.sa_handler = on_hangup;
+    sigaction(SIGHUP, &action, nullptr);
   }
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);  // a write over the limit of file sizes fails as on a full disk

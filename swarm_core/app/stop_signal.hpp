@@ -6,8 +6,11 @@ namespace swarm::shell {
 
 /// What the end of the terminal, SIGHUP, does to a program.
 enum class Hangup : unsigned char {
-  kIgnore,  ///< goes on: robots are in flight, or hours of results would be lost
-  kStop,    ///< counts as a stop signal: the program shows something to its user
+  kIgnore,  ///< goes on: another process ends it
+  /// Counts as a stop signal, as its user cannot end it by Ctrl-C any more, unless the program was
+  /// started to outlive its terminal, as by nohup. However often the signal comes it counts once,
+  /// since kernel and shell send one each, and a second stop signal of a user means "at once".
+  kStop,
 };
 
 /// Installs handlers for SIGINT and SIGTERM that only count them, and ignores SIGPIPE and SIGXFSZ.

@@ -8,6 +8,8 @@
 #include <limits>
 #include <numbers>
 
+#include "swarm_core/mission/body_scale.hpp"
+
 namespace swarm {
 namespace {
 
@@ -40,7 +42,7 @@ double body_lag_s(const BodySpec& body) { return body.lag_s.value_or(0.0); }
 SwarmLimits swarm_limits(const RobotsSpec& robots, const SafetySpec& safety,
                          const ControlSpec& control) {
   constexpr double kNone = std::numeric_limits<double>::infinity();
-  SwarmLimits limits{kNone, kNone, kNone, kNone};
+  SwarmLimits limits{kNone, kNone, kNone, kNone, length_scale(robots)};
   // Every limit is the minimum over the bodies, as one plan serves the whole swarm.
   const auto restrict_to = [&](const BodySpec& body) {
     const double lag_s = body_lag_s(body);

@@ -24,13 +24,8 @@ double smallest_radius_m(const RobotsSpec& robots) {
 }
 
 /// The goal at the end of a mission and its path in the file.
-struct LastGoal {
-  const Mixture* mixture;
-  std::string path;
-};
-
-LastGoal last_goal(const Mission& mission) {
-  LastGoal last{&mission.goal, "goal"};
+NamedGoal last_goal(const Mission& mission) {
+  NamedGoal last{&mission.goal, "goal"};
   for (std::size_t i = 0; i < mission.script.size(); ++i) {
     const auto* change = std::get_if<SceneChange>(&mission.script[i].action);
     const auto* go_to = change != nullptr ? std::get_if<GoTo>(change) : nullptr;
@@ -58,8 +53,12 @@ double goal_tolerance(std::uint32_t robots) {
 
 std::optional<std::string> lack_of_goal_room(const Mission& mission) {
   if (mission.goal_shape != nullptr) return std::nullopt;
-  const LastGoal goal = last_goal(mission);
-  const std::uint32_t robots = mission.robots.count;
+  return lack_of_goal_room(mission, last_goal(mission));
+}
+
+std::optional<std::string> lack_of_goal_room(const Mission& mission, const NamedGoal& goal,
+                                             std::uint32_t lost) {
+  const std::uint32_t robots = mission.robots.count - std::min(lost, mission.robots.count);
   const double radius_m = smallest_radius_m(mission.robots);
   constexpr std::string_view kRemedy =
       "enlarge its covariance_m2, or lower robots.count or robots.radius_m";
@@ -78,6 +77,25 @@ std::optional<std::string> lack_of_goal_room(const Mission& mission) {
   if (all >= robots || goal.mixture->components().empty()) return std::nullopt;
   return fmt::format("{} has no room for {} robots of {} m radius, at most for {:.0f}; {}",
                      goal.path, robots, radius_m, all, kRemedy);
+}
+
+std::optional<std::string> lack_of_place(const Obstacle& obstacle, const Box& bounds_m) {
+  Box box;
+  if (const auto* circle = std::get_if<Circle>(&obstacle)) {
+    const Vec2 reach_m = Vec2::Constant(circle->radius_m);
+    box = {circle->center_m - reach_m, circle->center_m + reach_m};
+  } else {
+    const std::vector<Vec2>& corners_m = std::get<Polygon>(obstacle).vertices_m();
+    box = {corners_m.front(), corners_m.front()};
+    for (const Vec2& corner_m : corners_m) {
+      box = {box.min_m.cwiseMin(corner_m), box.max_m.cwiseMax(corner_m)};
+    }
+  }
+  if (bounds_m.gap_squared_m2(box) <= 0.0) return std::nullopt;
+  return fmt::format(
+      "the obstacle lies outside of world.bounds_m, [{}, {}, {}, {}], where no robot "
+      "drives",
+      bounds_m.min_m.x(), bounds_m.min_m.y(), bounds_m.max_m.x(), bounds_m.max_m.y());
 }
 
 }  // namespace swarm

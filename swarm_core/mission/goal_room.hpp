@@ -28,4 +28,18 @@ double goal_tolerance(std::uint32_t robots);
 /// is refused that can succeed. A goal that is drawn is filled by another rule.
 std::optional<std::string> lack_of_goal_room(const Mission& mission);
 
+/// A goal and how messages name it.
+struct NamedGoal {
+  const Mixture* mixture = nullptr;  ///< not null
+  std::string path;                  ///< such as "script[2].goal"
+};
+
+/// The same of another goal, for all robots but those that are `lost`.
+std::optional<std::string> lack_of_goal_room(const Mission& mission, const NamedGoal& goal,
+                                             std::uint32_t lost = 0);
+
+/// Why an obstacle that a user adds would have no effect: it lies outside of the bounds, where no
+/// robot drives. Most likely its coordinates are those of another map.
+std::optional<std::string> lack_of_place(const Obstacle& obstacle, const Box& bounds_m);
+
 }  // namespace swarm

@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "swarm_core/mission/goal_room.hpp"
 #include "swarm_core/mission_file/reader_bounds.hpp"
 #include "swarm_core/mission_file/scene_change_file.hpp"
 
@@ -89,6 +90,11 @@ class ScriptReader {
       if (clear->robot.value() < context_.robots) return;
       violations_.add(at, fmt::format("{}: there is no robot {}", path, clear->robot.value()));
       return;
+    }
+    if (const auto* add = std::get_if<AddObstacle>(change)) {
+      if (const auto lack = lack_of_place(add->shape, world_.bounds_m())) {
+        violations_.add(at, fmt::format("{}: {}", path, *lack));
+      }
     }
     auto next = after(scene_, *change, world_, UtcTime(from_seconds(at_s)));
     if (next) {

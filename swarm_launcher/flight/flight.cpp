@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <sys/resource.h>
 
+#include "swarm_core/app/foreign_settings.hpp"
 #include "swarm_core/app/run_directory.hpp"
 #include "swarm_core/app/stop_signal.hpp"
 #include "swarm_core/base/clock.hpp"
@@ -115,6 +116,9 @@ void Flight::report_channel() {
   };
   report(link::Severity::kInfo, "channel",
          fmt::format("robot states go by {}: {}", to_string(channel.channel), channel.reason));
+  if (const auto notice = shell::dropped_settings_notice()) {
+    report(link::Severity::kInfo, "settings-ignored", *notice);
+  }
   raise_open_files();
   for (const std::string& shortcoming :
        shortcomings(read_host_limits(), {.agents = run_->info().agents,

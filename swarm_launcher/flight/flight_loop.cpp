@@ -33,7 +33,8 @@ FlightLoop::FlightLoop(const FlightOptions& options, const std::filesystem::path
       ports_(std::move(ports)),
       supervisor_(supervision_of(options), now),
       view_(options.mission.robots.count, options.mission.link.communication_radius_m),
-      fallen_(options.mission, ports_.scene, ports_.log, ports_.logged_position) {}
+      fallen_(options.mission, ports_.scene, ports_.log, ports_.logged_position),
+      confirmations_(options.mission.robots.count) {}
 
 FlightLoop::~FlightLoop() {
   for (const auto& [pid, process] : children_) ports_.spawner.signal(pid, EndSignal::kKill);
@@ -103,6 +104,7 @@ void FlightLoop::on_status(const link::StatusMessage& status, const FlightTime& 
   for (const link::RobotStatusMessage& robot : status.robots) {
     const RobotId id(robot.robot_id);
     view_.take(robot);
+    confirmations_.on_status(id, robot.mode, now.steady);
     fallen_.on_status(
         id, {.at = stamp, .position_m = {robot.x_m, robot.y_m}, .at_rest = robot.settled});
     if (ports_.hosts != nullptr) ports_.hosts->on_status(id, now.steady);

@@ -5,11 +5,13 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <sys/types.h>
 
+#include "swarm_launcher/flight/confirmations.hpp"
 #include "swarm_launcher/flight/fallen_robots.hpp"
 #include "swarm_launcher/flight/flight_choices.hpp"
 #include "swarm_launcher/flight/flight_ports.hpp"
@@ -68,6 +70,8 @@ class FlightLoop {
   void serve(const ControlRequests::Request& request, const FlightTime& now);
   void serve_command(CommandKind kind, ControlRequests::ClientId client, SteadyTime now);
   void answer_stops();
+  /// Why a change makes no sense in this mission, now; nothing if it does.
+  std::optional<std::string> objection_to(const SceneChange& change) const;
 
   Result<void> start(ProcessIndex process);
   void signal(const SignalProcess& action);
@@ -81,6 +85,7 @@ class FlightLoop {
   Supervisor supervisor_;
   SwarmView view_;
   FallenRobots fallen_;
+  Confirmations confirmations_;
   std::map<pid_t, ProcessIndex> children_;
   std::vector<ControlRequests::ClientId> stopping_;  // wait for the confirmation of a stop
   Measurements measurements_;

@@ -35,8 +35,10 @@ Result<std::unique_ptr<PreparedRun>> PreparedRun::make(FlightOptions options) {
   auto checked = check_run(std::move(options), abilities);
   if (!checked) return tl::unexpected(checked.error());
   const FlightOptions& o = checked->options;
-  auto lock = link::DomainLock::take(
-      o.how.domain, link::participants_for({.relays = checked->relays}, o.agents()));
+  const link::Meeting meeting{.relays = checked->relays};
+  auto lock = link::DomainLock::take(o.how.domain,
+                                     {.participants = link::participants_for(meeting, o.agents()),
+                                      .fixed = link::fixed_participants(meeting)});
   if (!lock) return tl::unexpected(lock.error());
   auto dir = shell::make_run_dir(o.how.out, o.mission.name);
   if (!dir) return tl::unexpected(dir.error());

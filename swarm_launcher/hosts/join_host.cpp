@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 #include <unistd.h>
 
+#include "swarm_core/app/foreign_settings.hpp"
 #include "swarm_core/app/run_clock.hpp"
 #include "swarm_core/app/run_dir.hpp"
 #include "swarm_core/app/stop_signal.hpp"
@@ -230,6 +231,9 @@ Result<ExitCode> join_host(const JoinOptions& options) {
   }
   if (auto written = shell::write_run_info(*dir, offer->run); !written) {
     return tl::unexpected(written.error());
+  }
+  if (const auto notice = shell::dropped_settings_notice()) {
+    std::fprintf(stderr, "%s\n", notice->c_str());
   }
   std::fprintf(stderr, "run directory: %s\nrobots %u-%u on %s\n", dir->c_str(), offer->first_robot,
                offer->first_robot + offer->robots - 1, offer->run.interface.c_str());

@@ -10,6 +10,9 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "swarm_core/base/printable.hpp"
+#include "swarm_core/base/stamp.hpp"
+
 namespace swarm::launcher {
 namespace {
 
@@ -32,13 +35,6 @@ T whole(const nlohmann::json& json, const char* key) {
     }
   }
   throw std::out_of_range(fmt::format("'{}' is no whole number of its range", key));
-}
-
-/// Far from the ends of the range: receivers subtract from it.
-bool is_plausible(UtcTime time) {
-  constexpr std::int64_t kMost_ns = INT64_MAX / 2;
-  const std::int64_t ns = time.time_since_epoch().count();
-  return ns > 0 && ns < kMost_ns;
 }
 
 }  // namespace
@@ -98,13 +94,14 @@ Result<HostOffer> parse_offer(const std::string& line) {
                     .sent_at = UtcTime(Duration(whole<std::int64_t>(json, "sent_at_utc_ns")))};
     // It becomes a part of the DDS configuration: nothing but an address may be in it.
     in_addr address{};
-    const bool plausible = ::inet_pton(AF_INET, offer.run.host.c_str(), &address) == 1 &&
-                           offer.run.domain < 230 && offer.run.relays >= 1 &&
-                           offer.run.relays <= 1000 && offer.robots >= 1 &&
-                           offer.robots <= kMaxRobots && offer.first_robot <= kMaxRobots &&
-                           offer.first_robot + offer.robots <= kMaxRobots &&
-                           offer.per_process >= 1 && offer.per_process <= kMaxRobots &&
-                           offer.first_process <= kMaxRobots && is_plausible(offer.sent_at);
+    const bool plausible =
+        ::inet_pton(AF_INET, offer.run.host.c_str(), &address) == 1 && offer.run.domain < 230 &&
+        offer.run.relays >= 1 && offer.run.relays <= 1000 &&
+        is_stamp(offer.run.began.time_since_epoch().count()) &&
+        is_stamp(offer.sent_at.time_since_epoch().count()) && is_printable(offer.fault) &&
+        offer.robots >= 1 && offer.robots <= kMaxRobots && offer.first_robot <= kMaxRobots &&
+        offer.first_robot + offer.robots <= kMaxRobots && offer.per_process >= 1 &&
+        offer.per_process <= kMaxRobots && offer.first_process <= kMaxRobots;
     if (plausible) return offer;
     return fail(ErrorCode::kBadInput, "what answered is no launcher: its offer makes no sense");
   } catch (const std::exception& e) {

@@ -33,7 +33,7 @@ Checked<void> check_heartbeat(const HeartbeatMessage& message);
 Checked<void> check_command(const CommandMessage& message);
 /// Robots of the mission inside the bounds, bins that exist.
 Checked<void> check_status(const StatusMessage& message, const WireLimits& limits);
-/// A known source and severity, and texts without control characters.
+/// A known source and severity, and printable texts (printable.hpp).
 Checked<void> check_event(const EventMessage& message, const WireLimits& limits);
 
 /// Schema and number of states of a batch. Its states are checked one by one.

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "swarm_core/base/stamp.hpp"
+
 namespace swarm::link {
 namespace {
 
@@ -99,6 +101,7 @@ Checked<void> Gate::reach(const HeartbeatMessage& message, UtcTime now) const {
       !is_reached(message.sequence_number, message.epoch, latest)) {
     return refuse(RefusalReason::kForged);
   }
+  if (!is_stamp(message.stamp_utc_ns)) return refuse(RefusalReason::kOutOfRange);
   return {};
 }
 
@@ -132,6 +135,7 @@ Checked<void> Gate::order(const CommandMessage& message, UtcTime now) {
   if (message.command_id > latest || is_after(message.stamp_utc_ns, latest)) {
     return refuse(RefusalReason::kForged);
   }
+  if (!is_stamp(message.stamp_utc_ns)) return refuse(RefusalReason::kOutOfRange);
   return command_.accept(message.command_id);
 }
 
@@ -147,6 +151,7 @@ Checked<void> Gate::order(const StatusMessage& message, UtcTime now) const {
     return refuse(RefusalReason::kForged);
   }
   if (is_after(message.stamp_utc_ns, latest)) return refuse(RefusalReason::kClockSkew);
+  if (!is_stamp(message.stamp_utc_ns)) return refuse(RefusalReason::kOutOfRange);
   return {};
 }
 

@@ -4,8 +4,9 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
-#include <string_view>
 
+#include "swarm_core/base/printable.hpp"
+#include "swarm_core/base/stamp.hpp"
 #include "swarm_core/metrics/histogram.hpp"
 #include "swarm_link/gate/content_checks.hpp"
 #include "swarm_link/gate/number_tests.hpp"
@@ -18,26 +19,6 @@ namespace {
 template <class Enum>
 bool is_one_of_first(Enum value, Enum last) {
   return static_cast<std::uint8_t>(value) <= static_cast<std::uint8_t>(last);
-}
-
-/// Code points in UTF-8 that control a terminal or reorder the text around them.
-bool is_control(std::string_view at) {
-  const auto byte = [at](std::size_t i) {
-    return i < at.size() ? static_cast<unsigned char>(at[i]) : 0U;
-  };
-  if (byte(0) < 0x20 || byte(0) == 0x7F) return true;                     // C0, delete
-  if (byte(0) == 0xC2 && byte(1) >= 0x80 && byte(1) < 0xA0) return true;  // C1
-  if (byte(0) != 0xE2) return false;
-  return (byte(1) == 0x80 && ((byte(2) >= 0xA8 && byte(2) <= 0xAE) ||    // separators, U+202A…
-                              (byte(2) >= 0x8E && byte(2) <= 0x8F))) ||  // direction marks
-         (byte(1) == 0x81 && byte(2) >= 0xA6 && byte(2) <= 0xA9);        // U+2066 to U+2069
-}
-
-bool is_printable(std::string_view text) {
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    if (is_control(text.substr(i))) return false;
-  }
-  return true;
 }
 
 // |a − b|, saturating, because a received stamp may have any value.
@@ -110,7 +91,8 @@ Checked<void> check_event(const EventMessage& message, const WireLimits& limits)
   const bool known = message.source < limits.robots || message.source == kPlannerSource ||
                      message.source == kLauncherSource;
   if (!known || !is_one_of_first(message.severity, Severity::kError) ||
-      !is_printable(message.code) || !is_printable(message.text)) {
+      !is_stamp(message.stamp_utc_ns) || !is_printable(message.code) ||
+      !is_printable(message.text)) {
     return refuse(RefusalReason::kOutOfRange);
   }
   return {};

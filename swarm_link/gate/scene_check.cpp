@@ -5,6 +5,7 @@
 #include <span>
 #include <utility>
 
+#include "swarm_core/base/stamp.hpp"
 #include "swarm_link/gate/content_checks.hpp"
 #include "swarm_link/wire_bounds.hpp"
 
@@ -57,7 +58,8 @@ Checked<std::vector<SceneObstacle>> to_obstacles(const SceneMessage& message,
     const bool slow = std::hypot(o.velocity_x_mps, o.velocity_y_mps) <= kMaxSpeed_mps;
     const bool owned = o.owner_robot_id != kNoRobot;
     const bool known = owned ? is_body(o, limits) : o.obstacle_id < message.next_id;
-    if (!ordered || !slow || !known || o.moving_from_utc_ns > o.moving_until_utc_ns ||
+    const bool dated = is_stamp(o.moving_from_utc_ns) && is_stamp(o.moving_until_utc_ns);
+    if (!ordered || !slow || !known || !dated || o.moving_from_utc_ns > o.moving_until_utc_ns ||
         o.vertices > vertices_left.size()) {
       return refuse(RefusalReason::kOutOfRange);
     }

@@ -82,6 +82,10 @@ std::uint32_t participants_for(const Meeting& meeting, std::uint32_t agents) {
   return agent_index(meeting, agents + kMonitors);
 }
 
+std::uint32_t fixed_participants(const Meeting& meeting) {
+  return meeting.relays == 0 ? 0 : gateway_index(meeting) + 1;
+}
+
 bool built_with(Vendor vendor) {
   return vendor == Vendor::kFastDds ? SWARM_WITH_FASTDDS : SWARM_WITH_CYCLONEDDS;
 }

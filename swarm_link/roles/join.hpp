@@ -35,6 +35,10 @@ std::uint32_t relays_for(std::uint32_t agents);
 /// Upper bound of the DDS participants of a run, for the ports that DomainLock reserves.
 std::uint32_t participants_for(const Meeting& meeting, std::uint32_t agents);
 
+/// How many of them, from the first on, others find at fixed ports: the relay participants of
+/// launcher, planner and gateway. None with a discovery server.
+std::uint32_t fixed_participants(const Meeting& meeting);
+
 /// The launcher's participant, combined of its relay participants if there are static peers.
 Result<std::unique_ptr<Participant>> join_as_launcher(const Meeting& meeting);
 

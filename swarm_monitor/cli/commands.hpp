@@ -17,7 +17,8 @@ struct Command {
   std::function<Result<ExitCode>()> act;  ///< what it does once they are read
 };
 
-/// Whether a run is in progress: its launcher writes the summary at the end.
+/// Whether a run is in progress: its launcher runs, and has not written the summary with which it
+/// ends.
 bool is_in_progress(const std::filesystem::path& run_dir);
 /// Fails (kEnvironment) with "this run is not in progress" after the end of a run.
 Result<void> check_in_progress(const std::filesystem::path& run_dir);

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <memory>
 #include <optional>
+#include <system_error>
 #include <thread>
 
 #include <fmt/format.h>
@@ -11,6 +12,7 @@
 #include <unistd.h>
 
 #include "swarm_core/app/output.hpp"
+#include "swarm_core/app/run_dir.hpp"
 #include "swarm_core/app/run_directory.hpp"
 #include "swarm_core/app/stop_signal.hpp"
 #include "swarm_core/base/clock.hpp"
@@ -48,11 +50,23 @@ Result<ExitCode> serve(ViewServerOptions options, ViewSource& source) {
   return ExitCode::kOk;
 }
 
+/// A run directory without the summary with which a launcher ends.
+bool has_no_summary(const std::filesystem::path& run_dir) {
+  std::error_code error;
+  return std::filesystem::is_directory(run_dir, error) &&
+         !std::filesystem::exists(run_dir / shell::kSummaryFile, error);
+}
+
 /// A run in progress is joined on the bus, a finished run or a recording is read as a whole.
 Result<ExitCode> view(ViewOptions options) {
   if (!is_in_progress(options.from)) {
     if (options.server.allow_control) {
       return fail(ErrorCode::kBadInput, "--allow-control: this run has ended");
+    }
+    if (has_no_summary(options.from)) {
+      std::fprintf(stderr,
+                   "this run has ended without a summary, its launcher does not run any "
+                   "more: its recording is shown\n");
     }
     auto run = read_run(options.from);
     if (!run) return tl::unexpected(run.error());
@@ -100,16 +114,16 @@ Result<ExitCode> top(const std::filesystem::path& run_dir) {
     std::fputs(top_text((*source)->state(), facts, now).c_str(), stdout);
     std::fflush(stdout);
     if (!shell::output_works()) break;
-    if (std::filesystem::exists(run_dir / shell::kSummaryFile)) break;
+    if (!is_in_progress(run_dir)) break;
   }
   return ExitCode::kOk;
 }
 
 }  // namespace
 
+// A launcher that was killed leaves no summary, so that alone does not show that the run goes on.
 bool is_in_progress(const std::filesystem::path& run_dir) {
-  return std::filesystem::is_directory(run_dir) &&
-         !std::filesystem::exists(run_dir / shell::kSummaryFile);
+  return has_no_summary(run_dir) && shell::is_run_alive(run_dir);
 }
 
 // Joining a finished run would succeed, and wait for robots that never come.

@@ -101,7 +101,9 @@ Result<void> replay(const ReplayOptions& options) {
   const auto score = read_score(options.file, options.from_s, options.topics);
   if (!score) return tl::unexpected(score.error());
   const link::Meeting star{.relays = 1};
-  const auto lock = link::DomainLock::take(options.domain, link::participants_for(star, 0));
+  const auto lock = link::DomainLock::take(
+      options.domain,
+      {.participants = link::participants_for(star, 0), .fixed = link::fixed_participants(star)});
   if (!lock) return tl::unexpected(lock.error());
   const auto dir = shell::make_run_dir(options.out, "replay");
   if (!dir) return tl::unexpected(dir.error());

@@ -89,7 +89,7 @@ void FoxgloveFeed::take_obstacles(UtcTime now) {
 void FoxgloveFeed::take_view_frame(UtcTime now, bool robots, bool mixture) {
   if (!robots && !mixture) return;
   source_.view_frame(std::nullopt, std::nullopt, view_frame_);
-  const auto view_frame = read_view_frame(view_frame_);
+  const auto view_frame = read_view_frame(view_frame_, source_.origin_m());
   if (!view_frame) return;
   if (robots) set(kRobots, now, foxglove::poses_in_frame(now, *view_frame));
   if (mixture) set(kMixture, now, foxglove::mixture_scene(now, *view_frame));

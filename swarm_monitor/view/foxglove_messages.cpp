@@ -117,8 +117,8 @@ Cylinder ellipse(const ViewFrame::Component& c) {
   const double xy = static_cast<double>(c.xy);
   const double spread = std::hypot(half, xy);
   const double heaviness = std::clamp(static_cast<double>(c.weight), 0.0, 1.0);
-  return {.x_m = static_cast<double>(c.x_m),
-          .y_m = static_cast<double>(c.y_m),
+  return {.x_m = c.x_m,
+          .y_m = c.y_m,
           .heading = std::atan2(xy, half) / 2.0,
           .width_m = 4.0 * std::sqrt(std::max(mean + spread, 0.0)),
           .depth_m = 4.0 * std::sqrt(std::max(mean - spread, 0.0)),
@@ -142,8 +142,7 @@ Bytes poses_in_frame(UtcTime now, const ViewFrame& view_frame) {
                     [](const ViewFrame::Robot& robot) { return robot.was_received; })));
   for (const ViewFrame::Robot& robot : view_frame.robots) {
     if (!robot.was_received) continue;
-    put_pose(cdr, static_cast<double>(robot.x_m), static_cast<double>(robot.y_m), 0.0,
-             static_cast<double>(robot.heading));
+    put_pose(cdr, robot.x_m, robot.y_m, 0.0, static_cast<double>(robot.heading));
   }
   return cdr.take();
 }

@@ -135,6 +135,7 @@ void LiveSource::view_frame(std::optional<double>, std::optional<RobotId> focus,
   ViewFrameEncoder maker(out, static_cast<std::uint32_t>(robots.size()),
                          state_.begin() ? to_seconds(now_ - *state_.begin()) : 0.0,
                          static_cast<std::uint32_t>(state_.phase()), mixture);
+  maker.set_origin(origin_m());
   for (const SwarmState::Robot& robot : robots) {
     maker.add({.position_m = state_.position_of(robot, now_),
                .heading_rad = std::atan2(robot.velocity_mps.y(), robot.velocity_mps.x()),

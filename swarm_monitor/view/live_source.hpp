@@ -12,6 +12,7 @@
 
 #include "swarm_core/mission/channel.hpp"
 #include "swarm_monitor/view/swarm_state.hpp"
+#include "swarm_monitor/view/view_frame.hpp"
 #include "swarm_monitor/view/view_source.hpp"
 
 namespace swarm::monitor {
@@ -31,6 +32,7 @@ class LiveSource final : public ViewSource {
   const std::vector<std::string>& series() const override { return series_; }
   void view_frame(std::optional<double> time_s, std::optional<RobotId> focus,
                   std::vector<std::byte>& out) override;
+  Vec2 origin_m() const override { return view_origin_m(mission_.world.bounds_m()); }
   const std::vector<RawChannel>& raw_channels() const override { return raw_channels_; }
   void on_raw(std::function<void(const RawSample&)> sink) override { raw_sink_ = std::move(sink); }
   std::string metrics() const override;

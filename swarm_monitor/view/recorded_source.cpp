@@ -145,6 +145,7 @@ void RecordedSource::view_frame(std::optional<double> time_s, std::optional<Robo
   ViewFrameEncoder maker(
       out, static_cast<std::uint32_t>(run_.tracks.size()), t,
       t >= end_s_ ? kEndedPhase : static_cast<std::uint32_t>(MissionPhase::kRunning), mixture);
+  maker.set_origin(origin_m());
   for (const Track& track : run_.tracks) maker.add(robot_at(track, t));
   const bool known = focus && focus->value() < run_.tracks.size();
   maker.finish(known ? focus : std::nullopt,

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "swarm_monitor/audit/recorded_run.hpp"
+#include "swarm_monitor/view/view_frame.hpp"
 #include "swarm_monitor/view/view_source.hpp"
 
 namespace swarm::monitor {
@@ -26,6 +27,7 @@ class RecordedSource final : public ViewSource {
   const std::vector<std::string>& series() const override { return series_; }
   void view_frame(std::optional<double> time_s, std::optional<RobotId> focus,
                   std::vector<std::byte>& out) override;
+  Vec2 origin_m() const override { return view_origin_m(run_.mission.world.bounds_m()); }
   /// Empty: Foxglove opens a recording's file itself to get its messages.
   const std::vector<RawChannel>& raw_channels() const override { return no_channels_; }
   void on_raw(std::function<void(const RawSample&)>) override {}

@@ -6,6 +6,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "swarm_monitor/view/view_frame.hpp"
+
 namespace swarm::monitor {
 namespace {
 
@@ -83,6 +85,7 @@ std::string scene_json(const SceneFacts& facts) {
       {"begin", 0.0},
       {"end", facts.end_s},
       {"bounds", {point(bounds.min_m), point(bounds.max_m)}},
+      {"origin", point(view_origin_m(bounds))},
       {"obstacles", obstacles(facts.world)},
       {"start", mixture(m.start)},
       {"goal", mixture(facts.goal)},

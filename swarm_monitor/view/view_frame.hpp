@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "swarmflow/core/box.hpp"
 #include "swarmflow/core/ids.hpp"
 #include "swarmflow/core/linalg.hpp"
 #include "swarmflow/core/mixture.hpp"
@@ -33,6 +34,10 @@ struct FrameEstimate {
 /// Phase in a frame of a run that has ended.
 inline constexpr std::uint32_t kEndedPhase = 4;
 
+/// Where the coordinates of frames begin: (0, 0), or a round point near the corner of a world so
+/// far from it, as one in map coordinates is, that floats do not resolve centimetres.
+Vec2 view_origin_m(const Box& bounds_m);
+
 /// Encodes a frame of PROTOCOL.md: the constructor writes the header, add() one robot each, in the
 /// order of ids, finish() mixture and estimates.
 class ViewFrameEncoder {
@@ -41,6 +46,8 @@ class ViewFrameEncoder {
       std::vector<std::byte>& out, std::uint32_t robots, double time_s,
       /// `out` is replaced and filled until finish(); `mixture` must outlive the encoder.
       std::uint32_t phase, const std::optional<Mixture>& mixture);
+  /// Positions are encoded relative to this point, view_origin_m() of the world; (0, 0) by default.
+  void set_origin(const Vec2& origin_m) { origin_m_ = origin_m; }
   void add(const FrameRobot& robot);
   /// `focus` is the chosen robot, `estimates` the positions of its neighbours.
   void finish(std::optional<RobotId> focus, const std::vector<FrameEstimate>& estimates);
@@ -48,6 +55,8 @@ class ViewFrameEncoder {
  private:
   template <class T>
   void put(T value);
+  void put_position(const Vec2& position_m);
+  Vec2 origin_m_ = Vec2::Zero();
   std::vector<std::byte>& out_;
   const std::optional<Mixture>& mixture_;
 };

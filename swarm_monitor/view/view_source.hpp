@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "swarmflow/core/ids.hpp"
+#include "swarmflow/core/linalg.hpp"
 #include "swarmflow/core/time.hpp"
 
 namespace swarm::monitor {
@@ -50,6 +51,9 @@ class ViewSource {
   /// Replaces `out` by a frame: of a time since the begin [s], or the newest.
   virtual void view_frame(std::optional<double> time_s, std::optional<RobotId> focus,
                           std::vector<std::byte>& out) = 0;
+
+  /// Point to which the positions in frames are relative (view_frame.hpp).
+  virtual Vec2 origin_m() const { return Vec2::Zero(); }
 
   /// The topics that are passed on to Foxglove unchanged. The list only grows.
   virtual const std::vector<RawChannel>& raw_channels() const = 0;

@@ -33,6 +33,10 @@ struct SwarmLimits {
   double plan_speed_mps = 0.0;
   /// Largest speed that a plan may demand of a single robot: 0.93 of the slowest robot's [m/s].
   double robot_speed_mps = 0.0;
+  /// Factor on lengths and speeds that are constants of a planning method and hold for bodies of
+  /// 0.2 m and 1.5 m/s: the one of r / 0.2 m and v / 1.5 m/s that is nearer to 1, of the largest
+  /// body.
+  double length_scale = 1.0;
 };
 
 /// The limits of a mission. A robot's speed is the smaller of its speed_max_mps and

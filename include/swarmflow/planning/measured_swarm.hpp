@@ -43,6 +43,7 @@ struct MeasuredSwarm {
   const Mixture& goal;  ///< the goal in force: the mission's, or that of a `goto`
   /// Robots with a recent status, by ascending id; at least one.
   std::span<const ReportedRobot> robots;
+  double length_scale = 1.0;  ///< as SwarmLimits::length_scale
 };
 
 /// The groups as a mixture, component i being group i with its share of all robots as its weight.

@@ -31,6 +31,7 @@ struct RouteOptions {
   /// Distance between surfaces kept at the vertices of the route where possible [m].
   double vertex_clearance_m = 1.0;
   double leg_clearance_m = 0.3;  ///< the same along its legs [m]
+  double scale = 1.0;            ///< factor on the distances kept to bodies of dead robots
 };
 
 /// The route of a robot that is at its position at the start of the mission.

@@ -53,7 +53,7 @@ class PlanInProgress {
         speed_(leg_speed(options.speed_mps, options.limits)),
         supplies_(weights_of(request.start.components())),
         demands_(weights_of(request.goal.components())),
-        checker_(request.world, options.risk) {}
+        checker_(request.world, options.risk, options.limits.length_scale) {}
 
   Result<PlanResult> capped(PlanResult result, const DensityCap& cap);
   Result<PlanResult> uncapped(PlanResult result);
@@ -140,7 +140,8 @@ Result<std::vector<Route>> PlanInProgress::choose_routes(Roadmap& roadmap, PlanS
 // that tightening added without need are dropped last.
 void PlanInProgress::smooth(Waypoints& waypoints) {
   take_shortcuts(waypoints, options_.shortcuts, checker_, run_.rng);
-  const TightenOptions band{.sigma_min_m = kSqueezeBelowMin * options_.sampler.sigma_min_m};
+  const TightenOptions band{.spacing_m = options_.limits.length_scale * TightenOptions{}.spacing_m,
+                            .sigma_min_m = kSqueezeBelowMin * options_.sampler.sigma_min_m};
   tighten(waypoints, request_.world, options_.risk, band, checker_);
   drop_superfluous(waypoints, checker_);
 }
@@ -167,7 +168,9 @@ Result<PlanResult> PlanInProgress::capped(PlanResult result, const DensityCap& c
   const double raw_mean_path_m = mean_path_m(flow->plan);
   if (options_.shortcuts > 0) {
     const StraightenOptions straight{
-        .speed = speed_, .sigma_min_m = kSqueezeBelowMin * options_.sampler.sigma_min_m};
+        .speed = speed_,
+        .sigma_min_m = kSqueezeBelowMin * options_.sampler.sigma_min_m,
+        .split_m = options_.limits.length_scale * StraightenOptions{}.split_m};
     flow->plan = straighten(flow->plan, flow->is_end, request_.world, options_.risk, cap, straight,
                             checker_);
     result.stats.smoothing_ms += run_.stage.lap_ms();
@@ -199,7 +202,8 @@ Result<PlanResult> PlanInProgress::uncapped(PlanResult result) {
 // them. If the capped plan fails the uncapped one is returned with a warning.
 PlanResult PlanInProgress::capped_where_needed(PlanResult uncapped) {
   const double robots = options_.density.robots;
-  if (densest_disc_of(uncapped.plan, robots).per_m2 <= options_.limits.packing_per_m2) {
+  if (densest_disc_of(uncapped.plan, robots, options_.limits.length_scale).per_m2 <=
+      options_.limits.packing_per_m2) {
     return uncapped;
   }
   const double ends_per_m2 = kAboveEnds * density_of_ends_per_m2(request_, robots);
@@ -235,7 +239,7 @@ Roadmap make_roadmap(const PlanRequest& request, const SwarmPrmOptions& options,
   const std::vector<Gaussian> samples =
       sample_free(request.world, options.risk, options.sampler, options.samples, rng);
   nodes.insert(nodes.end(), samples.begin(), samples.end());
-  EdgeChecker checker(request.world, options.risk);
+  EdgeChecker checker(request.world, options.risk, options.limits.length_scale);
   return connect(std::move(nodes), options.connection_radius_m, checker, terminals);
 }
 

@@ -40,7 +40,8 @@ Roadmap SwarmPrmMethod::roadmap_for(const PlanRequest& request, Rng& rng) {
     const LiveRoadmapOptions wanted{.samples = options_.samples,
                                     .connection_radius_m = options_.connection_radius_m,
                                     .risk = options_.risk,
-                                    .sampler = options_.sampler};
+                                    .sampler = options_.sampler,
+                                    .scale = options_.limits.length_scale};
     live_.emplace(request.world, terminals_of(request), wanted, rng);
   }
   return live_->roadmap();

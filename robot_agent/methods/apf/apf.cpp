@@ -16,7 +16,7 @@ void Apf::begin(const Route& route, const World& world) {
   pursuit_ = Pursuit(route.path, world, options_.part(&ApfOptions::pursuit));
   pace_ = Pace(route.schedule, route.path.length_m());
   if (!watch_.is_for(route.goal, pursuit_.end_m())) {
-    watch_ = GoalWatch(route.goal, pursuit_.end_m());
+    watch_ = GoalWatch(route.goal, pursuit_.end_m(), options_->scale);
   }
   in_time_.reset();
   escape_.forget();
@@ -55,14 +55,15 @@ Vec2 Apf::attraction_in_time(const ControlView& view, bool arrived, Rng& rng) {
   const double ahead_m = (aim.point_m - view.position_m).norm() + aim.rest_m;
   const double at_m = now.carrot_m - (aim.past_m > 0.0 ? -aim.past_m : ahead_m);
   in_time_ = InTime{*view.plan_time, now.reference_m, at_m};
-  const bool is_behind = now.reference_m - at_m > kBehind_m;
+  const bool is_behind = now.reference_m - at_m > options_->scale * kBehind_m;
   const auto escape = escape_.update(view, pursuit_.progress_m(), !arrived && is_behind, rng);
   if (escape) return attraction_to(*escape, view);
-  if (arrived && aim.left_m < kAtRest_m) return Vec2::Zero();
+  if (arrived && aim.left_m < options_->scale * kAtRest_m) return Vec2::Zero();
   // Ahead of the carrot: far ahead it returns slowly, otherwise it waits for the carrot.
-  if (aim.past_m > Pace::kPast_m) {
-    return attraction(view.position_m, aim.point_m,
-                      free_speed(aim.rest_m, pace.approach_gain_hz, Pace::kReturn_mps));
+  if (aim.past_m > options_->scale * Pace::kPast_m) {
+    return attraction(
+        view.position_m, aim.point_m,
+        free_speed(aim.rest_m, pace.approach_gain_hz, options_->scale * Pace::kReturn_mps));
   }
   if (aim.past_m > 0.0) return Vec2::Zero();
   return attraction(view.position_m, aim.point_m, Pace::speed(now, aim.rest_m, pace)) +
@@ -76,7 +77,7 @@ Vec2 Apf::attraction_at_will(const ControlView& view, bool arrived, Rng& rng) {
   const Pursuit::Aim aim = pursuit_.update(view.position_m, view.world);
   const auto escape = escape_.update(view, pursuit_.progress_m(), !arrived, rng);
   if (escape) return attraction_to(*escape, view);
-  if (arrived && aim.left_m < kAtRest_m) return Vec2::Zero();
+  if (arrived && aim.left_m < options_->scale * kAtRest_m) return Vec2::Zero();
   return attraction(view.position_m, aim.point_m,
                     free_speed(aim.rest_m, pace.approach_gain_hz, pace.cruise_mps)) +
          attraction_to_density(view, arrived);

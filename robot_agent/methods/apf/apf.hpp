@@ -28,6 +28,7 @@ struct ApfOptions {
   NeighbourRepulsionOptions neighbour_repulsion;
   ObstacleRepulsionOptions obstacle_repulsion;
   EscapeOptions escape;
+  double scale = 1.0;  ///< of the constants of the method (body_scale.hpp)
 };
 
 /// The artificial potential field of SwarmPRM and ROVER [SwarmPRM, eq. 14]:

@@ -6,6 +6,7 @@
 #include "robot_agent/methods/apf/apf.hpp"
 #include "robot_agent/methods/builtin_methods.hpp"
 #include "robot_agent/methods/shared/shared_keys.hpp"
+#include "swarm_core/mission/body_scale.hpp"
 
 namespace swarm::agent {
 namespace {
@@ -47,25 +48,31 @@ const OptionTable<ApfKeys>& apf_keys() {
 /// Translates keys, mission and body into options. No robot cruises faster than its body can.
 ApfOptions apf_options(const ApfKeys& c, const Mission& mission, const BodySpec& body) {
   const double cruise_mps = std::min(mission.control.cruise_mps, body.speed_max_mps);
+  const double scale = length_scale(body);
   return {.keeps_time = c.tracking == "plan",
           .pursuit = {.look_ahead_m = c.look_ahead_s * cruise_mps,
                       .radius_m = body.radius_m,
-                      .keep_clearance_m = c.keep_clearance_m},
+                      .passed_m = scale * PursuitOptions{}.passed_m,
+                      .keep_clearance_m = c.keep_clearance_m,
+                      .scale = scale},
           .pace = {.look_ahead_s = c.look_ahead_s,
                    .gain_hz = c.pace_gain_hz,
                    .approach_gain_hz = c.approach_gain_hz,
                    .cruise_mps = cruise_mps},
-          .density = {.push_mps = c.density_push_mps},
+          .density = {.push_mps = c.density_push_mps,
+                      .kernel_m = scale * DensityAttractionOptions{}.kernel_m},
           .neighbour_repulsion = {.radius_m = body.radius_m,
                                   .gap_m = c.neighbour_gap_m,
                                   .push_mps = c.neighbour_push_mps},
           .obstacle_repulsion = {.radius_m = body.radius_m,
                                  .gap_m = c.obstacle_gap_m,
                                  .push_mps = c.obstacle_push_mps},
-          .escape = {.stuck_after = from_seconds(c.stuck_after_s),
+          .escape = {.progress_m = scale * EscapeOptions{}.progress_m,
+                     .stuck_after = from_seconds(c.stuck_after_s),
                      .duration = from_seconds(c.escape_s),
                      .spread_m = c.escape_spread_m,
-                     .radius_m = body.radius_m}};
+                     .radius_m = body.radius_m},
+          .scale = scale};
 }
 
 /// The reach covers every neighbour that a term depends on: d₀ of the repulsion between surfaces,
@@ -74,8 +81,8 @@ Result<PreparedControl> prepare_apf(const ControlContext& context) {
   const ApfKeys keys = apf_keys().read(context.options());
   const double bodies_m = context.body.radius_m + largest_radius_m(context.mission.robots);
   const bool reads_density = keys.density_push_mps > 0.0;
-  const double kernel_m = reads_density ? DensityAttractionOptions{}.kernel_m : 0.0;
   const Shared<ApfOptions> options = apf_options(keys, context.mission, context.body);
+  const double kernel_m = reads_density ? options->density.kernel_m : 0.0;
   return PreparedControl{.make = [options] { return ControlSlot::of<Apf>(options); },
                          .reach_m = std::max(bodies_m + keys.neighbour_gap_m, kernel_m),
                          .press_gap_m = keys.neighbour_gap_m,

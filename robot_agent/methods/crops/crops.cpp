@@ -61,7 +61,7 @@ Vec2 Crops::desired_velocity(const ControlView& view, bool arrived, Rng& rng) {
   const double strength = sum.norm();
   double speed_mps = options_->cruise_mps;
   if (at_end) {
-    const double left_m = std::max(kLastSteps_m, (aim_m - x).norm());
+    const double left_m = std::max(options_->guide.scale * kLastSteps_m, (aim_m - x).norm());
     speed_mps = std::min(speed_mps, options_->approach_gain_hz * left_m);
   }
   return speed_mps / std::max(strength, options_->full_strength) * sum;
@@ -72,8 +72,17 @@ Vec2 Crops::desired_velocity(const ControlView& view, bool arrived, Rng& rng) {
 Vec2 Crops::hold(const ControlView& view) {
   escape_.forget();
   slot_.wait(view.now);
-  return neighbour_repulsion(view.position_m, view.close, {.radius_m = options_->guide.radius_m}) +
-         obstacle_repulsion(view.position_m, view.world, {.radius_m = options_->guide.radius_m});
+  const double scale = options_->guide.scale;
+  const NeighbourRepulsionOptions neighbours;
+  const ObstacleRepulsionOptions obstacle;
+  return neighbour_repulsion(view.position_m, view.close,
+                             {.radius_m = options_->guide.radius_m,
+                              .gap_m = scale * neighbours.gap_m,
+                              .push_mps = scale * neighbours.push_mps}) +
+         obstacle_repulsion(view.position_m, view.world,
+                            {.radius_m = options_->guide.radius_m,
+                             .gap_m = scale * obstacle.gap_m,
+                             .push_mps = scale * obstacle.push_mps});
 }
 
 }  // namespace swarm::agent

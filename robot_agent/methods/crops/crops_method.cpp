@@ -7,6 +7,7 @@
 #include "robot_agent/methods/builtin_methods.hpp"
 #include "robot_agent/methods/crops/crops.hpp"
 #include "robot_agent/methods/shared/shared_keys.hpp"
+#include "swarm_core/mission/body_scale.hpp"
 
 namespace swarm::agent {
 namespace {
@@ -17,6 +18,21 @@ double goal_radius_m(const Mission& mission) {
       .value_or(GuidePointsOptions{}.goal_radius_m);
 }
 
+/// The fields, whose lengths are those of the paper's robots, for robots of another size.
+void scale_fields(CropsOptions& options, double scale) {
+  options.obstacle.reach_m *= scale;
+  options.obstacle.gain_m *= scale;
+  options.obstacle.gap_min_m *= scale;
+  options.separation.reach_m *= scale;
+  options.separation.steepness_per_m /= scale;
+  options.separation.gain_per_m /= scale;
+  options.goal.steepness_per_m /= scale;
+  options.heading.mean_m *= scale;
+  options.heading.sigma_m *= scale;
+  options.heading.moving_mps *= scale;
+  options.escape.moved_min_m *= scale;
+}
+
 /// Times of the mission become ticks, since the stuck test counts positions.
 CropsOptions crops_options(const Mission& mission, const BodySpec& body) {
   const PathKeys c = path_keys().read(mission.control.options);
@@ -24,33 +40,41 @@ CropsOptions crops_options(const Mission& mission, const BodySpec& body) {
   const auto ticks = [&](double time_s) {
     return static_cast<std::size_t>(std::max(1.0, std::round(time_s * mission.control.rate_hz)));
   };
-  return {
+  const double scale = length_scale(body);
+  CropsOptions options{
       .cruise_mps = cruise_mps,
       .approach_gain_hz = c.approach_gain_hz,
       .guide = {.radius_m = body.radius_m,
-                .passable_m = obstacle_margin_m(mission, body) + 0.01,
+                .passable_m = obstacle_margin_m(mission, body) + scale * 0.01,
                 .goal_radius_m = goal_radius_m(mission),
-                .sight_m = c.look_ahead_s * cruise_mps},
+                .clearance_m = scale * GuidePointsOptions{}.clearance_m,
+                .sight_m = c.look_ahead_s * cruise_mps,
+                .scale = scale},
       .slot = {.radius_m = body.radius_m,
-               .room_gap_m = room_gap_m(mission),
-               .approach_gain_hz = c.approach_gain_hz},
+               .room_gap_m = room_gap_m(mission, body),
+               .approach_gain_hz = c.approach_gain_hz,
+               .approach_max_mps = scale * GoalSlotOptions{}.approach_max_mps,
+               .scale = scale},
       .obstacle = {.radius_m = body.radius_m},
-      .give_way = {.radius_m = body.radius_m, .gap_m = mission.safety.neighbour_margin_m + 0.1},
+      .give_way = {.radius_m = body.radius_m,
+                   .gap_m = mission.safety.neighbour_margin_m + scale * 0.1},
       .escape = {.window = ticks(c.stuck_after_s), .step = ticks(c.escape_s)},
   };
+  scale_fields(options, scale);
+  return options;
 }
 
 /// Of the fields that read all neighbours: separation and headings.
-double reach_m() {
-  const HeadingFieldOptions heading;
+double reach_m(const CropsOptions& options) {
   constexpr double kSigmas = 2.5;  // farther headings weigh less than 5 %
-  return std::max(SeparationFieldOptions{}.reach_m, heading.mean_m + kSigmas * heading.sigma_m);
+  return std::max(options.separation.reach_m,
+                  options.heading.mean_m + kSigmas * options.heading.sigma_m);
 }
 
 Result<PreparedControl> prepare_crops(const ControlContext& context) {
   const Shared<CropsOptions> options = crops_options(context.mission, context.body);
   return PreparedControl{.make = [options] { return ControlSlot::of<Crops>(options); },
-                         .reach_m = reach_m()};
+                         .reach_m = reach_m(*options)};
 }
 
 }  // namespace

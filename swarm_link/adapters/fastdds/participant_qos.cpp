@@ -10,6 +10,7 @@
 #include <fastrtps/xmlparser/XMLProfileManager.h>
 #include <fmt/format.h>
 
+#include "swarm_core/base/foreign_settings.hpp"
 #include "swarm_link/adapters/fastdds/cached_thread_id.hpp"
 #include "swarm_link/announcement_port.hpp"
 
@@ -136,6 +137,7 @@ dds::DomainParticipantQos server_qos(std::uint32_t domain, std::uint16_t port,
 void set_up_library() {
   static std::once_flag once;
   std::call_once(once, [] {
+    ignore_foreign_settings();  // before the library reads them; also in a user's own program
     cache_thread_ids();
     dds::Log::ClearConsumers();
     dds::Log::RegisterConsumer(std::make_unique<dds::StdoutErrConsumer>());  // errors to stderr

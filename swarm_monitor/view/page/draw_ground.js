@@ -17,6 +17,7 @@ const FRAGMENT = `
 uniform vec4 uBounds;
 uniform float uStep;   // m
 uniform float uCell;   // m, 0: hidden
+uniform vec2 uCellAt;  // m, the corner of a cell
 uniform vec3 uGround;
 uniform vec3 uGrid;
 uniform vec3 uCellColour;
@@ -24,17 +25,17 @@ uniform vec3 uRim;
 uniform vec3 uOutside;
 in vec2 vMetres;
 // How much of this pixel a line of one CSS pixel every \`step\` covers.
-float lines(float step) {
-  vec2 off = abs(fract(vMetres / step + 0.5) - 0.5) * step * uScale;
+float lines(float step, vec2 from) {
+  vec2 off = abs(fract((vMetres - from) / step + 0.5) - 0.5) * step * uScale;
   return clamp(0.5 * uPx + 0.5 - min(off.x, off.y), 0.0, 1.0);
 }
 void main() {
   vec2 inside = min(vMetres - uBounds.xy, uBounds.zw - vMetres) * uScale;
   float d = min(inside.x, inside.y);
-  vec3 colour = mix(uGround, uGrid, lines(uStep));
+  vec3 colour = mix(uGround, uGrid, lines(uStep, vec2(0.0)));
   if (uCell > 0.0) {
     // Cells of a few pixels would be a grey sheet: they fade away.
-    colour = mix(colour, uCellColour, lines(uCell) * smoothstep(3.0, 12.0, uCell * uScale / uPx) * 0.6);
+    colour = mix(colour, uCellColour, lines(uCell, uCellAt) * smoothstep(3.0, 12.0, uCell * uScale / uPx) * 0.6);
   }
   colour = mix(uOutside, colour, clamp(d + 0.5, 0.0, 1.0));
   colour = mix(colour, uRim, clamp(0.5 * uPx + 0.5 - abs(d), 0.0, 1.0));
@@ -48,12 +49,14 @@ export class Ground {
     this.vao = gl.createVertexArray();
   }
 
-  draw(view, theme, bounds, step_m, cell_m) {
+  /** `cell_m` 0: no cells; they begin at the mission's (0, 0), the map at `origin`. */
+  draw(view, theme, { bounds, origin }, step_m, cell_m) {
     const { gl } = this;
     const at = this.program.use(view);
     gl.uniform4f(at.uBounds, bounds[0][0], bounds[0][1], bounds[1][0], bounds[1][1]);
     gl.uniform1f(at.uStep, step_m);
     gl.uniform1f(at.uCell, cell_m);
+    gl.uniform2f(at.uCellAt, ...origin.map((o) => (cell_m > 0 ? -(o % cell_m) : 0)));
     gl.uniform3fv(at.uGround, theme.ground);
     gl.uniform3fv(at.uGrid, theme.grid);
     gl.uniform3fv(at.uCellColour, theme.cell);

@@ -16,7 +16,7 @@ import { Status } from './panel_status.js';
 import { Timeline } from './panel_timeline.js';
 import { countRobots, decode, RECEIVED, LOST, nearestRobot, robotOf } from './view_frame.js';
 import { Player } from './player.js';
-import { Scenes } from './scenes.js';
+import { Scenes, toLocal } from './scenes.js';
 import { byId, put } from './text.js';
 import { readTheme } from './theme.js';
 
@@ -97,7 +97,7 @@ function opened() {
 function received(message) {
   switch (message.op) {
     case 'scene':
-      scenes.add(message);
+      scenes.add(toLocal(message));
       player.setRange(message, stillness.matches);
       status.scene(message);
       control.allow(message);
@@ -214,8 +214,20 @@ function moved() {
   dirty = true;
 }
 
+/** Coordinates of the mission; those of the map begin at the scene's origin. */
+function inWorld(x, y) {
+  const [x0, y0] = scene?.origin ?? [0, 0];
+  return [x + x0, y + y0];
+}
+
+function robotInWorld(robot) {
+  if (robot === null) return null;
+  const [x, y] = inWorld(robot.x, robot.y);
+  return { ...robot, x, y };
+}
+
 function tapped(x_px, y_px) {
-  if (control.tool !== null) control.useAt(...camera.toWorld(x_px, y_px));
+  if (control.tool !== null) control.useAt(...inWorld(...camera.toWorld(x_px, y_px)));
   else select(robotAt(x_px, y_px));
 }
 
@@ -301,7 +313,7 @@ function showPanels() {
   if (!motion.now || !scene || !counts) return;
   status.viewFrame(motion.now.phase, counts, scene.robots);
   legend.update(scene, counts, byId('show-modes').checked);
-  robotPanel.show(robotOf(motion.now, focusId()), selected !== null, motion.now);
+  robotPanel.show(robotInWorld(robotOf(motion.now, focusId())), selected !== null, motion.now);
 }
 
 function measure(now_ms) {
@@ -343,7 +355,10 @@ window.swarmflow = Object.freeze({
     selected, playing: player.playing, framesDrawn: measured.framesDrawn,
     viewFramesReceived: measured.viewFramesReceived, fps: measured.fps,
   }),
-  robot: (id) => robotOf(motion.now, id),
-  toScreen: (x, y) => camera.toScreen(x, y),
+  robot: (id) => robotInWorld(robotOf(motion.now, id)),
+  toScreen: (x, y) => {
+    const [x0, y0] = inWorld(0, 0);
+    return camera.toScreen(x - x0, y - y0);
+  },
   seek,
 });

@@ -109,7 +109,7 @@ export class SwarmMap {
     gl.clearColor(...theme.outside, 1);
     gl.clear(gl.COLOR_BUFFER_BIT);
     if (!scene) return;
-    this.ground.draw(view, theme, scene.bounds, camera.roundStep(70), layers.cells ? scene.cell_m ?? 0 : 0);
+    this.ground.draw(view, theme, scene, camera.roundStep(70), layers.cells ? scene.cell_m ?? 0 : 0);
     this.fills.draw(view, theme.obstacle);
     this.circles.draw(view);
     this.outlines.draw(view);

@@ -2,6 +2,24 @@
 // SPDX-License-Identifier: Apache-2.0
 // All scenes so far, and which of them holds when.
 
+/** A scene whose lengths are relative to its origin, as those of frames are: the graphics compute in floats. */
+export function toLocal(scene) {
+  const origin = scene.origin ?? [0, 0];
+  const moved = ([x, y]) => [x - origin[0], y - origin[1]];
+  const parts = (list) => list.map((part) => ({ ...part, mean: moved(part.mean) }));
+  return {
+    ...scene, origin,
+    bounds: scene.bounds.map(moved),
+    obstacles: scene.obstacles.map((o) => ({
+      ...o,
+      ...(o.polygon ? { polygon: o.polygon.map(moved) } : {}),
+      ...(o.circle ? { circle: [...moved(o.circle), o.circle[2]] } : {}),
+    })),
+    start: parts(scene.start), goal: parts(scene.goal),
+    plan: scene.plan ? { ...scene.plan, nodes: parts(scene.plan.nodes) } : null,
+  };
+}
+
 export class Scenes {
   #list = [];
 

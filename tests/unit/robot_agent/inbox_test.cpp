@@ -122,6 +122,15 @@ TEST_F(InboxTest, KeepsTheStampOfTheFirstStop) {
   EXPECT_EQ(sut_.stop_stamp_utc_ns(), first_ns);
 }
 
+// The log measures from it how long a stop takes: the difference must fit in 64 bits.
+TEST_F(InboxTest, LimitsTheStampOfAStopWithAnyStamp) {
+  send_command(CommandKind::kStop, std::numeric_limits<std::int64_t>::min());
+  receive();
+
+  EXPECT_EQ(sut_.mission().phase(), MissionPhase::kStopped);
+  EXPECT_EQ(sut_.stop_stamp_utc_ns(), -kStampLimit_ns);
+}
+
 TEST_F(InboxTest, TakesTheAgeOfAStateFromItsStamp) {
   receive();
   struct Case {

@@ -55,6 +55,13 @@ TEST(RunMain, PutsItsNameBeforeEveryLineOfAnError) {
   EXPECT_EQ(ended.printed, "prog: one\nprog: two\nprog: three\n");
 }
 
+// What another host answered, or a mission file holds.
+TEST(RunMain, PrintsNoControlCharacters) {
+  const Ended ended = run(
+      []() -> Result<ExitCode> { return fail(ErrorCode::kBadInput, "no \x1b[2J \u202Egpj.exe"); });
+  EXPECT_EQ(ended.printed, "prog: no ?[2J ???gpj.exe\n");
+}
+
 TEST(RunMain, ReportsWhatIsThrownAsAProblemOfTheEnvironment) {
   const Ended ended = run([]() -> Result<ExitCode> { throw std::runtime_error("no room"); });
   EXPECT_EQ(ended.code, 2);

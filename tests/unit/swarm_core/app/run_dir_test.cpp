@@ -2,11 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "swarm_core/app/run_dir.hpp"
 
+#include <csignal>
 #include <regex>
 #include <set>
 
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include "swarm_core/app/control_socket.hpp"
 #include "swarm_core/app/run_directory.hpp"
 #include "tests/unit/swarm_core/app/scratch_folder.hpp"
 
@@ -73,6 +77,51 @@ TEST_F(RunDir, CannotBeMadeBelowAFile) {
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, ErrorCode::kEnvironment);
   EXPECT_TRUE(refused.error().message.starts_with("cannot make ")) << refused.error().message;
+}
+
+TEST_F(RunDir, IsOfALivingRunUntilItsMakerEnds) {
+  EXPECT_FALSE(is_run_alive(folder_ / "nothing"));
+  fs::create_directory("run");
+  EXPECT_FALSE(is_run_alive(folder_ / "run"));
+  const pid_t maker = ::fork();
+  ASSERT_GE(maker, 0);
+  if (maker == 0) {
+    const auto made = make_run_dir("run", "x");
+    const auto control = ControlServer::listen("run");  // its socket stays when it is killed
+    ::raise(made && control ? SIGSTOP : SIGKILL);
+    ::_exit(0);
+  }
+  int status = 0;
+  ASSERT_EQ(::waitpid(maker, &status, WUNTRACED), maker);
+  ASSERT_TRUE(WIFSTOPPED(status));
+  EXPECT_TRUE(is_run_alive(folder_ / "run")) << "a launcher that is suspended is alive";
+
+  ::kill(maker, SIGKILL);
+  ::waitpid(maker, nullptr, 0);
+
+  EXPECT_FALSE(is_run_alive(folder_ / "run"));
+}
+
+TEST_F(RunDir, IsOfALivingRunWhereALauncherListens) {
+  fs::create_directory("run");
+  const auto control = ControlServer::listen("run");
+  ASSERT_TRUE(control) << control.error().message;
+  EXPECT_TRUE(is_run_alive("run")) << "on a file system without locks";
+}
+
+// A checkout that was deleted in another window.
+TEST_F(RunDir, NeedsAnAbsoluteNameWhereTheCurrentDirectoryIsGone) {
+  fs::create_directory("gone");
+  fs::current_path("gone");
+  fs::remove(folder_ / "gone");
+
+  for (const char* out : {"", "run"}) {
+    const auto refused = make_run_dir(out, "x");
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, ErrorCode::kEnvironment);
+    EXPECT_NE(refused.error().message.find("--out"), std::string::npos) << refused.error().message;
+  }
+  EXPECT_TRUE(make_run_dir(folder_ / "run", "x"));
 }
 
 }  // namespace

@@ -30,7 +30,7 @@ class StopSignals : public testing::Test {
   }
 
  private:
-  static constexpr std::array kSignals = {SIGINT, SIGTERM, SIGPIPE, SIGXFSZ};
+  static constexpr std::array kSignals = {SIGINT, SIGTERM, SIGHUP, SIGPIPE, SIGXFSZ};
   std::array<struct sigaction, kSignals.size()> before_{};
 };
 
@@ -59,6 +59,20 @@ TEST_F(StopSignals, DoNotIncludeAPeerThatClosedItsSocketNorAFullDisk) {
   ::raise(SIGXFSZ);
 
   ::close(ends[0]);
+  EXPECT_EQ(stop_requests(), before);
+}
+
+TEST_F(StopSignals, DoNotIncludeTheEndOfTheTerminalWhereAnotherProcessEndsUs) {
+  const int before = stop_requests();
+  ::raise(SIGHUP);
+  EXPECT_EQ(stop_requests(), before);
+}
+
+TEST_F(StopSignals, DoNotIncludeTheEndOfTheTerminalUnderNohup) {
+  const int before = stop_requests();
+  std::signal(SIGHUP, SIG_IGN);
+  catch_stop_signals(Hangup::kStop);
+  ::raise(SIGHUP);
   EXPECT_EQ(stop_requests(), before);
 }
 

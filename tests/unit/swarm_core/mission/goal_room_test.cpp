@@ -83,5 +83,25 @@ TEST(GoalRoom, CountsTheRobotsOfTheCommandLine) {
   EXPECT_FALSE(parse_mission(mission_text(3, 0.1), "m.yaml", {}, open_catalogue(), 12));
 }
 
+TEST(GoalRoom, IsThatOfTheRobotsThatAreLeft) {
+  const auto mission = parse_mission(mission_text(12, 0.5), "m.yaml");
+  ASSERT_TRUE(mission);
+  const Mixture tiny = *Mixture::make({{1.0, round_goal(0.01)}});
+  EXPECT_TRUE(lack_of_goal_room(*mission, {&tiny, "goal"}));
+  EXPECT_FALSE(lack_of_goal_room(*mission, {&tiny, "goal"}, 11)) << "one robot fits";
+}
+
+TEST(Place, HaveObstaclesThatTouchTheBounds) {
+  const Box bounds_m{{0, 0}, {40, 30}};
+  const auto polygon = [](double x_m) {
+    return Obstacle(*Polygon::make({{x_m, 5}, {x_m + 2, 5}, {x_m + 1, 8}}));
+  };
+  EXPECT_FALSE(lack_of_place(polygon(10), bounds_m));
+  EXPECT_FALSE(lack_of_place(polygon(-1), bounds_m)) << "a part is inside";
+  EXPECT_TRUE(lack_of_place(polygon(-3), bounds_m));
+  EXPECT_TRUE(lack_of_place(Circle{.center_m = {50, 5}, .radius_m = 9}, bounds_m));
+  EXPECT_FALSE(lack_of_place(Circle{.center_m = {50, 5}, .radius_m = 11}, bounds_m));
+}
+
 }  // namespace
 }  // namespace swarm

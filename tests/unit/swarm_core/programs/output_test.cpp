@@ -95,17 +95,22 @@ TEST(Output, IsNotMixedIntoFiles) {
             0);
 }
 
-TEST(Hangup, EndsWhatShowsAndNotWhatFlies) {
-  const auto stops = [](Hangup hangup) {
-    return exit_code_of([] {},
-                        [hangup] {
-                          catch_stop_signals(hangup);
-                          ::raise(SIGHUP);
-                          return stop_requests() > 0 ? ExitCode::kCriteriaNotMet : ExitCode::kOk;
-                        }) != 0;
-  };
-  EXPECT_FALSE(stops(Hangup::kIgnore));
-  EXPECT_TRUE(stops(Hangup::kStop));
+/// The stop signals that a process counts after two hangups: kernel and shell send one each.
+int stops_after_hangup(Hangup hangup, void (*before)(int)) {
+  return exit_code_of([] {},
+                      [hangup, before] {
+                        std::signal(SIGHUP, before);
+                        catch_stop_signals(hangup);
+                        ::raise(SIGHUP);
+                        ::raise(SIGHUP);
+                        return static_cast<ExitCode>(stop_requests());
+                      });
+}
+
+TEST(Hangup, EndsAProgramOnceUnlessItIsToOutliveItsTerminal) {
+  EXPECT_EQ(stops_after_hangup(Hangup::kStop, SIG_DFL), 1);
+  EXPECT_EQ(stops_after_hangup(Hangup::kStop, SIG_IGN), 0) << "as nohup starts it";
+  EXPECT_EQ(stops_after_hangup(Hangup::kIgnore, SIG_DFL), 0);
 }
 
 }  // namespace

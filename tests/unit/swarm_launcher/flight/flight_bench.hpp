@@ -174,6 +174,12 @@ class FlightBench : public ::testing::Test {
     for (std::size_t i = known; i < commands.size(); ++i) {
       for (FakeRobot& robot : robots) {
         if (commands[i].kind == CommandKind::kStart) robot.mode = RobotMode::kMoving;
+        if (commands[i].kind == CommandKind::kPause && robot.mode == RobotMode::kMoving) {
+          robot.mode = RobotMode::kHolding;
+        }
+        if (commands[i].kind == CommandKind::kResume && robot.mode == RobotMode::kHolding) {
+          robot.mode = RobotMode::kMoving;
+        }
         if (commands[i].kind == CommandKind::kStop && !robot.ignores_stop) {
           robot.mode = RobotMode::kStopped;
         }

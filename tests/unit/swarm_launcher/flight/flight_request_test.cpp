@@ -24,10 +24,46 @@ class FlightLoopRequest : public FlightBench {
 
 TEST_F(FlightLoopRequest, PausesAndResumes) {
   ASSERT_TRUE(run_to_phase(MissionPhase::kRunning));
-  EXPECT_EQ(answer_to("pause"), "done: pause sent to 1 robots");
+  EXPECT_EQ(answer_to("pause"), "done: 3 robots confirmed the pause");
   EXPECT_EQ(loop->supervisor().phase(), MissionPhase::kPaused);
-  EXPECT_EQ(answer_to("resume"), "done: resume sent to 1 robots");
+  EXPECT_EQ(answer_to("resume"), "done: 3 robots confirmed the resume");
   EXPECT_EQ(loop->supervisor().phase(), MissionPhase::kRunning);
+}
+
+TEST_F(FlightLoopRequest, CountsRobotsThatDoNotConfirmAPause) {
+  ASSERT_TRUE(run_to_phase(MissionPhase::kRunning));
+  robots[1].silent = true;
+  const auto client = requests.send("pause");
+  run_for(Confirmations::kTimeout - milliseconds(100));
+  EXPECT_EQ(requests.answer_to(client), "");
+  run_for(milliseconds(200));
+  EXPECT_EQ(requests.answer_to(client),
+            "failed: only 2 of 3 robots confirmed the pause within 5 s");
+}
+
+TEST_F(FlightLoopRequest, ReportsACommandThatChangesNothing) {
+  ASSERT_TRUE(run_to_phase(MissionPhase::kRunning));
+  EXPECT_EQ(answer_to("resume"), "done: resume sent; it changes nothing, the mission is running");
+}
+
+TEST_F(FlightLoopRequest, RefusesAnObstacleOutsideOfTheBounds) {
+  ASSERT_TRUE(run_to_phase(MissionPhase::kRunning));
+  const std::uint64_t before = published().version;
+  EXPECT_EQ(answer_to("add_obstacle circle_m: {center: [-3, 15], radius: 2}"),
+            "add_obstacle: the obstacle lies outside of world.bounds_m, [0, 0, 40, 30], where no "
+            "robot drives\nfailed: nothing changed");
+  EXPECT_EQ(scene->scene().version, before);
+  EXPECT_TRUE(answer_to("add_obstacle circle_m: {center: [-1, 15], radius: 2}").starts_with("done"))
+      << "it reaches into the bounds";
+}
+
+TEST_F(FlightLoopRequest, RefusesAGoalWithoutRoomForTheRobots) {
+  options.mission.robots.radius_m = 0.5;
+  ASSERT_TRUE(run_to_phase(MissionPhase::kRunning));
+  const std::string answer = answer_to(
+      "goto goal: [{mean_m: [20, 15], covariance_m2: [[0.0001, 0], [0, 0.0001]], weight: 1}]");
+  EXPECT_TRUE(answer.starts_with("goto: goal has no room for 3 robots of 0.5 m radius")) << answer;
+  EXPECT_TRUE(answer.ends_with("failed: nothing changed")) << answer;
 }
 
 TEST_F(FlightLoopRequest, AnswersAStopWhenAllRobotsHaveConfirmed) {

@@ -147,6 +147,13 @@ TEST(HostOffer, DamagedOnTheRouteIsAnErrorOrWithinTheLimits) {
   }
 }
 
+// It becomes an argument of a process, and a difference to the clock.
+TEST(HostOffer, HasNoControlCharactersAndNoTimeOutOfRange) {
+  EXPECT_TRUE(parse_offer(with("fault", "loss=0.2")));
+  EXPECT_FALSE(parse_offer(with("fault", "loss=0.2\x1b[2J")));
+  EXPECT_FALSE(parse_offer(with("began_utc_ns", std::numeric_limits<std::int64_t>::min())));
+}
+
 // The host becomes a part of the DDS configuration, an XML text.
 TEST(HostOffer, TakesNothingButAnAddressForTheHost) {
   EXPECT_TRUE(parse_offer(with("host", "192.168.7.4")));

@@ -233,7 +233,10 @@ TEST(EventCheck, RefusesControlsBeyondAscii) {
                            "\xC2\x80", "\xC2\x9F",
                            "\xE2\x80\xAE"
                            "gpj.exe",
-                           "\xE2\x80\xAA", "\xE2\x81\xA6", "\xE2\x81\xA9", "\xE2\x80\x8F"}) {
+                           "\xE2\x80\xAA", "\xE2\x81\xA6", "\xE2\x81\xA9", "\xE2\x80\x8F",
+                           "\x9B"
+                           "31m",
+                           "\xC0\x9B", "\xD8\x9C"}) {
     EXPECT_TRUE(refused(check(text), RefusalReason::kOutOfRange)) << text;
   }
   for (const char* text :
@@ -336,6 +339,16 @@ TEST(CheckScene, RefusesEveryField) {
     return check_scene(changed(good_scene(), change), limits());
   };
   EXPECT_TRUE(refused(verdict([](auto& s) { s.schema_version = 1; }), RefusalReason::kSchema));
+  EXPECT_TRUE(refused(verdict([](auto& s) {
+                        s.obstacles[0].moving_from_utc_ns =
+                            std::numeric_limits<std::int64_t>::min();
+                      }),
+                      RefusalReason::kOutOfRange));
+  EXPECT_TRUE(refused(verdict([](auto& s) {
+                        s.obstacles[0].moving_until_utc_ns =
+                            std::numeric_limits<std::int64_t>::max();
+                      }),
+                      RefusalReason::kOutOfRange));
   EXPECT_TRUE(refused(verdict([](auto& s) { s.removed.resize(kMaxSceneRemoved + 1); }),
                       RefusalReason::kOversized));
   EXPECT_TRUE(refused(verdict([](auto& s) { s.vertices.resize(kMaxSceneVertices + 1); }),

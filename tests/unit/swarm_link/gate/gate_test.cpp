@@ -214,6 +214,24 @@ TEST_F(GateTest, RefusesCommandsStampedInTheFuture) {
   EXPECT_TRUE(counted(RefusalReason::kForged));
 }
 
+// Their difference to the clock would not fit in 64 bits.
+TEST_F(GateTest, RefusesStampsFromBeforeTheRangeOfClocks) {
+  constexpr std::int64_t kFirst = std::numeric_limits<std::int64_t>::min();
+  CommandMessage start = command(CommandKind::kStart, 10);
+  start.stamp_utc_ns = kFirst;
+  EXPECT_FALSE(sut.command(start, kNow));
+  EXPECT_TRUE(counted(RefusalReason::kOutOfRange));
+  CommandMessage stop = command(CommandKind::kStop, 10);
+  stop.stamp_utc_ns = kFirst;
+  EXPECT_TRUE(sut.command(stop, kNow)) << "a stop passes with any stamp";
+  EXPECT_FALSE(sut.status({.stamp_utc_ns = kFirst, .robots = {{.robot_id = 1}}}, kNow));
+  EXPECT_TRUE(counted(RefusalReason::kOutOfRange));
+  EXPECT_FALSE(sut.heartbeat({.epoch = 1, .sequence_number = 1, .stamp_utc_ns = kFirst}, kNow));
+  EXPECT_TRUE(counted(RefusalReason::kOutOfRange));
+  EXPECT_FALSE(sut.event({.source = 0, .stamp_utc_ns = kFirst, .code = "note"}));
+  EXPECT_TRUE(counted(RefusalReason::kOutOfRange));
+}
+
 TEST_F(GateTest, RefusesStatusesOfTheFuture) {
   StatusMessage status{.stamp_utc_ns = ns(kNow), .robots = {{.robot_id = 1}}};
   EXPECT_TRUE(sut.status(status, kNow));

@@ -50,6 +50,7 @@ TEST(SceneJson, HasTheKeysOfTheProtocol) {
   EXPECT_EQ(scene["robots"], 4);
   EXPECT_EQ(scene["radius_m"], mission.robots.radius_m);
   EXPECT_EQ(scene["bounds"], Json::parse("[[0.0,0.0],[40.0,20.0]]"));
+  EXPECT_EQ(scene["origin"], Json::parse("[0.0,0.0]"));
   ASSERT_EQ(scene["obstacles"].size(), 2U);
   EXPECT_EQ(scene["obstacles"][0]["id"], 0);
   EXPECT_EQ(scene["obstacles"][0]["polygon"].size(), 4U);

@@ -115,7 +115,8 @@ TEST(ViewFrame, IsReadAsItWasWritten) {
     ASSERT_TRUE(read);
     ASSERT_EQ(read->robots.size(), robots);
     for (std::size_t i = 0; i < robots; ++i) {
-      EXPECT_EQ(read->robots[i].x_m, static_cast<float>(written[i].position_m.x()));
+      EXPECT_EQ(read->robots[i].x_m,
+                static_cast<double>(static_cast<float>(written[i].position_m.x())));
       EXPECT_EQ(read->robots[i].y_m, static_cast<float>(written[i].position_m.y()));
       EXPECT_EQ(read->robots[i].heading, static_cast<float>(written[i].heading_rad));
       EXPECT_EQ(read->robots[i].was_received, written[i].was_received);
@@ -162,6 +163,34 @@ TEST(ViewFrameReader, RefusesAnotherMagicAndTakesAnyOtherBytes) {
     if (!read) continue;
     EXPECT_LE(24 + 16 * read->robots.size() + 24 * read->mixture.size(), rubbish.size());
   }
+}
+
+TEST(ViewFrame, BeginsAtTheOriginUnlessTheWorldIsFarAway) {
+  EXPECT_EQ(view_origin_m({{-50, -50}, {1000, 4096}}), Vec2(0, 0));
+  EXPECT_EQ(view_origin_m({{500'300, 5'700'900}, {500'400, 5'701'000}}), Vec2(500'000, 5'701'000));
+  EXPECT_EQ(view_origin_m({{-9'400, 0}, {-9'300, 10}}), Vec2(-9'000, 0));
+}
+
+// Coordinates of a map of Europe: a float there is half a metre off.
+TEST(ViewFrame, IsExactFarFromTheOrigin) {
+  const Vec2 corner_m(512'345, 5'412'345);
+  const Vec2 origin_m = view_origin_m({corner_m, corner_m + Vec2(200, 160)});
+  const Vec2 at_m = corner_m + Vec2(12.34, 56.78);
+  const auto mixture = Mixture::make({{1.0, Gaussian::from_valid(at_m, Mat2::Identity())}});
+  std::vector<std::byte> bytes;
+  const std::optional<Mixture> planned = *mixture;
+  ViewFrameEncoder encoder(bytes, 1, 0.0, 1, planned);
+  encoder.set_origin(origin_m);
+  encoder.add({.position_m = at_m, .was_received = true});
+  encoder.finish(std::nullopt, {});
+
+  const auto read = read_view_frame(bytes, origin_m);
+
+  ASSERT_TRUE(read);
+  EXPECT_NEAR(read->robots[0].x_m, at_m.x(), 1e-3);
+  EXPECT_NEAR(read->robots[0].y_m, at_m.y(), 1e-3);
+  EXPECT_NEAR(read->mixture[0].x_m, at_m.x(), 1e-3);
+  EXPECT_NEAR(read->mixture[0].y_m, at_m.y(), 1e-3);
 }
 
 }  // namespace
