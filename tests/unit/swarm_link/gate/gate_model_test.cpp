@@ -10,6 +10,7 @@
 
 #include <gtest/gtest.h>
 
+#include "swarm_core/base/stamp.hpp"
 #include "swarm_link/gate/gate.hpp"
 #include "swarm_link/gate/number_tests.hpp"
 #include "swarmflow/core/random.hpp"
@@ -50,7 +51,7 @@ TEST(Gate, PassesCommandsAsTheModelDoes) {
                                    .stamp_utc_ns = any_stamp(rng)};
       const bool reachable =
           message.command_id <= static_cast<std::uint64_t>(kNow_ns + kRefuse_ns) &&
-          message.stamp_utc_ns <= kNow_ns + kRefuse_ns;
+          message.stamp_utc_ns <= kNow_ns + kRefuse_ns && message.stamp_utc_ns >= -kStampLimit_ns;
       const bool stop = kind == CommandKind::kStop;
       const bool expected =
           stop || (kind < CommandKind::kStop && reachable && message.command_id > newest);
