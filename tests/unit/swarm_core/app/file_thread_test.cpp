@@ -20,7 +20,8 @@
 
 namespace {
 
-// Of the thread that counts.
+// Of the thread that counts. operator delete is not inlined, as g++ then takes free() for the wrong
+// partner of new.
 thread_local std::size_t allocations = 0;
 
 }  // namespace
@@ -30,8 +31,8 @@ void* operator new(std::size_t size) {
   if (void* memory = std::malloc(size)) return memory;
   throw std::bad_alloc();
 }
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+[[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
+[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 
 namespace swarm::shell {
 namespace {
