@@ -114,7 +114,7 @@ void ProcessEvents::on_files(UtcTime utc_now, const shell::FileHealth& health) {
 void ProcessEvents::on_losses(UtcTime utc_now, std::span<const shell::FileLoss> losses) {
   if (losses.empty()) return;
   std::string text = shell::describe(losses.front());
-  if (losses.size() > 1) text += fmt::format("; and {} more files", losses.size() - 1);
+  if (losses.size() > 1) text += fmt::format("; and {} more", losses.size() - 1);
   send(utc_now, link::Severity::kWarning, std::string(shell::kRecordsLost), text);
 }
 

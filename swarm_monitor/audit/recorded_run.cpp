@@ -85,7 +85,7 @@ void TrackMaker::take(const robot_log::Header& header) {
 void TrackMaker::take(const robot_log::Step& step) {
   const Duration lateness = std::chrono::microseconds(step.lateness_us);
   track_.late_ticks += late_ticks(lateness, period_);
-  if (period_ > Duration::zero() && lateness > period_) {
+  if (period_ > Duration::zero() && lateness >= period_) {
     track_.missed_ticks += static_cast<std::uint64_t>(lateness / period_);
   }
   const double time_s = to_seconds(step.stamp - origin_);
