@@ -11,7 +11,7 @@
 namespace swarm::shell {
 
 /// A file in memory, which processes of the same user can read by its path for as long as this
-/// process runs: no disk is needed and nobody can remove it.
+/// process runs: it needs no disk, and no one can remove it.
 class MemoryFile {
  public:
   /// Fails (kEnvironment) if the system has no such files.
