@@ -36,6 +36,8 @@ constexpr std::uint64_t kFaultSeed = 0xFA17;  // own random numbers for the link
 constexpr Duration kFilesEvery = std::chrono::seconds(1);
 // At the end the launcher waits for no longer than 5 s before it sends the next stronger signal.
 constexpr Duration kFilesTimeout = std::chrono::seconds(2);
+// Until what a process sends last has been received; its writers end with it.
+constexpr Duration kLinger = std::chrono::milliseconds(300);
 constexpr std::size_t kClockBytes = 256U << 10U;  // many minutes of a disk that takes nothing
 
 // std::this_thread::sleep_for would sleep on after a signal.
@@ -251,9 +253,11 @@ void PlannerProcess::Impl::watch_files(SteadyTime now) {
 }
 
 void PlannerProcess::Impl::finish_files() {
-  for (const shell::FileLoss& loss : files.finish(kFilesTimeout)) {
+  const auto losses = files.finish(kFilesTimeout);
+  for (const shell::FileLoss& loss : losses) {
     announce(link::Severity::kWarning, std::string(shell::kRecordsLost), describe(loss));
   }
+  if (!losses.empty()) sleep_for(kLinger);
 }
 
 void PlannerProcess::Impl::announce(link::Severity severity, const std::string& code,

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <ctime>
 #include <optional>
+#include <thread>
 #include <utility>
 
 #include <fmt/format.h>
@@ -28,6 +29,8 @@ constexpr Duration kLongTick = std::chrono::milliseconds(500);
 constexpr Duration kFilesEvery = std::chrono::seconds(1);
 /// At the end the launcher waits for no longer than 5 s before it sends the next stronger signal.
 constexpr Duration kFilesTimeout = std::chrono::seconds(2);
+/// Until what a process sends last has been received; its writers end with it.
+constexpr Duration kLinger = std::chrono::milliseconds(300);
 
 /// Sleeps until `at`; false when a signal woke us early.
 bool sleep_until(SteadyTime at) {
@@ -125,6 +128,7 @@ Result<void> AgentProcess::run() {
   p.loop->end({.now = std::chrono::steady_clock::now(), .utc_now = utc_now()});
   const auto losses = p.files.finish(kFilesTimeout);
   p.loop->on_losses(utc_now(), losses);
+  if (!losses.empty()) std::this_thread::sleep_for(kLinger);
   return {};
 }
 

@@ -24,10 +24,10 @@ int AppendFile::open(Disk& disk) {
   }
   remove_end(disk, *state);
   unsigned char last = 0;
-  const Bytes& separator = format_.after_torn;
+  const Bytes& ending = format_.record_end;
   // An earlier writer may have been killed within a record.
-  if (!separator.empty() && state->is_regular && state->size > 0 &&
-      disk.read_at(fd_, state->size - 1, {&last, 1}) == 1U && last != separator.back()) {
+  if (!ending.empty() && state->is_regular && state->size > 0 &&
+      disk.read_at(fd_, state->size - 1, {&last, 1}) == 1U && last != ending.back()) {
     is_torn_ = true;
   }
   return 0;
@@ -65,7 +65,7 @@ int AppendFile::append(Disk& disk, std::span<const unsigned char> bytes) {
   };
   const bool is_empty = state->is_regular && state->size == 0;
   if (is_empty) put(format_.preamble);
-  if (is_torn_ && !is_empty) put(format_.after_torn);
+  if (is_torn_ && !is_empty) put(format_.record_end);
   if (is_empty || !has_begun_) put(format_.begin);
   int error = 0;
   if (buffer_.empty()) {

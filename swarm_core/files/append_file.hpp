@@ -20,12 +20,12 @@ struct AppendFormat {
   Bytes preamble{};    ///< at the begin of an empty file
   Bytes begin{};       ///< before the first record of this writer
   Bytes end{};         ///< after its last record; the next writer removes it
-  Bytes after_torn{};  ///< between a record that could not be written whole and the next
+  Bytes record_end{};  ///< last bytes of every record, if they are the same; also end a torn one
 };
 
 /// Lines of text.
 inline AppendFormat lines_of(std::filesystem::path file) {
-  return {.file = std::move(file), .after_torn = {'\n'}};
+  return {.file = std::move(file), .record_end = {'\n'}};
 }
 
 /// A file of which one process at a time is the writer. Records are written whole or not at all: a

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdio>
+#include <iterator>
 #include <string_view>
 #include <thread>
 #include <utility>
@@ -25,6 +26,7 @@ constexpr Duration kFlightStep = std::chrono::milliseconds(20);
 // Logs of hundreds of robots may have gigabytes.
 constexpr Duration kLogsTimeout = std::chrono::minutes(3);
 
+constexpr std::ptrdiff_t kMostNamed = 10;  // files that lack something
 constexpr Duration kFilesEvery = std::chrono::seconds(1);
 // Thousands of events that wait for the disk.
 constexpr std::size_t kEventsBytes = 4U << 20U;
@@ -177,6 +179,11 @@ std::vector<std::string> Flight::finish_files() {
   std::vector<std::string> missing = log_.losses();
   for (const shell::FileLoss& loss : run_->files().finish()) {
     missing.push_back("launcher: " + describe(loss));
+  }
+  if (std::ssize(missing) > kMostNamed) {
+    missing.insert(missing.begin() + kMostNamed,
+                   fmt::format("{} more", std::ssize(missing) - kMostNamed));
+    missing.resize(kMostNamed + 1);
   }
   return missing;
 }

@@ -237,7 +237,13 @@ std::string number_of_pairs(std::uint32_t count) {
 
 /// Collects the reasons why the run fails, one line each; without any the outcome is "ok".
 void judge(const AuditedRun& audited, Audit& audit) {
-  for (const std::string& text : audit.missing) audit.reasons.push_back("missing: " + text);
+  constexpr std::size_t kMostNamed = 10;
+  for (std::size_t i = 0; i < std::min(audit.missing.size(), kMostNamed); ++i) {
+    audit.reasons.push_back("missing: " + audit.missing[i]);
+  }
+  if (audit.missing.size() > kMostNamed) {
+    audit.reasons.push_back(fmt::format("missing: {} more", audit.missing.size() - kMostNamed));
+  }
   if (!audit.lost.empty()) {
     std::vector<std::string> ids;
     for (const RobotId id : audit.lost) ids.push_back(fmt::format("{}", id.value()));

@@ -20,8 +20,7 @@ AppendFormat a_format() {
   return {.file = kFile,
           .preamble = to_bytes("<"),
           .begin = to_bytes("("),
-          .end = to_bytes(">"),
-          .after_torn = to_bytes("|")};
+          .end = to_bytes(">")};
 }
 
 int append(AppendFile& file, Disk& disk, std::string_view text) {
@@ -79,15 +78,15 @@ TEST(AppendFile, KeepsWholeRecordsOnAFullDisk) {
 
 TEST(AppendFile, MarksATornRecordThatCannotBeRemoved) {
   FakeDisk disk;
-  AppendFile sut(a_format());
-  EXPECT_EQ(append(sut, disk, "first"), 0);
+  AppendFile sut(lines_of(kFile));
+  EXPECT_EQ(append(sut, disk, "first\n"), 0);
   disk.room_bytes = 3;
   disk.truncate_error = EIO;
-  EXPECT_EQ(append(sut, disk, "second"), ENOSPC);
+  EXPECT_EQ(append(sut, disk, "second\n"), ENOSPC);
   disk.room_bytes = UINT64_MAX;
-  EXPECT_EQ(append(sut, disk, "second"), 0);
-  EXPECT_EQ(append(sut, disk, "third"), 0);
-  EXPECT_EQ(disk.content(kFile), "<(firstsec|secondthird");
+  EXPECT_EQ(append(sut, disk, "second\n"), 0);
+  EXPECT_EQ(append(sut, disk, "third\n"), 0);
+  EXPECT_EQ(disk.content(kFile), "first\nsec\nsecond\nthird\n");
 }
 
 TEST(AppendFile, MakesARemovedFileAgainAsAWholeOne) {
