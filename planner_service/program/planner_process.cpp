@@ -14,6 +14,7 @@
 
 #include "planner_service/keeper/plan_keeper.hpp"
 #include "planner_service/keeper/rival_watch.hpp"
+#include "planner_service/program/kept_plans.hpp"
 #include "planner_service/program/planner_inbox.hpp"
 #include "swarm_core/app/file_thread.hpp"
 #include "swarm_core/app/file_watch.hpp"
@@ -236,11 +237,11 @@ void PlannerProcess::Impl::publish() {
                        stats.planned_mean_path_m, stats.total_ms,
                        scene == 0 ? "" : fmt::format(", {:.1f} ms after the change", after_ms)));
   if (version == 1 && scene == 0) return;  // kept when it was made
-  const auto file_of = [this](std::uint32_t v) {
-    return options.run_dir / fmt::format("plan-{:04}.json", v);
-  };
-  files.replace(file_of(version), to_json(newest.planned.plan, newest.planned.excess.by_m));
-  if (version > shell::kPlansKept + 1) files.remove(file_of(version - shell::kPlansKept));
+  files.replace(plan_file(options.run_dir, version),
+                to_json(newest.planned.plan, newest.planned.excess.by_m));
+  if (const std::uint32_t old = outdated_plan(version)) {
+    files.remove(plan_file(options.run_dir, old));
+  }
 }
 
 void PlannerProcess::Impl::watch_files(SteadyTime now) {

@@ -26,7 +26,7 @@ struct ProcessOptions {
 /// that the robots report. The same mission and seed give the same first plan, so after a restart
 /// in an unchanged scene it publishes the same flow under a higher epoch and the swarm goes on
 /// where it was; in a changed one it plans anew. A thread of its own writes its files: robots wait
-/// for no disk.
+/// for no disk. It keeps the files of the first plan and of the newest hundred.
 class PlannerProcess {
  public:
   /// Plans first, joins the bus second: a mission that cannot be planned ends here, with the reason

@@ -31,9 +31,9 @@ struct FileHealth {
 /// What is missing in a file.
 struct FileLoss {
   std::filesystem::path file;
-  std::uint64_t records = 0;    ///< 0 of a file that is written as a whole: all of it
-  int error = 0;                ///< the last one by errno; 0: the disk is too slow
-  bool was_removed = false;     ///< others removed it, and with it what had been written
+  std::uint64_t records = 0;  ///< 0 of a file that is written as a whole: all of it
+  int error = 0;              ///< the last one by errno; 0: the disk is too slow
+  bool was_removed = false;   ///< others removed it, and with it what had been written
 };
 
 /// Text for people: `events.jsonl: 12 records (No space left on device)`.
@@ -64,8 +64,8 @@ class AppendStream {
 
 /// When records reach the disk.
 enum class Flush : std::uint8_t {
-  kAtOnce,   ///< wakes the thread
-  kLazily,   ///< within a second
+  kAtOnce,  ///< wakes the thread
+  kLazily,  ///< within a second
 };
 
 /// The thread that writes the files of a process, so that no other thread ever waits for the disk.

@@ -11,9 +11,10 @@ namespace swarm::shell {
 namespace {
 
 std::string describe(const FileHealth& health) {
-  std::string text = fmt::format(
-      "{} cannot be written: {}", health.first.empty() ? "a file" : health.first.filename().string(),
-      health.error == 0 ? "the disk does not answer" : std::strerror(health.error));
+  std::string text =
+      fmt::format("{} cannot be written: {}",
+                  health.first.empty() ? "a file" : health.first.filename().string(),
+                  health.error == 0 ? "the disk does not answer" : std::strerror(health.error));
   if (health.failing > 1) text += fmt::format("; {} files in all", health.failing);
   return text + "; records wait in memory";
 }

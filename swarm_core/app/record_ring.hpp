@@ -53,8 +53,8 @@ class RecordRing {
     return true;
   }
 
-  /// Consumer: appends the oldest blocks to `out`, at least one and no more than `most_bytes` beyond
-  /// it. They stay in the ring.
+  /// Consumer: appends the oldest blocks to `out`, at least one and no more than `most_bytes`
+  /// beyond it. They stay in the ring.
   Taken copy(std::vector<unsigned char>& out, std::size_t most_bytes) const {
     Taken taken{.until = read_.load(std::memory_order_relaxed)};
     const std::uint64_t end = written_.load(std::memory_order_acquire);
