@@ -38,9 +38,9 @@ LogFile open_log(const Mission& mission, const LocalRobotsSpec& spec, RobotId ro
                                  .radius_m = body_of(mission.robots, robot).radius_m,
                                  .stamp = spec.utc_now};
   const bool many = spec.count >= kManyRobots;
-  auto stream = spec.files.append_to(
-      robot_log::format_of(robot_log::file_of(spec.run_dir, robot), header),
-      many ? shell::Flush::kLazily : shell::Flush::kAtOnce, kWaitingBytes);
+  auto stream =
+      spec.files.append_to(robot_log::format_of(robot_log::file_of(spec.run_dir, robot), header),
+                           many ? shell::Flush::kLazily : shell::Flush::kAtOnce, kWaitingBytes);
   return LogFile(robot_log::Writer::to(std::make_unique<QueuedChunks>(std::move(stream)), header,
                                        many ? kRecordsAtOnce : 1,
                                        many ? robot.value() % kRecordsAtOnce : 0));

@@ -169,9 +169,8 @@ void Flight::watch_files(const FlightTime& now) {
   if (now.steady < next_look_) return;
   next_look_ = now.steady + kFilesEvery;
   if (const auto event = file_watch_.step(run_->files().health(now.steady))) {
-    log_.log(now.utc, {.warning = event->is_warning,
-                       .code = std::string(event->code),
-                       .text = event->text});
+    log_.log(now.utc,
+             {.warning = event->is_warning, .code = std::string(event->code), .text = event->text});
   }
 }
 

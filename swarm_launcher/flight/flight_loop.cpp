@@ -142,8 +142,8 @@ Result<void> FlightLoop::act(const Action& action, UtcTime now) {
 Result<void> FlightLoop::start(ProcessIndex process) {
   const auto [first, count] = supervisor_.robots_of(process);
   ProcessCommand command = process == kPlanner
-                                     ? planner_command(options_.how, dir_, planner_starts_++)
-                                     : agent_command(options_.how, dir_, process, first, count);
+                               ? planner_command(options_.how, dir_, planner_starts_++)
+                               : agent_command(options_.how, dir_, process, first, count);
   if (!ports_.inputs.empty()) {
     command.line.insert(command.line.end(), {"--inputs", ports_.inputs});
   }

@@ -88,7 +88,8 @@ Result<void> PreparedRun::join() {
 Result<void> PreparedRun::write_inputs() {
   const std::string mission = to_yaml(checked_.options.mission);
   const std::string run = shell::to_json(info_);
-  for (const auto& [name, text] : {std::pair{shell::kMissionFile, mission}, {shell::kRunFile, run}}) {
+  for (const auto& [name, text] :
+       {std::pair{shell::kMissionFile, mission}, {shell::kRunFile, run}}) {
     if (auto written = shell::write_file(dir_ / name, text); !written) return written;
     files_.keep(dir_ / name, text);
   }

@@ -139,7 +139,8 @@ void print_text(const Result<monitor::AuditedRun>& audited, const Measurements& 
                 excess.plans, excess.largest_m);
   }
   if (!audited) {  // otherwise they are among the reasons
-    for (const std::string& text : measured.missing) std::printf("missing          %s\n", text.c_str());
+    for (const std::string& text : measured.missing)
+      std::printf("missing          %s\n", text.c_str());
   }
   std::printf("mission          %s\nreport           %s\n",
               std::string(to_string(measured.outcome)).c_str(), report.c_str());

@@ -69,9 +69,8 @@ void add_unknown_plans(const RecordedRun& run, std::vector<std::string>& missing
   const std::uint32_t newest = *unknown.rbegin();
   const std::uint32_t oldest_kept = newest < shell::kPlansKept ? 2 : newest - shell::kPlansKept + 1;
   for (const PublishedPlan& plan : run.plans) unknown.erase(plan.version);
-  std::erase_if(unknown, [&](std::uint32_t version) {
-    return version > 1 && version < oldest_kept;
-  });
+  std::erase_if(unknown,
+                [&](std::uint32_t version) { return version > 1 && version < oldest_kept; });
   if (unknown.empty()) return;
   missing.push_back(fmt::format("{} plan{} that the clock names: version {}{}", unknown.size(),
                                 unknown.size() == 1 ? "" : "s", *unknown.begin(),

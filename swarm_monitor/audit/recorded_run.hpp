@@ -55,7 +55,7 @@ struct Track {
   std::uint64_t damaged = 0;      ///< unreadable stretches of the file, and steps back in time
   std::uint64_t lost = 0;         ///< records that the numbering of the log lacks
   std::uint64_t late_ticks = 0;   ///< that began late, and that were missed
-  std::uint64_t missed_ticks = 0; ///< that have no step
+  std::uint64_t missed_ticks = 0;  ///< that have no step
   std::uint64_t refused = 0;      ///< messages, over all incarnations
   Histogram state_age{};          ///< over all incarnations
   std::uint64_t states_sent = 0;  ///< over all incarnations

@@ -179,8 +179,8 @@ void add_losses(Page& page, const AuditedRun& audited) {
                          track.damaged);
     }
     if (track.lost > 0) {
-      why += fmt::format("{}{} records missing in its robot log", why.empty() ? "" : "; ",
-                         track.lost);
+      why +=
+          fmt::format("{}{} records missing in its robot log", why.empty() ? "" : "; ", track.lost);
     }
     if (!track.notes.empty()) {
       why += fmt::format("; last note: {} {}", escape_xml(track.notes.back().code),

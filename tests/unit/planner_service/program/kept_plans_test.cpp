@@ -19,7 +19,8 @@ TEST(KeptPlans, AreTheFirstAndTheNewestHundred) {
     const std::uint32_t newest = std::min(version, shell::kPlansKept + 1);
     EXPECT_EQ(kept.size(), newest) << version;
     EXPECT_TRUE(kept.contains(1));
-    EXPECT_EQ(*std::next(kept.begin(), newest > 1 ? 1 : 0), version - newest + (newest > 1 ? 2 : 1));
+    EXPECT_EQ(*std::next(kept.begin(), newest > 1 ? 1 : 0),
+              version - newest + (newest > 1 ? 2 : 1));
   }
 }
 

@@ -17,9 +17,7 @@
 namespace swarm::shell {
 namespace {
 
-Mission a_mission() {
-  return load_mission(SWARM_SOURCE_DIR "/deploy/missions/small.yaml").value();
-}
+Mission a_mission() { return load_mission(SWARM_SOURCE_DIR "/deploy/missions/small.yaml").value(); }
 const RunInfo kRun{.domain = 7, .discovery_port = 1234, .agents = 3, .seed = 11};
 
 TEST(RunInputs, AreTheSameFromMemoryAndFromTheRunDirectory) {

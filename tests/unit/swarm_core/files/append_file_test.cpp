@@ -17,10 +17,7 @@ namespace {
 const std::filesystem::path kFile = "/run/file";
 
 AppendFormat a_format() {
-  return {.file = kFile,
-          .preamble = to_bytes("<"),
-          .begin = to_bytes("("),
-          .end = to_bytes(">")};
+  return {.file = kFile, .preamble = to_bytes("<"), .begin = to_bytes("("), .end = to_bytes(">")};
 }
 
 int append(AppendFile& file, Disk& disk, std::string_view text) {

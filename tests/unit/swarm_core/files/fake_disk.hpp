@@ -87,9 +87,8 @@ class FakeDisk final : public Disk {
   Answer<State> state(int fd) override {
     const std::lock_guard lock(mutex);
     const Inode& inode = *open_.at(fd);
-    return State{.size = inode.content.size(),
-                 .is_regular = is_regular,
-                 .is_linked = inode.is_linked};
+    return State{
+        .size = inode.content.size(), .is_regular = is_regular, .is_linked = inode.is_linked};
   }
   Answer<std::size_t> write(int fd, std::span<const unsigned char> bytes) override {
     std::unique_lock lock(mutex);

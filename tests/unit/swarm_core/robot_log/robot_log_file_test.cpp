@@ -340,8 +340,8 @@ TEST_F(RobotLogFile, NumbersRecordsSoThatReadersCountTheMissingOnes) {
   std::vector<mcap::Bytes> chunks;
   std::uint64_t dropped = 0;
   {
-    Writer writer = Writer::to(std::make_unique<PickySink>(chunks, std::vector<int>{0, 3, 4}),
-                               a_header());
+    Writer writer =
+        Writer::to(std::make_unique<PickySink>(chunks, std::vector<int>{0, 3, 4}), a_header());
     for (int i = 0; i < 8; ++i) writer.append(step_number(i));
     dropped = writer.dropped();
   }

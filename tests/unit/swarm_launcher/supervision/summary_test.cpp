@@ -11,8 +11,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "tests/unit/swarm_core/app/scratch_folder.hpp"
 #include "swarm_monitor/audit/audit.hpp"
+#include "tests/unit/swarm_core/app/scratch_folder.hpp"
 #include "tests/unit/swarm_monitor/synthetic_run.hpp"
 
 namespace swarm::launcher {

@@ -255,8 +255,7 @@ TEST(Audit, SurvivesADamagedRobotLog) {
 
   EXPECT_EQ(audit.damaged_records, 1U);
   EXPECT_EQ(audit.arrived, 2U);
-  EXPECT_EQ(audit.reasons,
-            (std::vector<std::string>{"missing: 1 record of robot logs: robot 1"}));
+  EXPECT_EQ(audit.reasons, (std::vector<std::string>{"missing: 1 record of robot logs: robot 1"}));
 }
 
 TEST(Audit, ReportsTheMessageRateOfRobots) {
