@@ -35,8 +35,6 @@ namespace {
 constexpr Duration kStep = std::chrono::milliseconds(5);
 constexpr std::uint64_t kFaultSeed = 0xFA17;  // own random numbers for the link
 constexpr Duration kFilesEvery = std::chrono::seconds(1);
-// At the end the launcher waits for no longer than 5 s before it sends the next stronger signal.
-constexpr Duration kFilesTimeout = std::chrono::seconds(2);
 // Until what a process sends last has been received; its writers end with it.
 constexpr Duration kLinger = std::chrono::milliseconds(300);
 constexpr std::size_t kClockBytes = 256U << 10U;  // many minutes of a disk that takes nothing
@@ -254,7 +252,7 @@ void PlannerProcess::Impl::watch_files(SteadyTime now) {
 }
 
 void PlannerProcess::Impl::finish_files() {
-  const auto losses = files.finish(kFilesTimeout);
+  const auto losses = files.finish();
   for (const shell::FileLoss& loss : losses) {
     announce(link::Severity::kWarning, std::string(shell::kRecordsLost), describe(loss));
   }

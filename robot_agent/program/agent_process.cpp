@@ -27,8 +27,6 @@ namespace {
 constexpr Duration kLongTick = std::chrono::milliseconds(500);
 /// Period of the look at how the files of the process can be written.
 constexpr Duration kFilesEvery = std::chrono::seconds(1);
-/// At the end the launcher waits for no longer than 5 s before it sends the next stronger signal.
-constexpr Duration kFilesTimeout = std::chrono::seconds(2);
 /// Until what a process sends last has been received; its writers end with it.
 constexpr Duration kLinger = std::chrono::milliseconds(300);
 
@@ -126,7 +124,7 @@ Result<void> AgentProcess::run() {
     if (parent_is_gone(p.options.parent_pid)) break;
   }
   p.loop->end({.now = std::chrono::steady_clock::now(), .utc_now = utc_now()});
-  const auto losses = p.files.finish(kFilesTimeout);
+  const auto losses = p.files.finish();
   p.loop->on_losses(utc_now(), losses);
   if (!losses.empty()) std::this_thread::sleep_for(kLinger);
   return {};

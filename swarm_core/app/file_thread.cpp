@@ -23,6 +23,7 @@ using detail::FileThreadState;
 using detail::Stream;
 
 constexpr std::size_t kMostWaitingBytes = 64U << 20U;
+constexpr int kRefusedShare = 4;
 constexpr Duration kLookEvery = std::chrono::milliseconds(100);
 constexpr Duration kNoAnswer = std::chrono::seconds(1);
 
@@ -170,7 +171,11 @@ std::vector<FileLoss> FileThread::finish(Duration limit) {
     s.is_finishing.store(true);
     s.wake();
     const auto ended = [&s] { return s.has_ended; };
-    if (!wait_for(s, limit, ended)) {
+    const auto ended_or_refused = [&s] {
+      return s.has_ended || (s.busy_since_ns.load() == 0 && s.health.failing > 0);
+    };
+    // A disk that refuses is not waited for as long as one that is slow.
+    if (!wait_for(s, limit, ended_or_refused) || !wait_for(s, limit / kRefusedShare, ended)) {
       // It ends at its next step, unless the disk does not answer: then it ends with the process.
       s.is_abandoned.store(true);
       s.wake();

@@ -82,7 +82,7 @@ class FileThread {
   FileThread(const FileThread&) = delete;
   FileThread& operator=(const FileThread&) = delete;
 
-  static constexpr Duration kFinish = std::chrono::seconds(5);
+  static constexpr Duration kFinish = std::chrono::seconds(8);
 
   /// A file to append to. Reserves memory for records of `capacity_bytes` that wait.
   AppendStream append_to(files::AppendFormat format, Flush flush, std::size_t capacity_bytes);
@@ -103,7 +103,8 @@ class FileThread {
   bool flush(Duration limit);
 
   /// Writes everything and the ends of the files, and ends the thread. Gives up after `limit`
-  /// without progress. What is missing in which file; nothing is written afterwards.
+  /// without progress, or a quarter of it where the disk refuses rather than takes its time. What is
+  /// missing in which file; nothing is written afterwards.
   std::vector<FileLoss> finish(Duration limit = kFinish);
 
  private:

@@ -11,6 +11,8 @@
 #include <map>
 #include <mutex>
 
+#include <pthread.h>
+#include <sched.h>
 #include <semaphore.h>
 
 namespace swarm::shell::detail {
@@ -25,7 +27,10 @@ SteadyTime steady_now() { return std::chrono::steady_clock::now(); }
 
 }  // namespace
 
+// As a batch thread it preempts no tick when it is woken.
 void FileWorker::run() {
+  const sched_param none{};
+  ::pthread_setschedparam(::pthread_self(), SCHED_BATCH, &none);
   while (true) {
     wait();
     const std::uint64_t wanted = s_.flushes_wanted.load();
