@@ -30,7 +30,7 @@ class DirectoryObserver final : public SimulationObserver {
  public:
   explicit DirectoryObserver(std::filesystem::path dir)
       : dir_(std::move(dir)),
-        events_(dir_ / shell::kEventsFile),
+        events_(append_to_file(dir_ / shell::kEventsFile)),
         scenes_(dir_ / shell::kSceneFile, std::ios::app),
         clock_(dir_ / shell::kPlanClockFile, std::ios::app) {}
 

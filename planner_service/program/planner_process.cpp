@@ -4,10 +4,9 @@
 
 #include <algorithm>
 #include <ctime>
-#include <fstream>
 #include <optional>
+#include <string>
 #include <utility>
-#include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -15,8 +14,11 @@
 
 #include "planner_service/keeper/plan_keeper.hpp"
 #include "planner_service/keeper/rival_watch.hpp"
+#include "planner_service/program/kept_plans.hpp"
 #include "planner_service/program/planner_inbox.hpp"
-#include "swarm_core/app/run_directory.hpp"
+#include "swarm_core/app/file_thread.hpp"
+#include "swarm_core/app/file_watch.hpp"
+#include "swarm_core/app/run_inputs.hpp"
 #include "swarm_core/app/stop_signal.hpp"
 #include "swarm_core/base/clock.hpp"
 #include "swarm_core/plan/plan_json.hpp"
@@ -24,7 +26,6 @@
 #include "swarm_link/roles/run_meeting.hpp"
 #include "swarm_link/to_message.hpp"
 #include "swarm_link/topics.hpp"
-#include "swarmflow/mission/mission_file.hpp"
 
 namespace swarm::planner {
 namespace {
@@ -33,6 +34,10 @@ namespace {
 // part of that.
 constexpr Duration kStep = std::chrono::milliseconds(5);
 constexpr std::uint64_t kFaultSeed = 0xFA17;  // own random numbers for the link
+constexpr Duration kFilesEvery = std::chrono::seconds(1);
+// Until what a process sends last has been received; its writers end with it.
+constexpr Duration kLinger = std::chrono::milliseconds(300);
+constexpr std::size_t kClockBytes = 256U << 10U;  // many minutes of a disk that takes nothing
 
 // std::this_thread::sleep_for would sleep on after a signal.
 void sleep_for(Duration d) {
@@ -40,7 +45,7 @@ void sleep_for(Duration d) {
   ::nanosleep(&t, nullptr);  // a stop signal wakes it
 }
 
-Result<void> write_stats(const std::filesystem::path& run_dir, const PlanStats& stats) {
+std::string to_json(const PlanStats& stats) {
   const nlohmann::ordered_json json = {{"nodes", stats.nodes},
                                        {"edges", stats.edges},
                                        {"roadmap_ms", stats.roadmap_ms},
@@ -49,7 +54,7 @@ Result<void> write_stats(const std::filesystem::path& run_dir, const PlanStats& 
                                        {"smoothing_ms", stats.smoothing_ms},
                                        {"total_ms", stats.total_ms},
                                        {"planned_mean_path_m", stats.planned_mean_path_m}};
-  return shell::write_file(run_dir / shell::kPlanStatsFile, json.dump(2) + "\n");
+  return json.dump(2) + "\n";
 }
 
 }  // namespace
@@ -68,9 +73,11 @@ struct PlannerProcess::Impl {
   std::optional<PlannerInbox> inbox;
   std::optional<RivalWatch> rivals;
   std::uint64_t beats = 0;
-  std::ofstream clock_file;
-  link::RefusalCounters reported;      // counts already announced as events
-  std::vector<std::string> unwritten;  // why files of the first plan are missing
+  shell::FileThread files;
+  std::optional<shell::AppendStream> clock_file;
+  shell::FileWatch file_watch;
+  SteadyTime next_look{};
+  link::RefusalCounters reported;  // counts already announced as events
 
   Result<void> make_keeper();
   Result<void> make_plan_writer();
@@ -83,6 +90,8 @@ struct PlannerProcess::Impl {
   void publish();
   void announce(link::Severity severity, const std::string& code, const std::string& text);
   void beat(UtcTime now);
+  void watch_files(SteadyTime now);
+  void finish_files();
 };
 
 // The epoch is the time of this call, so that the plans supersede those before.
@@ -94,19 +103,15 @@ Result<void> PlannerProcess::Impl::make_keeper() {
   return {};
 }
 
-// Writes plan and statistics to the run directory before the planner joins the bus. A file that
-// cannot be written, as on a full disk, is reported and does not keep robots waiting for the plan.
+// Queues plan and statistics for the run directory.
 Result<void> PlannerProcess::Impl::plan_first() {
-  const auto keep = [this](const Result<void>& written) {
-    if (!written) unwritten.push_back(written.error().message);
-  };
   const PlanningRecord promised{mission.planner.method,
                                 keeper->method().traits().density_cap_per_m2};
-  keep(shell::write_file(options.run_dir / shell::kPlanningFile, to_json(promised)));
+  files.keep(options.run_dir / shell::kPlanningFile, to_json(promised));
   if (auto planned = keeper->plan_first(); !planned) return planned;
   const PlanResult& planned = keeper->newest().planned;
-  keep(shell::write_file(options.run_dir / shell::kPlanFile, to_json(planned.plan)));
-  keep(write_stats(options.run_dir, planned.stats));
+  files.keep(options.run_dir / shell::kPlanFile, to_json(planned.plan));
+  files.keep(options.run_dir / shell::kPlanStatsFile, to_json(planned.stats));
   return {};
 }
 
@@ -145,10 +150,8 @@ Result<void> PlannerProcess::Impl::join(const shell::RunInfo& run) {
                         std::move(*planners)},
                 limits);
   rivals.emplace(epoch.value(), limits.planner_takeover, std::chrono::steady_clock::now());
-  clock_file.open(options.run_dir / shell::kPlanClockFile, std::ios::app);
-  for (const std::string& reason : unwritten) {
-    announce(link::Severity::kWarning, "plan-file-missing", reason);
-  }
+  clock_file.emplace(files.append_to(files::lines_of(options.run_dir / shell::kPlanClockFile),
+                                     shell::Flush::kAtOnce, kClockBytes));
   keeper->begin(std::chrono::steady_clock::now());
   return {};
 }
@@ -214,11 +217,11 @@ void PlannerProcess::Impl::keep_planned(SteadyTime now) {
   }
   if (step.publish) publish();
   if (!step.clock) return;
-  clock_file << plan_clock_line(*step.clock) << std::flush;
+  clock_file->push(plan_clock_line(*step.clock));
   beat(utc);  // robots need not wait for the next one
 }
 
-// Sends the plan, then writes it to the run directory, since the file must not delay the robots.
+// Sends the plan, then queues it for the run directory, which keeps the first and the newest ones.
 // The version of a scene is its time stamp, which gives the delay since the change.
 void PlannerProcess::Impl::publish() {
   const UtcTime now = utc_now();
@@ -242,9 +245,28 @@ void PlannerProcess::Impl::publish() {
                        stats.planned_mean_path_m, stats.total_ms,
                        scene == 0 ? "" : fmt::format(", {:.1f} ms after the change", after_ms)));
   if (version == 1 && scene == 0) return;  // kept when it was made
-  const auto kept = shell::write_file(options.run_dir / fmt::format("plan-{:04}.json", version),
-                                      to_json(newest.planned.plan, newest.planned.excess.by_m));
-  if (!kept) announce(link::Severity::kWarning, "plan-file", kept.error().message);
+  files.replace(plan_file(options.run_dir, version),
+                to_json(newest.planned.plan, newest.planned.excess.by_m));
+  if (const std::uint32_t old = outdated_plan(version)) {
+    files.remove(plan_file(options.run_dir, old));
+  }
+}
+
+void PlannerProcess::Impl::watch_files(SteadyTime now) {
+  if (now < next_look) return;
+  next_look = now + kFilesEvery;
+  if (const auto event = file_watch.step(files.health(now))) {
+    announce(event->is_warning ? link::Severity::kWarning : link::Severity::kInfo,
+             std::string(event->code), event->text);
+  }
+}
+
+void PlannerProcess::Impl::finish_files() {
+  const auto losses = files.finish();
+  for (const shell::FileLoss& loss : losses) {
+    announce(link::Severity::kWarning, std::string(shell::kRecordsLost), describe(loss));
+  }
+  if (!losses.empty()) sleep_for(kLinger);
 }
 
 void PlannerProcess::Impl::announce(link::Severity severity, const std::string& code,
@@ -284,17 +306,16 @@ Result<std::unique_ptr<PlannerProcess>> PlannerProcess::make(const ProcessOption
                                                              const PlanningRegistry& registry) {
   auto impl = std::make_unique<Impl>();
   impl->options = options;
-  const auto run = shell::read_run_info(options.run_dir);
-  if (!run) return tl::unexpected(run.error());
-  shell::follow(run->clock);
-  auto mission = load_mission(options.run_dir / shell::kMissionFile, registry.catalogue());
-  if (!mission) return tl::unexpected(mission.error());
-  impl->mission = std::move(*mission);
+  auto inputs = shell::read_run_inputs(options.run_dir, options.inputs, registry.catalogue());
+  if (!inputs) return tl::unexpected(inputs.error());
+  const shell::RunInfo& run = inputs->run;
+  shell::follow(run.clock);
+  impl->mission = std::move(inputs->mission);
   impl->registry = &registry;
-  impl->seed = run->seed;
+  impl->seed = run.seed;
   if (auto made = impl->make_keeper(); !made) return tl::unexpected(made.error());
   if (auto planned = impl->plan_first(); !planned) return tl::unexpected(planned.error());
-  if (auto joined = impl->join(*run); !joined) return tl::unexpected(joined.error());
+  if (auto joined = impl->join(run); !joined) return tl::unexpected(joined.error());
   return std::unique_ptr<PlannerProcess>(new PlannerProcess(std::move(impl)));
 }
 
@@ -310,6 +331,7 @@ Result<void> PlannerProcess::run() {
     p.watch_rivals(now);
     const bool leads = p.rivals->role() == RivalWatch::Role::kLeading && p.plan_writer;
     if (leads) p.keep_planned(now);
+    p.watch_files(now);
     if (leads && now >= next_beat) {
       p.beat(utc_now());
       next_beat = std::max(next_beat + beat_period, now);
@@ -319,6 +341,7 @@ Result<void> PlannerProcess::run() {
       break;
     sleep_for(kStep);
   }
+  p.finish_files();
   return {};
 }
 

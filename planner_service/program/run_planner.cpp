@@ -28,6 +28,8 @@ Result<std::optional<ExitCode>> read_options(int argc, char** argv,
       "planner_service");
   std::string fault;
   app.add_option("--run", options.run_dir, "Run directory made by the launcher");
+  app.add_option("--inputs", options.inputs,
+                 "Run and mission in one file; without it those of the run directory");
   app.add_option("--parent", options.parent_pid, "End when this process is no longer the parent");
   app.add_option(
       "--strength", options.ownership_strength,

@@ -8,12 +8,11 @@
 #include <string>
 
 #include "robot_agent/safety/fault_text.hpp"
+#include "swarm_core/metrics/late_ticks.hpp"
 
 namespace swarm::agent {
 namespace {
 
-// A tick that begins later than this counts as late.
-constexpr Duration kLate = std::chrono::milliseconds(20);
 /// Ticks between two recorded estimates of a neighbour, per robot.
 constexpr std::uint32_t kTicksPerEstimate = 10;
 
@@ -83,7 +82,7 @@ void RobotLoop::decide(const RobotTick& tick, const RobotParts& parts, const Mea
   has_updates_ = mode_changed || (output_.settled && !was_settled);
 
   const bool is_first = ticks_++ == 0;
-  if (tick.lateness > kLate) ++late_ticks_;
+  late_ticks_ += late_ticks(tick.lateness, tick.period);
   log_step(tick, parts.log, body.true_position_m.value_or(body.position_m));
   if (!mode_changed && !is_first) return;
   parts.log.append(

@@ -26,7 +26,7 @@ struct OfferedPlan {
 struct RobotTick {
   SteadyTime now;
   UtcTime utc_now;
-  Duration lateness{};  ///< actual minus scheduled start of this tick
+  Duration lateness{};  ///< actual start minus that of the oldest tick that was due
   Duration period{};    ///< of control
   MissionPhase phase = MissionPhase::kReady;
   bool planner_alive = false;

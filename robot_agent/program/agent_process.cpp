@@ -7,6 +7,7 @@
 #include <chrono>
 #include <ctime>
 #include <optional>
+#include <thread>
 #include <utility>
 
 #include <fmt/format.h>
@@ -14,16 +15,20 @@
 
 #include "robot_agent/loop/tick_phase.hpp"
 #include "robot_agent/program/process_loop.hpp"
-#include "swarm_core/app/run_directory.hpp"
+#include "swarm_core/app/file_thread.hpp"
+#include "swarm_core/app/run_inputs.hpp"
 #include "swarm_core/app/stop_signal.hpp"
 #include "swarm_core/base/clock.hpp"
-#include "swarmflow/mission/mission_file.hpp"
 
 namespace swarm::agent {
 namespace {
 
 /// Shorter ticks are not reported as overruns, however fast the control loop is.
 constexpr Duration kLongTick = std::chrono::milliseconds(500);
+/// Period of the look at how the files of the process can be written.
+constexpr Duration kFilesEvery = std::chrono::seconds(1);
+/// Until what a process sends last has been received; its writers end with it.
+constexpr Duration kLinger = std::chrono::milliseconds(300);
 
 /// Sleeps until `at`; false when a signal woke us early.
 bool sleep_until(SteadyTime at) {
@@ -44,6 +49,7 @@ bool parent_is_gone(std::uint32_t parent_pid) {
 struct AgentProcess::Impl {
   ProcessOptions options;
   Mission mission;
+  shell::FileThread files;  // before the loop, whose robots write to it
   std::optional<ProcessLoop> loop;
 };
 
@@ -60,14 +66,13 @@ Catalogue catalogue_of(const RobotRegistry& registry) {
 /// Joins the bus last: once others see the process, its robots are ready.
 Result<std::unique_ptr<AgentProcess>> AgentProcess::make(const ProcessOptions& options,
                                                          const RobotRegistry& registry) {
-  const auto run = shell::read_run_info(options.run_dir);
-  if (!run) return tl::unexpected(run.error());
-  shell::follow(run->clock);
-  auto mission = load_mission(options.run_dir / shell::kMissionFile, catalogue_of(registry));
-  if (!mission) return tl::unexpected(mission.error());
+  auto inputs = shell::read_run_inputs(options.run_dir, options.inputs, catalogue_of(registry));
+  if (!inputs) return tl::unexpected(inputs.error());
+  const shell::RunInfo& run = inputs->run;
+  shell::follow(run.clock);
   auto impl = std::make_unique<Impl>();
   impl->options = options;
-  impl->mission = std::move(*mission);
+  impl->mission = std::move(inputs->mission);
   const std::uint64_t end = std::uint64_t{options.first.value()} + options.count;
   if (end > impl->mission.robots.count || options.count == 0) {
     return fail(ErrorCode::kBadInput, fmt::format("--ids: the mission has robots 0 to {}",
@@ -75,14 +80,15 @@ Result<std::unique_ptr<AgentProcess>> AgentProcess::make(const ProcessOptions& o
   }
   auto world = std::make_unique<World>(impl->mission.world);
   auto robots = make_local_robots(impl->mission, *world, registry,
-                                  {.run_dir = options.run_dir,
+                                  {.files = impl->files,
+                                   .run_dir = options.run_dir,
                                    .first = options.first,
                                    .count = options.count,
-                                   .seed = run->seed,
+                                   .seed = run.seed,
                                    .now = std::chrono::steady_clock::now(),
                                    .utc_now = utc_now()});
   if (!robots) return tl::unexpected(robots.error());
-  auto bus = join_bus(options, *run, impl->mission);
+  auto bus = join_bus(options, run, impl->mission);
   if (!bus) return tl::unexpected(bus.error());
   impl->loop.emplace(impl->mission, std::move(world), std::move(*robots), std::move(*bus));
   return std::unique_ptr<AgentProcess>(new AgentProcess(std::move(impl)));
@@ -98,19 +104,29 @@ Result<void> AgentProcess::run() {
   const auto now = std::chrono::steady_clock::now();
   // Two periods after a command the body's watchdog has stopped it.
   const Duration overrun = std::max(2 * period, kLongTick);
-  SteadyTime next = now - now.time_since_epoch() % period + period + phase;
+  SteadyTime due = now - now.time_since_epoch() % period + period + phase;
+  SteadyTime next = due;
+  SteadyTime next_look = now;
   while (shell::stop_requests() == 0) {
     if (!sleep_until(next)) continue;
     const SteadyTime started = std::chrono::steady_clock::now();
-    p.loop->tick({.now = started, .utc_now = utc_now(), .lateness = started - next});
-    next += period;
-    // After an overrun of whole periods the missed ticks are skipped, not replayed in a burst.
+    p.loop->tick({.now = started, .utc_now = utc_now(), .lateness = started - due});
+    // After an overrun of whole periods the missed ticks are counted, by the lateness of the next
+    // one, and not replayed in a burst.
+    due += ((started - due) / period + 1) * period;
     const SteadyTime finished = std::chrono::steady_clock::now();
     if (finished - started > overrun) p.loop->on_overrun(utc_now(), finished - started);
-    if (finished > next) next += (finished - next) / period * period;
+    next = finished > due ? due + (finished - due) / period * period : due;
+    if (finished >= next_look) {
+      p.loop->on_files(utc_now(), p.files.health(finished));
+      next_look = finished + kFilesEvery;
+    }
     if (parent_is_gone(p.options.parent_pid)) break;
   }
   p.loop->end({.now = std::chrono::steady_clock::now(), .utc_now = utc_now()});
+  const auto losses = p.files.finish();
+  p.loop->on_losses(utc_now(), losses);
+  if (!losses.empty()) std::this_thread::sleep_for(kLinger);
   return {};
 }
 

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "robot_agent/program/local_robot.hpp"
 
+#include <cstddef>
+#include <memory>
 #include <utility>
 
 #include <fmt/format.h>
@@ -17,29 +19,31 @@ namespace {
 /// robots that would take most of the process's time: their logs are written ten records at a time.
 constexpr std::uint32_t kManyRobots = 20;
 constexpr std::uint32_t kRecordsAtOnce = 10;
+/// Of one robot: a minute and more of a disk that takes nothing. Reserved, and not used until then.
+constexpr std::size_t kWaitingBytes = 128U << 10U;
 
-/// A respawned robot starts from the last position in its log, a new one from the position that the
-/// mission places it at.
-Result<Vec2> first_position(const std::filesystem::path& log_file, const Vec2& placed_m) {
+/// A respawned robot starts from the last position in its log, a new one, and one whose log cannot
+/// be read, from the position that the mission places it at.
+Vec2 first_position(const std::filesystem::path& log_file, const Vec2& placed_m) {
   const auto last = robot_log::last_steps(log_file);
-  if (!last) return tl::unexpected(last.error());
-  return last->empty() ? placed_m : last->back().position_m;
+  return !last || last->empty() ? placed_m : last->back().position_m;
 }
 
-/// Opens the log and writes its header. Robots flush at different steps, so that a process does not
-/// write all its logs at the same tick.
-Result<LogFile> open_log(const Mission& mission, const LocalRobotsSpec& spec, RobotId robot) {
-  const auto file = robot_log::file_of(spec.run_dir, robot);
-  auto writer = spec.count < kManyRobots
-                    ? robot_log::Writer::open(file)
-                    : robot_log::Writer::open(file, kRecordsAtOnce, robot.value() % kRecordsAtOnce);
-  if (!writer) return tl::unexpected(writer.error());
-  writer->append(robot_log::Header{.robot = robot,
-                                   .robots = mission.robots.count,
-                                   .process_id = static_cast<std::uint32_t>(::getpid()),
-                                   .radius_m = body_of(mission.robots, robot).radius_m,
-                                   .stamp = spec.utc_now});
-  return LogFile(std::move(*writer));
+/// Robots fill their chunks at different steps, so that a process does not write all its logs at
+/// the same tick.
+LogFile open_log(const Mission& mission, const LocalRobotsSpec& spec, RobotId robot) {
+  const robot_log::Header header{.robot = robot,
+                                 .robots = mission.robots.count,
+                                 .process_id = static_cast<std::uint32_t>(::getpid()),
+                                 .radius_m = body_of(mission.robots, robot).radius_m,
+                                 .stamp = spec.utc_now};
+  const bool many = spec.count >= kManyRobots;
+  auto stream =
+      spec.files.append_to(robot_log::format_of(robot_log::file_of(spec.run_dir, robot), header),
+                           many ? shell::Flush::kLazily : shell::Flush::kAtOnce, kWaitingBytes);
+  return LogFile(robot_log::Writer::to(std::make_unique<QueuedChunks>(std::move(stream)), header,
+                                       many ? kRecordsAtOnce : 1,
+                                       many ? robot.value() % kRecordsAtOnce : 0));
 }
 
 /// A driver that does not start is shut down again, as it may hold a device.
@@ -78,24 +82,21 @@ Result<LocalRobots> make_local_robots(const Mission& mission, const World& world
   for (std::uint32_t i = 0; i < spec.count; ++i) {
     const RobotId id(spec.first.value() + i);
     const Vec2& placed_m = (*places)[id.value()];
-    const auto position_m = first_position(robot_log::file_of(spec.run_dir, id), placed_m);
-    if (!position_m) return tl::unexpected(position_m.error());
-    auto log = open_log(mission, spec, id);
-    if (!log) return tl::unexpected(log.error());
+    const Vec2 position_m = first_position(robot_log::file_of(spec.run_dir, id), placed_m);
     AgentIdentity self = agent_identity(mission, id);
     // A position other than the placed one means that the robot has driven before.
-    self.underway = *position_m != placed_m;
+    self.underway = position_m != placed_m;
     made.any_is_underway = made.any_is_underway || self.underway;
     auto driver = start_driver(registry.drivers, {.mission = mission,
                                                   .robot = id,
-                                                  .position_m = *position_m,
+                                                  .position_m = position_m,
                                                   .now = spec.now,
                                                   .seed = body_seed(id, spec.seed)});
     if (!driver) return tl::unexpected(driver.error());
     made.robots.push_back({.loop = RobotLoop(world, (*options_of)(id), self),
                            .driver = *std::move(driver),
                            .rng = agent_rng(id, spec.seed),
-                           .log = std::move(*log)});
+                           .log = open_log(mission, spec, id)});
   }
   return made;
 }

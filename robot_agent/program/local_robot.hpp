@@ -10,6 +10,7 @@
 #include "robot_agent/inbox.hpp"
 #include "robot_agent/loop/robot_loop.hpp"
 #include "robot_agent/program/log_file.hpp"
+#include "swarm_core/app/file_thread.hpp"
 #include "swarmflow/core/result.hpp"
 #include "swarmflow/robot/driver.hpp"
 #include "swarmflow/robot/run_robot.hpp"
@@ -27,6 +28,7 @@ struct LocalRobot {
 
 /// Which robots a process flies, and where their logs are.
 struct LocalRobotsSpec {
+  shell::FileThread& files;  ///< writes the logs
   std::filesystem::path run_dir;
   RobotId first;
   std::uint32_t count = 1;
@@ -44,8 +46,9 @@ struct LocalRobots {
 
 /// Makes robots at their positions in the mission, or at the last ones in their logs, with the
 /// control method and the drivers that the mission names, begins their logs and starts their
-/// drivers. Fails where a log cannot be opened, robots cannot be placed, the registry lacks a name,
-/// or a driver does not start. \pre the world outlives them
+/// drivers. Fails where robots cannot be placed, the registry lacks a name, or a driver does not
+/// start; a log that cannot be written or read does not keep a robot from flying. \pre the world
+/// outlives them
 Result<LocalRobots> make_local_robots(const Mission& mission, const World& world,
                                       const RobotRegistry& registry, const LocalRobotsSpec& spec);
 

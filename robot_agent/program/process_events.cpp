@@ -36,18 +36,22 @@ void ProcessEvents::record_link_stats(UtcTime utc_now, Inbox& inbox, const Histo
     }
     robot.log.append(stats);
   }
-  announce_dropped_records(utc_now);
+}
+
+void ProcessEvents::send(UtcTime utc_now, link::Severity severity, const std::string& code,
+                         const std::string& text) {
+  writer_.write({.severity = severity,
+                 .source = robots_.front().loop.id().value(),
+                 .stamp_utc_ns = utc_now.time_since_epoch().count(),
+                 .code = code,
+                 .text = text});
 }
 
 /// On the bus for the operator, and in the first robot's log for the audit, which works without a
 /// bus.
 void ProcessEvents::announce(UtcTime utc_now, link::Severity severity, const std::string& code,
                              const std::string& text) {
-  writer_.write({.severity = severity,
-                 .source = robots_.front().loop.id().value(),
-                 .stamp_utc_ns = utc_now.time_since_epoch().count(),
-                 .code = code,
-                 .text = text});
+  send(utc_now, severity, code, text);
   robots_.front().log.append(robot_log::Note{.stamp = utc_now, .code = code, .text = text});
 }
 
@@ -99,15 +103,19 @@ void ProcessEvents::announce_refusals(UtcTime utc_now, Inbox& inbox) {
   }
 }
 
-void ProcessEvents::announce_dropped_records(UtcTime utc_now) {
-  // A full disk does not stop a robot; the event is announced once.
-  const bool dropped = std::any_of(robots_.begin(), robots_.end(),
-                                   [](const LocalRobot& robot) { return robot.log.dropped() > 0; });
-  if (dropped && !records_dropped_) {
-    announce(utc_now, link::Severity::kWarning, "blackbox-dropped",
-             "the disk does not take what the robot log records; flies on without");
-  }
-  records_dropped_ = dropped;
+void ProcessEvents::on_files(UtcTime utc_now, const shell::FileHealth& health) {
+  const auto event = files_.step(health);
+  if (!event) return;
+  announce(utc_now, event->is_warning ? link::Severity::kWarning : link::Severity::kInfo,
+           std::string(event->code), event->text);
+}
+
+/// One event for all robots of the process.
+void ProcessEvents::on_losses(UtcTime utc_now, std::span<const shell::FileLoss> losses) {
+  if (losses.empty()) return;
+  std::string text = shell::describe(losses.front());
+  if (losses.size() > 1) text += fmt::format("; and {} more", losses.size() - 1);
+  send(utc_now, link::Severity::kWarning, std::string(shell::kRecordsLost), text);
 }
 
 }  // namespace swarm::agent

@@ -9,6 +9,7 @@
 
 #include "robot_agent/inbox.hpp"
 #include "robot_agent/program/local_robot.hpp"
+#include "swarm_core/app/file_watch.hpp"
 #include "swarm_core/metrics/histogram.hpp"
 #include "swarm_link/port.hpp"
 
@@ -29,21 +30,28 @@ class ProcessEvents {
   /// Reports a tick that outlasted the bodies' commands, so that they stopped.
   void on_overrun(UtcTime utc_now, Duration took);
 
+  /// Reports when writing files begins to fail, when it works again, and what was lost.
+  void on_files(UtcTime utc_now, const shell::FileHealth& health);
+
+  /// Reports what is missing in the logs at the end of the process. Nothing is logged any more.
+  void on_losses(UtcTime utc_now, std::span<const shell::FileLoss> losses);
+
   /// Records the counters now.
   void record_link_stats(UtcTime utc_now, Inbox& inbox, const Histogram& state_age);
 
  private:
+  void send(UtcTime utc_now, link::Severity severity, const std::string& code,
+            const std::string& text);
   void announce(UtcTime utc_now, link::Severity severity, const std::string& code,
                 const std::string& text);
   void announce_planner(SteadyTime now, UtcTime utc_now, const Inbox& inbox);
   void announce_faults(UtcTime utc_now);
   void announce_refusals(UtcTime utc_now, Inbox& inbox);
-  void announce_dropped_records(UtcTime utc_now);
 
   std::span<LocalRobot> robots_;
   link::Writer<link::EventMessage>& writer_;
   bool planner_was_alive_ = false;
-  bool records_dropped_ = false;    // announced already
+  shell::FileWatch files_;
   link::RefusalCounters reported_;  // announced already
   std::uint32_t skewed_reported_ = 0;
   SteadyTime stats_at_;

@@ -165,6 +165,7 @@ void ProcessLoop::end(const Time& time) {
     robot.driver->shutdown();
     robot.log.append(
         robot_log::Note{.stamp = time.utc_now, .code = "exit", .text = "graceful end"});
+    robot.log.flush();
   }
 }
 

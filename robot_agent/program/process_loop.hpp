@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "robot_agent/inbox.hpp"
@@ -13,6 +14,7 @@
 #include "robot_agent/program/plan_intake.hpp"
 #include "robot_agent/program/process_events.hpp"
 #include "robot_agent/program/status_report.hpp"
+#include "swarm_core/app/file_thread.hpp"
 #include "swarmflow/mission/mission.hpp"
 
 namespace swarm::agent {
@@ -36,15 +38,25 @@ class ProcessLoop {
   struct Time {
     SteadyTime now;
     UtcTime utc_now;
-    Duration lateness{};  ///< actual minus scheduled start
+    Duration lateness{};  ///< actual start minus that of the oldest tick that was due
   };
   void tick(const Time& time);
 
   /// Reports a tick that outlasted the bodies' commands.
   void on_overrun(UtcTime utc_now, Duration took) { events_.on_overrun(utc_now, took); }
 
+  /// Reports on the files of the process; see ProcessEvents.
+  void on_files(UtcTime utc_now, const shell::FileHealth& health) {
+    events_.on_files(utc_now, health);
+  }
+
   /// Records and reports for the last time, and shuts the drivers down.
   void end(const Time& time);
+
+  /// After end(), when nothing is written any more.
+  void on_losses(UtcTime utc_now, std::span<const shell::FileLoss> losses) {
+    events_.on_losses(utc_now, losses);
+  }
 
  private:
   void confirm_stop();

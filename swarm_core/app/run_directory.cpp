@@ -12,6 +12,11 @@
 #include <unistd.h>
 
 namespace swarm::shell {
+namespace {
+
+constexpr std::size_t kMaxRunInfoBytes = 64U << 20U;  // with the mission, see run_inputs.hpp
+
+}  // namespace
 
 // rename() within one directory is atomic, so a reader finds the old content or the new one. The
 // process id keeps two writers from sharing a temporary file.
@@ -55,7 +60,7 @@ Result<std::string> read_file(const std::filesystem::path& file, std::size_t max
 }
 
 // The key "hubs" is the file format's name of the relays.
-Result<void> write_run_info(const std::filesystem::path& run_dir, const RunInfo& info) {
+std::string to_json(const RunInfo& info) {
   const nlohmann::json json = {{"domain", info.domain},
                                {"discovery_host", info.discovery_host},
                                {"discovery_port", info.discovery_port},
@@ -70,13 +75,21 @@ Result<void> write_run_info(const std::filesystem::path& run_dir, const RunInfo&
                                {"began_utc_ns", info.began.time_since_epoch().count()},
                                {"boot_id", info.clock.boot_id},
                                {"utc_minus_steady_ns", info.clock.utc_minus_steady_ns}};
-  return write_file(run_dir / kRunFile, json.dump(2) + "\n");
+  return json.dump(2) + "\n";
+}
+
+Result<void> write_run_info(const std::filesystem::path& run_dir, const RunInfo& info) {
+  return write_file(run_dir / kRunFile, to_json(info));
+}
+
+Result<RunInfo> read_run_info(const std::filesystem::path& run_dir) {
+  return read_run_info_file(run_dir / kRunFile);
 }
 
 // Every key is required: a file that lacks one was written by another version, and its run cannot
 // be joined. An unknown channel counts as topics.
-Result<RunInfo> read_run_info(const std::filesystem::path& run_dir) {
-  const auto text = read_file(run_dir / kRunFile, 1U << 16U);
+Result<RunInfo> read_run_info_file(const std::filesystem::path& file) {
+  const auto text = read_file(file, kMaxRunInfoBytes);
   if (!text) return tl::unexpected(text.error());
   try {
     const auto json = nlohmann::json::parse(*text);
@@ -101,8 +114,8 @@ Result<RunInfo> read_run_info(const std::filesystem::path& run_dir) {
         .clock = {.boot_id = json.at("boot_id").get<std::string>(),
                   .utc_minus_steady_ns = json.at("utc_minus_steady_ns").get<std::int64_t>()}};
   } catch (const nlohmann::json::exception& e) {
-    return fail(ErrorCode::kBadInput, fmt::format("{}: not a run directory: {}",
-                                                  (run_dir / kRunFile).string(), e.what()));
+    return fail(ErrorCode::kBadInput,
+                fmt::format("{}: not a run directory: {}", file.string(), e.what()));
   }
 }
 

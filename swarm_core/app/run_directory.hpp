@@ -31,6 +31,9 @@ inline constexpr std::string_view kControlSocket = "control.sock";
 inline constexpr std::string_view kLogsFolder = "logs";
 inline constexpr std::string_view kRobotLogFolder = "blackbox";
 
+/// Plans behind the first one that a run directory keeps; the planner removes older ones.
+inline constexpr std::uint32_t kPlansKept = 100;
+
 /// How to join a run; `run.json`.
 struct RunInfo {
   std::uint32_t domain = 0;
@@ -49,10 +52,14 @@ struct RunInfo {
   RunClock clock{};  ///< of the host that this file is on
 };
 
+/// The content of `run.json`.
+std::string to_json(const RunInfo& info);
 /// Writes `run.json`, atomically.
 Result<void> write_run_info(const std::filesystem::path& run_dir, const RunInfo& info);
 /// Reads `run.json`; kBadInput if it is missing or lacks a key.
 Result<RunInfo> read_run_info(const std::filesystem::path& run_dir);
+/// Reads a file of another name with the same content.
+Result<RunInfo> read_run_info_file(const std::filesystem::path& file);
 
 /// Writes a whole file under a temporary name and renames it, so that readers never see half of it.
 Result<void> write_file(const std::filesystem::path& file, std::string_view content);

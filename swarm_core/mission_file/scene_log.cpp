@@ -18,12 +18,13 @@ std::string scene_log_line(std::uint64_t version, const SceneChange& change) {
 }
 
 // Applies the changes one by one. The last line may be cut if the launcher was killed: only lines
-// that end with a newline are read.
+// that end with a newline are read. A line that a full disk cut is followed by the whole one.
 std::vector<Scene> replay_scene_log(std::string_view text, const World& mission_world) {
   std::vector<Scene> scenes{first_scene(mission_world.obstacles().size())};
   for (std::size_t end = 0; (end = text.find('\n')) != std::string_view::npos;
        text.remove_prefix(end + 1)) {
     const auto line = nlohmann::json::parse(text.substr(0, end), nullptr, false);
+    if (line.is_discarded()) continue;
     const auto is = [&](const char* key, auto test) {
       return line.is_object() && line.contains(key) && test(line[key]);
     };

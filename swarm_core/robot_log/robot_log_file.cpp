@@ -9,12 +9,10 @@
 #include <optional>
 #include <utility>
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include "swarm_core/base/assert.hpp"
+#include "swarm_core/files/append_file.hpp"
 #include "swarm_core/robot_log/idl_text.hpp"
 #include "swarm_core/robot_log/record_codec.hpp"
 
@@ -43,21 +41,28 @@ const mcap::Bytes& preamble() {
   return kPreamble;
 }
 
-/// Removes the end that an earlier incarnation of the robot's process wrote when it finished, so
-/// that this one can append to the file.
-bool remove_end(int fd) {
-  const mcap::Bytes& end = mcap::plain_end();
-  struct stat status {};
-  if (::fstat(fd, &status) != 0 || !S_ISREG(status.st_mode)) return true;
-  const auto size = static_cast<std::size_t>(status.st_size);
-  if (size < end.size()) return true;
-  mcap::Bytes last(end.size());
-  const auto begin = static_cast<off_t>(size - end.size());
-  if (::pread(fd, last.data(), last.size(), begin) != static_cast<ssize_t>(last.size()) ||
-      last != end) {
-    return true;
+/// A file that this process appends to itself.
+class FileSink final : public ChunkSink {
+ public:
+  explicit FileSink(files::AppendFormat format) : file_(std::move(format)) {}
+  ~FileSink() override { file_.finish(disk_); }
+  FileSink(const FileSink&) = delete;
+  FileSink& operator=(const FileSink&) = delete;
+
+  int open() { return file_.open(disk_); }
+  void append(std::span<const unsigned char> chunk, std::uint32_t records) override {
+    if (file_.append(disk_, chunk) != 0) dropped_ += records;
   }
-  return ::ftruncate(fd, begin) == 0;
+  std::uint64_t dropped() const override { return dropped_; }
+
+ private:
+  files::RealDisk disk_;
+  files::AppendFile file_;
+  std::uint64_t dropped_ = 0;
+};
+
+files::AppendFormat format_without_header(std::filesystem::path file) {
+  return {.file = std::move(file), .preamble = preamble(), .end = mcap::plain_end()};
 }
 
 /// By topic and not by channel number, which differs in recordings of several robots.
@@ -93,46 +98,49 @@ void RecordEncoder::move_chunk(mcap::Bytes& out, mcap::Compression compression) 
   chunk_.clear();
 }
 
-/// O_APPEND makes every write go to the end of the file, also after another process has appended to
-/// it.
+files::AppendFormat format_of(std::filesystem::path file, const Header& header) {
+  RecordEncoder encoder;
+  encoder.add(header);
+  files::AppendFormat format = format_without_header(std::move(file));
+  encoder.move_chunk(format.begin, mcap::Compression::kNone);
+  return format;
+}
+
 Result<Writer> Writer::open(const std::filesystem::path& file, std::uint32_t at_once,
                             std::uint32_t turn) {
   SWARM_ASSERT(turn < at_once);
-  std::error_code error;
-  std::filesystem::create_directories(file.parent_path(), error);
-  const int fd = ::open(file.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
-  if (fd < 0 || !remove_end(fd)) {
+  auto sink = std::make_unique<FileSink>(format_without_header(file));
+  if (const int error = sink->open(); error != 0) {
     return fail(ErrorCode::kEnvironment, fmt::format("robot log {} cannot be opened: {}",
-                                                     file.string(), std::strerror(errno)));
+                                                     file.string(), std::strerror(error)));
   }
-  return Writer(fd, at_once, turn);
+  return Writer(std::move(sink), at_once, turn);
 }
 
-Writer::Writer(Writer&& other) noexcept { *this = std::move(other); }
+/// The header is encoded here, too, and not written: the records behind it are numbered from 1.
+Writer Writer::to(std::unique_ptr<ChunkSink> sink, const Header& header, std::uint32_t at_once,
+                  std::uint32_t turn) {
+  SWARM_ASSERT(turn < at_once);
+  Writer writer(std::move(sink), at_once, turn);
+  writer.encoder_.add(header);
+  writer.encoder_.move_chunk(writer.buffer_, mcap::Compression::kNone);
+  return writer;
+}
 
-/// Swapping leaves the old file to the other writer, whose destructor ends and closes it.
+/// The file that is replaced gets its waiting records and its end first.
 Writer& Writer::operator=(Writer&& other) noexcept {
   if (this == &other) return *this;
-  std::swap(fd_, other.fd_);
-  std::swap(at_once_, other.at_once_);
-  std::swap(until_written_, other.until_written_);
-  std::swap(dropped_, other.dropped_);
-  std::swap(encoder_, other.encoder_);
-  std::swap(buffer_, other.buffer_);
+  if (sink_) flush();
+  sink_ = std::move(other.sink_);
+  at_once_ = other.at_once_;
+  until_written_ = other.until_written_;
+  encoder_ = std::move(other.encoder_);
+  buffer_ = std::move(other.buffer_);
   return *this;
 }
 
-/// Writes the waiting records and the end. An empty file gets no end: without a beginning it could
-/// not be read.
 Writer::~Writer() {
-  if (fd_ < 0) return;
-  write();
-  struct stat status {};
-  if (::fstat(fd_, &status) == 0 && status.st_size > 0) {
-    const mcap::Bytes& end = mcap::plain_end();
-    [[maybe_unused]] const ssize_t ignored = ::write(fd_, end.data(), end.size());
-  }
-  ::close(fd_);
+  if (sink_) flush();
 }
 
 /// A counter, so that many robots of one process can spread their writes over the control steps
@@ -141,31 +149,16 @@ void Writer::append(const Record& record) {
   encoder_.add(record);
   if (--until_written_ > 0) return;
   until_written_ = at_once_;
-  write();
+  flush();
 }
 
-/// One write(2) for each chunk: a killed process leaves whole chunks, apart from the last one.
-void Writer::write() {
+/// A chunk is written in one piece: a killed process leaves whole chunks, apart from the last one.
+void Writer::flush() {
   const std::uint32_t records = encoder_.waiting();
   if (records == 0) return;
-  struct stat before {};
-  bool written = ::fstat(fd_, &before) == 0;
   buffer_.clear();
-  // An empty file gets the preamble in the same write as its first records.
-  if (before.st_size == 0) buffer_ = preamble();
   encoder_.move_chunk(buffer_, mcap::Compression::kNone);
-  if (written) {
-    ssize_t bytes = -1;
-    do {
-      bytes = ::write(fd_, buffer_.data(), buffer_.size());
-    } while (bytes < 0 && errno == EINTR);
-    written = bytes == static_cast<ssize_t>(buffer_.size());
-    // A partial record would hide the next one from a simple reader, so it is removed. If that
-    // fails too, readers resume at the next chunk.
-    if (!written && bytes > 0) [[maybe_unused]]
-      const int ignored = ::ftruncate(fd_, before.st_size);
-  }
-  if (!written) dropped_ += records;
+  sink_->append(buffer_, records);
 }
 
 Batch::Batch() : bytes_(preamble()) {}
@@ -201,16 +194,24 @@ std::optional<RobotRecord> decode(const mcap::Message& message, const mcap::Chan
 Result<Damage> read_records(const std::filesystem::path& file,
                             const std::function<void(const Record&)>& take) {
   std::uint64_t malformed = 0;
-  auto damage =
+  std::uint64_t lost = 0;
+  std::uint32_t expected = 0;
+  const auto read =
       mcap::read(file, {.message = [&](const mcap::Message& message, const mcap::Channel& channel,
                                        const mcap::Schema&) {
+                   // An incarnation begins at 0.
+                   if (message.sequence > expected) lost += message.sequence - expected;
+                   expected = message.sequence + 1;
                    if (const auto record = decode(message, channel)) {
                      take(record->record);
                    } else {
                      ++malformed;
                    }
                  }});
-  if (damage) damage->damaged += malformed;
+  if (!read) return tl::unexpected(read.error());
+  Damage damage{*read};
+  damage.damaged += malformed;
+  damage.lost = lost;
   return damage;
 }
 

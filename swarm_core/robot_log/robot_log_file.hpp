@@ -5,9 +5,13 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <optional>
+#include <span>
+#include <utility>
 #include <vector>
 
+#include "swarm_core/files/append_file.hpp"
 #include "swarm_core/robot_log/format.hpp"
 #include "swarm_core/robot_log/reader.hpp"
 #include "swarm_core/robot_log/record.hpp"
@@ -20,7 +24,7 @@ namespace swarm::robot_log {
 std::filesystem::path file_of(const std::filesystem::path& run_dir, RobotId robot);
 
 /// Encodes records as messages and collects the messages in chunks. A robot's first record is its
-/// Header.
+/// Header. Messages are numbered from 0 on, so that readers find gaps.
 class RecordEncoder {
  public:
   RecordEncoder();
@@ -38,36 +42,52 @@ class RecordEncoder {
   mcap::Bytes message_{};
 };
 
-/// Appends records to one robot's file, of which it is the only writer: an MCAP file, whose
-/// messages idl/blackbox.idl describes, every chunk with a checksum and in one write(2). A killed
-/// process therefore loses at most the records it was writing, and its file lacks an end, which
-/// readers accept. A failing disk never stops the robot: the record is dropped and counted. A
-/// respawned robot's process appends to the same file.
+/// Where a Writer puts its chunks: a file, or a queue of one.
+class ChunkSink {
+ public:
+  virtual ~ChunkSink() = default;
+  /// Takes a whole chunk or drops it.
+  virtual void append(std::span<const unsigned char> chunk, std::uint32_t records) = 0;
+  /// Number of records that were dropped.
+  virtual std::uint64_t dropped() const = 0;
+};
+
+/// The file of a robot's log, as its process appends to it: every chunk is written behind this
+/// header, in a file that may be that of an earlier incarnation, or may have to be made again.
+files::AppendFormat format_of(std::filesystem::path file, const Header& header);
+
+/// Encodes the records of one robot, chunk by chunk: MCAP, whose messages idl/blackbox.idl
+/// describes, every chunk with a checksum. A killed process loses at most the records that are not
+/// in the file yet, and its file lacks an end, which readers accept. A failing disk never stops the
+/// robot: the record is dropped and counted. A respawned robot's process appends to the same file.
 class Writer {
  public:
-  /// Creates the file and its folder if they do not exist. Writes `at_once` records at a time, the
-  /// first time `turn` records earlier. Records that are not written are lost when the process is
-  /// killed.
+  /// Writes to a file at once, in the calling thread; creates it and its folder if they do not
+  /// exist. The first record is the robot's Header. Puts `at_once` records into a chunk, the first
+  /// time `turn` records earlier. Records that are not written are lost when the process is killed.
   static Result<Writer> open(const std::filesystem::path& file, std::uint32_t at_once = 1,
                              std::uint32_t turn = 0);
-  Writer(Writer&& other) noexcept;
+  /// Hands the chunks to a sink that has the header already (format_of()).
+  static Writer to(std::unique_ptr<ChunkSink> sink, const Header& header, std::uint32_t at_once = 1,
+                   std::uint32_t turn = 0);
+  Writer(Writer&& other) noexcept = default;
   Writer& operator=(Writer&& other) noexcept;
   ~Writer();
 
-  /// Records one record; it reaches the disk with the next write. Never fails, see dropped().
+  /// Records one record; the sink gets it with the next chunk. Never fails, see dropped().
   void append(const Record& record);
-  /// Number of records that the disk refused.
-  std::uint64_t dropped() const { return dropped_; }
+  /// Number of records that the sink refused.
+  std::uint64_t dropped() const { return sink_->dropped(); }
+  /// Hands over the records of the chunk that is being filled.
+  void flush();
 
  private:
-  Writer(int fd, std::uint32_t at_once, std::uint32_t turn)
-      : fd_(fd), at_once_(at_once), until_written_(at_once - turn) {}
-  void write();
+  Writer(std::unique_ptr<ChunkSink> sink, std::uint32_t at_once, std::uint32_t turn)
+      : sink_(std::move(sink)), at_once_(at_once), until_written_(at_once - turn) {}
 
-  int fd_ = -1;
+  std::unique_ptr<ChunkSink> sink_;
   std::uint32_t at_once_ = 1;
   std::uint32_t until_written_ = 1;  // records
-  std::uint64_t dropped_ = 0;
   RecordEncoder encoder_;
   mcap::Bytes buffer_;
 };
@@ -86,7 +106,12 @@ class Batch {
   mcap::Bytes bytes_;
 };
 
-using Damage = mcap::Damage;
+/// What was wrong with a robot's log.
+struct Damage : mcap::Damage {
+  /// Records that the numbering of the messages lacks: those that the disk did not take, and those
+  /// that damage hides. An incarnation begins with number 0.
+  std::uint64_t lost = 0;
+};
 
 /// The robot-log record in a message of any recording; nothing if the message is not one.
 std::optional<RobotRecord> decode(const mcap::Message& message, const mcap::Channel& channel);

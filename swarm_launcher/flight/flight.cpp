@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "swarm_launcher/flight/flight.hpp"
 
+#include <cstddef>
 #include <cstdio>
+#include <iterator>
+#include <string_view>
 #include <thread>
 #include <utility>
 
@@ -23,6 +26,11 @@ namespace {
 constexpr Duration kFlightStep = std::chrono::milliseconds(20);
 // Logs of hundreds of robots may have gigabytes.
 constexpr Duration kLogsTimeout = std::chrono::minutes(3);
+
+constexpr std::ptrdiff_t kMostNamed = 10;  // files that lack something
+constexpr Duration kFilesEvery = std::chrono::seconds(1);
+// Thousands of events that wait for the disk.
+constexpr std::size_t kEventsBytes = 4U << 20U;
 
 SteadyTime steady_now() { return std::chrono::steady_clock::now(); }
 
@@ -61,6 +69,12 @@ std::unique_ptr<link::StopReceiver> make_stop_receiver(const PreparedRun& run) {
   return receiver ? std::move(*receiver) : nullptr;
 }
 
+LineSink to_events_file(PreparedRun& run) {
+  auto file = run.files().append_to(files::lines_of(run.dir() / shell::kEventsFile),
+                                    shell::Flush::kAtOnce, kEventsBytes);
+  return [file](std::string_view line) mutable { file.push(line); };
+}
+
 // CPU time of the launcher itself, including the discovery server.
 double own_cpu_s() {
   rusage own = {};
@@ -73,7 +87,7 @@ double own_cpu_s() {
 
 Flight::Flight(std::unique_ptr<PreparedRun> run, FlightObserver* observer)
     : run_(std::move(run)),
-      events_(run_->dir() / shell::kEventsFile),
+      events_(to_events_file(*run_)),
       log_(events_, *run_->bus().event_relay, progress_),
       requests_(std::make_unique<SocketRequests>(run_->control())),
       helpers_(run_->options().how, run_->dir()),
@@ -88,6 +102,7 @@ Flight::Flight(std::unique_ptr<PreparedRun> run, FlightObserver* observer)
                             .log = log_,
                             .display = progress_,
                             .logged_position = positions_in_logs(*run_),
+                            .inputs = run_->inputs(),
                             .hosts = run_->hosts(),
                             .observer = observer,
                             .stop = stop_ ? &*stop_ : nullptr,
@@ -139,17 +154,41 @@ void Flight::report_hosts() {
 Result<Measurements> Flight::fly() {
   for (int interrupts = 0; !loop_->is_done();) {
     for (; interrupts < shell::stop_requests(); ++interrupts) loop_->interrupt();
-    if (auto done = loop_->step({.steady = steady_now(), .utc = utc_now()}); !done) {
-      return tl::unexpected(done.error());
-    }
+    const FlightTime now{.steady = steady_now(), .utc = utc_now()};
+    if (auto done = loop_->step(now); !done) return tl::unexpected(done.error());
+    watch_files(now);
     std::this_thread::sleep_for(kFlightStep);
   }
   helpers_.finish();
   collect_robot_logs();
   Measurements measured = loop_->measurements();
+  measured.missing = finish_files();
+  progress_.flush();
   measured.cpu_s += own_cpu_s();
   measured.channel = channel();
   return measured;
+}
+
+void Flight::watch_files(const FlightTime& now) {
+  if (now.steady < next_look_) return;
+  next_look_ = now.steady + kFilesEvery;
+  if (const auto event = file_watch_.step(run_->files().health(now.steady))) {
+    log_.log(now.utc,
+             {.warning = event->is_warning, .code = std::string(event->code), .text = event->text});
+  }
+}
+
+std::vector<std::string> Flight::finish_files() {
+  std::vector<std::string> missing = log_.losses();
+  for (const shell::FileLoss& loss : run_->files().finish()) {
+    missing.push_back("launcher: " + describe(loss));
+  }
+  if (std::ssize(missing) > kMostNamed) {
+    missing.insert(missing.begin() + kMostNamed,
+                   fmt::format("{} more", std::ssize(missing) - kMostNamed));
+    missing.resize(kMostNamed + 1);
+  }
+  return missing;
 }
 
 /// Waits for the robot logs of other hosts, because the audit covers their robots, too.

@@ -7,7 +7,9 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "swarm_core/app/file_watch.hpp"
 #include "swarm_launcher/flight/flight_loop.hpp"
 #include "swarm_launcher/flight/prepared_run.hpp"
 #include "swarm_launcher/flight/run_helpers.hpp"
@@ -42,6 +44,10 @@ class Flight {
   void report_hosts();
   /// Waits for the robot logs of other hosts, a few minutes at most.
   void collect_robot_logs();
+  /// Reports, once a second, whether the files of the run can be written.
+  void watch_files(const FlightTime& now);
+  /// Writes what waits, and returns what is missing in the files of the run.
+  std::vector<std::string> finish_files();
 
   std::unique_ptr<PreparedRun> run_;
   EventLog events_;
@@ -53,6 +59,8 @@ class Flight {
   std::optional<StopOrder> stop_;
   std::unique_ptr<link::StopReceiver> stops_;
   std::optional<FlightLoop> loop_;
+  shell::FileWatch file_watch_;
+  SteadyTime next_look_{};
 };
 
 }  // namespace swarm::launcher

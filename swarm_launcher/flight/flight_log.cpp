@@ -2,7 +2,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "swarm_launcher/flight/flight_log.hpp"
 
+#include <cstddef>
+
+#include "swarm_core/app/file_watch.hpp"
+#include "swarm_link/event_names.hpp"
+
 namespace swarm::launcher {
+namespace {
+
+constexpr std::size_t kMostLosses = 100;
+
+}  // namespace
 
 void FlightLog::note(UtcTime now, link::Severity severity, const std::string& code,
                      const std::string& text) {
@@ -23,6 +33,8 @@ void FlightLog::log(UtcTime now, const LogEvent& event) {
 void FlightLog::forward(const link::EventMessage& event) {
   file_.write(event);
   relay_.write(event);
+  if (event.code != shell::kRecordsLost || losses_.size() == kMostLosses) return;
+  losses_.push_back(link::source_name(event.source) + ": " + event.text);
 }
 
 }  // namespace swarm::launcher

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "swarm_launcher/supervision/event_log.hpp"
 #include "swarm_launcher/supervision/progress.hpp"
@@ -24,10 +25,14 @@ class FlightLog {
   /// An event of a robot or the planner.
   void forward(const link::EventMessage& event);
 
+  /// What processes reported as lost from their files; the first hundred.
+  const std::vector<std::string>& losses() const { return losses_; }
+
  private:
   EventLog& file_;
   link::Writer<link::EventMessage>& relay_;
   Display& display_;
+  std::vector<std::string> losses_;
 };
 
 }  // namespace swarm::launcher

@@ -143,9 +143,12 @@ Result<void> FlightLoop::act(const Action& action, UtcTime now) {
 // follows from its index.
 Result<void> FlightLoop::start(ProcessIndex process) {
   const auto [first, count] = supervisor_.robots_of(process);
-  const ProcessCommand command = process == kPlanner
-                                     ? planner_command(options_.how, dir_, planner_starts_++)
-                                     : agent_command(options_.how, dir_, process, first, count);
+  ProcessCommand command = process == kPlanner
+                               ? planner_command(options_.how, dir_, planner_starts_++)
+                               : agent_command(options_.how, dir_, process, first, count);
+  if (!ports_.inputs.empty()) {
+    command.line.insert(command.line.end(), {"--inputs", ports_.inputs});
+  }
   const auto pid = ports_.spawner.start(command.line, command.log);
   if (!pid) return tl::unexpected(pid.error());
   children_.emplace(*pid, process);

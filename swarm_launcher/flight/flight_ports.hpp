@@ -71,6 +71,7 @@ struct FlightPorts {
   FlightLog& log;
   Display& display;
   LoggedPosition logged_position;
+  std::string inputs{};  ///< file with what processes read first; empty: run directory
   RemoteHosts* hosts = nullptr;        ///< null if all robots are on this host
   FlightObserver* observer = nullptr;  ///< null if there is none
   StopOrder* stop = nullptr;           ///< null if the interface carries no multicast

@@ -2,9 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "swarm_launcher/flight/prepared_run.hpp"
 
+#include <cstddef>
+#include <string_view>
 #include <utility>
 
 #include "swarm_core/app/run_dir.hpp"
+#include "swarm_core/app/run_inputs.hpp"
 #include "swarm_core/base/clock.hpp"
 #include "swarm_core/mission/link_faults.hpp"
 #include "swarm_link/roles/run_meeting.hpp"
@@ -12,8 +15,10 @@
 #include "swarmflow/mission/mission_file.hpp"
 
 namespace swarm::launcher {
-
 namespace {
+
+// Thousands of changes of the scene that wait for the disk.
+constexpr std::size_t kSceneBytes = 1U << 20U;
 
 /// The simulated network faults of what the launcher itself receives.
 link::ReceptionFaults own_faults(const shell::RunInfo& run, const std::string& fault) {
@@ -42,9 +47,6 @@ Result<std::unique_ptr<PreparedRun>> PreparedRun::make(FlightOptions options) {
   if (!lock) return tl::unexpected(lock.error());
   auto dir = shell::make_run_dir(o.how.out, o.mission.name);
   if (!dir) return tl::unexpected(dir.error());
-  if (auto written = shell::write_file(*dir / shell::kMissionFile, to_yaml(o.mission)); !written) {
-    return tl::unexpected(written.error());
-  }
   auto run = std::unique_ptr<PreparedRun>(
       new PreparedRun(std::move(*checked), std::move(*lock), std::move(*dir)));
   if (const auto joined = run->join(); !joined) return tl::unexpected(joined.error());
@@ -55,8 +57,7 @@ Result<std::unique_ptr<PreparedRun>> PreparedRun::make(FlightOptions options) {
   return run;
 }
 
-// The run information is written before any process starts, because processes read from it how to
-// join.
+// The inputs are written before any process starts, because processes read from them how to join.
 Result<void> PreparedRun::join() {
   const auto& [mission, per_process, how] = checked_.options;
   link::DiscoveryAddress discovery;
@@ -79,14 +80,34 @@ Result<void> PreparedRun::join() {
            .seed = how.seed,
            .began = utc_now(),
            .clock = shell::own_clock()};
-  if (auto written = shell::write_run_info(dir_, info_); !written) return written;
+  if (auto written = write_inputs(); !written) return written;
   auto participant = link::join_as_launcher(link::meeting_of(info_, own_faults(info_, how.fault)));
   if (!participant) return tl::unexpected(participant.error());
   participant_ = std::move(*participant);
   auto bus = open_launcher_bus(*participant_, link::wire_limits(mission));
   if (!bus) return tl::unexpected(bus.error());
   bus_.emplace(std::move(*bus));
-  scene_.emplace(mission.world, dir_, std::move(bus_->scenes));
+  auto log = files_.append_to(files::lines_of(dir_ / shell::kSceneFile), shell::Flush::kAtOnce,
+                              kSceneBytes);
+  scene_.emplace(
+      mission.world, [log](std::string_view line) mutable { log.push(line); },
+      std::move(bus_->scenes));
+  return {};
+}
+
+// Written here for the first time, so that a directory that cannot be written is refused; the
+// thread writes the files again if others remove them.
+Result<void> PreparedRun::write_inputs() {
+  const std::string mission = to_yaml(checked_.options.mission);
+  const std::string run = shell::to_json(info_);
+  for (const auto& [name, text] :
+       {std::pair{shell::kMissionFile, mission}, {shell::kRunFile, run}}) {
+    if (auto written = shell::write_file(dir_ / name, text); !written) return written;
+    files_.keep(dir_ / name, text);
+  }
+  auto inputs = shell::MemoryFile::make("swarmflow-inputs", shell::to_json(info_, mission));
+  if (!inputs) return tl::unexpected(inputs.error());
+  inputs_.emplace(*std::move(inputs));
   return {};
 }
 

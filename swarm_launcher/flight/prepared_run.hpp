@@ -5,8 +5,11 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "swarm_core/app/control_socket.hpp"
+#include "swarm_core/app/file_thread.hpp"
+#include "swarm_core/app/memory_file.hpp"
 #include "swarm_core/app/run_directory.hpp"
 #include "swarm_launcher/flight/launcher_bus.hpp"
 #include "swarm_launcher/flight/run_checks.hpp"
@@ -31,6 +34,10 @@ class PreparedRun {
   /// As in `run.json`.
   const shell::RunInfo& info() const { return info_; }
 
+  /// Writes the files of the run; no other thread waits for the disk.
+  shell::FileThread& files() { return files_; }
+  /// File with what planner and agents read first, see shell::read_run_inputs().
+  std::string inputs() const { return inputs_->path(); }
   LauncherBus& bus() { return *bus_; }
   SceneKeeper& scene() { return *scene_; }
   shell::ControlServer& control() { return *control_; }
@@ -39,8 +46,10 @@ class PreparedRun {
 
  private:
   PreparedRun(CheckedRun checked, link::DomainLock lock, std::filesystem::path dir);
-  /// Writes `run.json` and joins the bus.
+  /// Joins the bus.
   Result<void> join();
+  /// Writes what the processes of the run read, into the run directory and into memory.
+  Result<void> write_inputs();
   /// Listens for other hosts, if some robots are theirs.
   Result<void> open_to_hosts();
 
@@ -48,6 +57,8 @@ class PreparedRun {
   link::DomainLock lock_;
   std::filesystem::path dir_;
   shell::RunInfo info_;
+  shell::FileThread files_;
+  std::optional<shell::MemoryFile> inputs_;
   std::unique_ptr<link::DiscoveryServer> server_;  // none with static peers
   std::unique_ptr<link::Participant> participant_;
   std::optional<LauncherBus> bus_;

@@ -6,28 +6,27 @@
 
 #include <fmt/format.h>
 
-#include "swarm_core/app/run_directory.hpp"
 #include "swarm_core/mission_file/scene_log.hpp"
 #include "swarm_link/to_message.hpp"
 
 namespace swarm::launcher {
 
 // The first scene is published, too, so that every reader knows the current version.
-SceneKeeper::SceneKeeper(const World& mission_world, const std::filesystem::path& run_dir,
+SceneKeeper::SceneKeeper(const World& mission_world, LineSink log,
                          link::WriterPtr<link::SceneMessage> writer)
     : mission_world_(mission_world),
       scene_(first_scene(mission_world.obstacles().size())),
-      log_(run_dir / shell::kSceneFile, std::ios::app),
+      log_(std::move(log)),
       writer_(std::move(writer)) {
   writer_->write(link::to_message(scene_));
 }
 
-// The log is flushed at once, so that a monitor or an audit sees every published version.
+// Logged at once, so that a monitor or an audit sees every published version.
 Result<void> SceneKeeper::make(const SceneChange& change, UtcTime now) {
   auto next = after(scene_, change, mission_world_, now);
   if (!next) return tl::unexpected(next.error());
   scene_ = std::move(*next);
-  log_ << scene_log_line(scene_.version, change) << std::flush;
+  log_(scene_log_line(scene_.version, change));
   return {};
 }
 

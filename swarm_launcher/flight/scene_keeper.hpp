@@ -2,12 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <filesystem>
-#include <fstream>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "swarm_launcher/supervision/event_log.hpp"
 #include "swarm_link/port.hpp"
 #include "swarmflow/mission/scene.hpp"
 
@@ -17,9 +16,9 @@ namespace swarm::launcher {
 /// checks them, publishes the scene and logs its history.
 class SceneKeeper {
  public:
-  /// Publishes the scene of the mission file. \pre the world outlives the keeper
-  SceneKeeper(const World& mission_world, const std::filesystem::path& run_dir,
-              link::WriterPtr<link::SceneMessage> writer);
+  /// Publishes the scene of the mission file. The sink takes a line for each change. \pre the world
+  /// outlives the keeper
+  SceneKeeper(const World& mission_world, LineSink log, link::WriterPtr<link::SceneMessage> writer);
 
   /// Publishes a change and returns a description such as "obstacle 6 added".
   Result<std::string> change(const SceneChange& change, UtcTime now);
@@ -35,7 +34,7 @@ class SceneKeeper {
 
   const World& mission_world_;  ///< of the mission file
   Scene scene_;
-  std::ofstream log_;  ///< one line per change
+  LineSink log_;
   link::WriterPtr<link::SceneMessage> writer_;
 };
 

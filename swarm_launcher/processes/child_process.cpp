@@ -4,12 +4,14 @@
 
 #include <cerrno>
 #include <csignal>
-#include <cstdio>
 #include <cstring>
+#include <string>
 #include <string_view>
+#include <system_error>
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <poll.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -31,12 +33,27 @@ double seconds(const timeval& t) {
 
 void become_urgent() { ::setpriority(PRIO_PROCESS, 0, kUrgentNice); }
 
-// A child that cannot log is started all the same: a full disk must not end a flight.
+// Not on a terminal that is stopped or a full pipe, which would stop the caller.
+void warn(const std::string& text) {
+  pollfd output{.fd = STDERR_FILENO, .events = POLLOUT, .revents = 0};
+  if (::poll(&output, 1, 0) == 1 && (output.revents & POLLOUT) != 0) {
+    [[maybe_unused]] const auto written = ::write(STDERR_FILENO, text.data(), text.size());
+  }
+}
+
+// A child that cannot log is started all the same: a full disk must not end a flight. The log of a
+// child that is restarted exists: without O_CREAT a frozen file system opens it, too.
 int open_log(const std::filesystem::path& log) {
-  const int fd = ::open(log.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
+  constexpr int kHow = O_WRONLY | O_APPEND | O_CLOEXEC;
+  int fd = ::open(log.c_str(), kHow);
+  if (fd < 0 && errno == ENOENT) {
+    std::error_code error;
+    std::filesystem::create_directories(log.parent_path(), error);
+    fd = ::open(log.c_str(), kHow | O_CREAT, 0644);
+  }
   if (fd >= 0) return fd;
-  std::fprintf(stderr, "cannot open %s: %s; the process runs without a log\n", log.c_str(),
-               std::strerror(errno));
+  warn(fmt::format("cannot open {}: {}; the process runs without a log\n", log.string(),
+                   std::strerror(errno)));
   return ::open("/dev/null", O_WRONLY | O_CLOEXEC);
 }
 

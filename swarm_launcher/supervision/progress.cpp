@@ -2,17 +2,29 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "swarm_launcher/supervision/progress.hpp"
 
+#include <chrono>
 #include <cstddef>
-#include <cstdio>
 #include <cstdlib>
 #include <limits>
+#include <memory>
+#include <utility>
 
 #include <fmt/format.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
 
+#include "swarm_core/files/disk.hpp"
+
 namespace swarm::launcher {
 namespace {
+
+// Minutes of the live line on a terminal that is stopped.
+constexpr std::size_t kWaitingBytes = 256U << 10U;
+// A terminal whose user stopped the output; a pipe whose reader is slow.
+constexpr Duration kTerminalTimeout = std::chrono::seconds(1);
+constexpr Duration kPipeTimeout = std::chrono::seconds(5);
+
+Duration timeout() { return ::isatty(STDERR_FILENO) == 1 ? kTerminalTimeout : kPipeTimeout; }
 
 /// Characters of the live line: one less than the terminal is wide, since some terminals begin the
 /// next row with the last column. A terminal that does not know its width has no limit.
@@ -35,36 +47,34 @@ std::string first_of(const std::string& text, std::size_t characters) {
 }  // namespace
 
 // Control sequences are written to terminals only, and not if the user set NO_COLOR.
-Progress::Progress() : live_(::isatty(STDERR_FILENO) == 1 && std::getenv("NO_COLOR") == nullptr) {}
+Progress::Progress()
+    : live_(::isatty(STDERR_FILENO) == 1 && std::getenv("NO_COLOR") == nullptr),
+      thread_(std::make_unique<files::StreamDisk>(STDERR_FILENO)),
+      out_(thread_.append_to({.file = "stderr"}, shell::Flush::kAtOnce, kWaitingBytes)) {}
 
 Progress::~Progress() {
-  if (shown_) std::fputc('\n', stderr);
+  if (shown_) out_.push("\n");
+  thread_.finish(timeout());
 }
 
+void Progress::flush() { thread_.flush(timeout()); }
+
 // Carriage return, then "erase to the end of the line".
-void Progress::clear() {
-  if (shown_) std::fputs("\r\033[K", stderr);
-  shown_ = false;
-}
+std::string Progress::clear() { return std::exchange(shown_, false) ? "\r\033[K" : ""; }
 
 // A line that is wrapped could not be rewritten: only its last row would be erased. Without a
 // terminal only changes of the headline are printed, so that logs stay short.
 void Progress::show(const std::string& headline, const std::string& details) {
   if (live_) {
-    clear();
-    std::fputs(first_of(headline + "  " + details, room()).c_str(), stderr);
-    std::fflush(stderr);
+    out_.push(clear() + first_of(headline + "  " + details, room()));
     shown_ = true;
   } else if (headline != headline_) {
-    std::fprintf(stderr, "%s\n", headline.c_str());
+    out_.push(headline + "\n");
   }
   headline_ = headline;
 }
 
-void Progress::print(const std::string& line) {
-  clear();
-  std::fprintf(stderr, "%s\n", line.c_str());
-}
+void Progress::print(const std::string& line) { out_.push(clear() + line + "\n"); }
 
 std::string headline_of(const Supervisor& supervisor) {
   switch (supervisor.stage()) {

@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "swarm_core/app/file_thread.hpp"
 #include "swarm_launcher/supervision/supervisor.hpp"
 
 namespace swarm::launcher {
@@ -19,10 +20,12 @@ class Display {
 
 /// One live line on a terminal, rewritten in place and cut to the terminal's width. Without a
 /// terminal (or with NO_COLOR set) each change of `headline` is printed as a line and the details
-/// are omitted. Writes to stderr.
+/// are omitted. A thread writes to stderr: a terminal that is stopped (Ctrl-S), or a pipe that no
+/// one reads, delays the caller in nothing but the destructor and flush().
 class Progress final : public Display {
  public:
   Progress();
+  /// Waits for the output as flush() does.
   ~Progress() override;
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
@@ -30,11 +33,17 @@ class Progress final : public Display {
   void show(const std::string& headline, const std::string& details) override;
   /// Prints a message above the live line.
   void print(const std::string& line) override;
+  /// Waits until everything is written, but for a terminal that takes nothing for a second, or a
+  /// pipe that takes nothing for five.
+  void flush();
 
  private:
-  void clear();
+  /// What removes the live line, if there is one.
+  std::string clear();
   bool live_;
   bool shown_ = false;
+  shell::FileThread thread_;
+  shell::AppendStream out_;
   std::string headline_;
 };
 

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <string>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
@@ -56,8 +58,11 @@ PlansExcess plans_excess(const std::filesystem::path& run_dir) {
 /// The summary of a run that ended before any robot made a step: it has all keys, so that readers
 /// of summaries need no special case.
 Json empty_summary(const Json& own, const std::string& why) {
-  Json summary = {
-      {"outcome", nullptr}, {"reasons", {why}}, {"arrived", 0}, {"lost", Json::array()}};
+  Json summary = {{"outcome", nullptr},
+                  {"reasons", {why}},
+                  {"missing", Json::array()},
+                  {"arrived", 0},
+                  {"lost", Json::array()}};
   for (const char* key : {"robots",           "processes",           "arrived_per_goal",
                           "collisions_robot", "collisions_obstacle", "collisions_fallen",
                           "min_robot_gap_m",  "min_obstacle_gap_m",  "mean_path_m",
@@ -91,23 +96,24 @@ std::string write_report(const std::filesystem::path& run_dir,
   return written ? (run_dir / "report.html").string() : "none: " + written.error().message;
 }
 
-}  // namespace
-
-// Writes the launcher's part of summary.json first, since the audit reads it and merges it into its
-// own result; then completes and writes the summary again.
-Result<ExitCode> summarise(const std::filesystem::path& run_dir, const Measurements& measured,
-                           bool json) {
-  const Json own = {
-      {"plan_ms", measured.plan_ms ? Json(*measured.plan_ms) : plan_ms(run_dir)},
-      {"discovery_s", measured.discovery_s < 0.0 ? Json() : Json(measured.discovery_s)},
-      {"cpu_s", measured.cpu_s},
-      {"max_rss_mb", measured.max_rss_mb}};
-  if (auto w = shell::write_file(run_dir / shell::kSummaryFile, own.dump(2) + "\n"); !w) {
-    return tl::unexpected(w.error());
+void add_missing(monitor::Audit& audit, const std::vector<std::string>& texts) {
+  for (const std::string& text : texts) {
+    audit.missing.push_back(text);
+    audit.reasons.push_back("missing: " + text);
   }
-  const auto audited = monitor::audit_run_fully(run_dir);  // carries over what was just written
-  Json summary = audited ? Json::parse(monitor::to_json(audited->audit))
-                         : empty_summary(own, audited.error().message);
+}
+
+/// The launcher's part of the summary, which the audit reads and merges into its own result.
+Json own_part(const std::filesystem::path& run_dir, const Measurements& measured) {
+  return {{"plan_ms", measured.plan_ms ? Json(*measured.plan_ms) : plan_ms(run_dir)},
+          {"discovery_s", measured.discovery_s < 0.0 ? Json() : Json(measured.discovery_s)},
+          {"cpu_s", measured.cpu_s},
+          {"max_rss_mb", measured.max_rss_mb},
+          {"missing", measured.missing}};
+}
+
+/// Adds what only the launcher knows to the audit's result.
+void complete(Json& summary, const Measurements& measured, const PlansExcess& excess) {
   if (measured.outcome != Outcome::kCompleted) summary["outcome"] = to_string(measured.outcome);
   summary["channel"] = measured.channel ? to_string(*measured.channel) : "lock-step";
   if (measured.wall_s) summary["wall_s"] = *measured.wall_s;
@@ -115,33 +121,57 @@ Result<ExitCode> summarise(const std::filesystem::path& run_dir, const Measureme
   summary["hearing_s"] =
       measured.neighbour_discovery_s < 0.0 ? Json() : Json(measured.neighbour_discovery_s);
   summary["refused_by_launcher"] = measured.refused_by_launcher;
-  const PlansExcess excess = plans_excess(run_dir);
   summary["plan_excess_m"] = excess.largest_m;
   summary["plans"] = excess.plans;
   summary["plans_with_excess"] = excess.broken;
-  const std::string text = summary.dump(2) + "\n";
-  if (auto w = shell::write_file(run_dir / shell::kSummaryFile, text); !w) {
-    return tl::unexpected(w.error());
+}
+
+void print_text(const Result<monitor::AuditedRun>& audited, const Measurements& measured,
+                const PlansExcess& excess, const std::string& report) {
+  std::fputs((audited ? monitor::to_text(audited->audit) : audited.error().message + "\n").c_str(),
+             stdout);
+  if (measured.wall_s) {
+    std::printf("wall time        %.2f s, %.0f ns per agent and step\n", *measured.wall_s,
+                *measured.ns_per_agent_step);
   }
+  if (excess.broken > 0) {
+    std::printf("risk limit       broken by %zu of %zu plans, by up to %.2f m\n", excess.broken,
+                excess.plans, excess.largest_m);
+  }
+  if (!audited) {  // otherwise they are among the reasons
+    for (const std::string& text : measured.missing)
+      std::printf("missing          %s\n", text.c_str());
+  }
+  std::printf("mission          %s\nreport           %s\n",
+              std::string(to_string(measured.outcome)).c_str(), report.c_str());
+}
+
+}  // namespace
+
+// The launcher's part is handed to the audit by the file, or, on a full disk, not at all: then what
+// is missing is added here.
+Result<ExitCode> summarise(const std::filesystem::path& run_dir, const Measurements& measured,
+                           bool json) {
+  const std::filesystem::path file = run_dir / shell::kSummaryFile;
+  const auto own = shell::write_file(file, own_part(run_dir, measured).dump(2) + "\n");
+  auto audited = monitor::audit_run_fully(run_dir);
+  if (audited && !own) add_missing(audited->audit, measured.missing);
+  if (audited && !own) add_missing(audited->audit, {own.error().message});
+  Json summary = audited ? Json::parse(monitor::to_json(audited->audit))
+                         : empty_summary(own_part(run_dir, measured), audited.error().message);
+  const PlansExcess excess = plans_excess(run_dir);
+  complete(summary, measured, excess);
+  const std::string text = summary.dump(2) + "\n";
+  const auto written = own ? shell::write_file(file, text) : own;
   const std::string report = write_report(run_dir, audited);
   if (json) {
     std::fputs(text.c_str(), stdout);
   } else {
-    std::fputs(
-        (audited ? monitor::to_text(audited->audit) : audited.error().message + "\n").c_str(),
-        stdout);
-    if (measured.wall_s) {
-      std::printf("wall time        %.2f s, %.0f ns per agent and step\n", *measured.wall_s,
-                  *measured.ns_per_agent_step);
-    }
-    if (excess.broken > 0) {
-      std::printf("risk limit       broken by %zu of %zu plans, by up to %.2f m\n", excess.broken,
-                  excess.plans, excess.largest_m);
-    }
-    std::printf("mission          %s\nreport           %s\n",
-                std::string(to_string(measured.outcome)).c_str(), report.c_str());
+    print_text(audited, measured, excess, report);
   }
-  return exit_code_of(measured.outcome, audited && audited->audit.ok());
+  if (!written) std::fprintf(stderr, "%s\n", written.error().message.c_str());
+  const bool complete_and_ok = audited && audited->audit.ok() && written.has_value();
+  return exit_code_of(measured.outcome, complete_and_ok);
 }
 
 }  // namespace swarm::launcher

@@ -13,6 +13,7 @@
 
 #include "swarm_core/metrics/geodesic_bound.hpp"
 #include "swarm_core/mission/goal_room.hpp"
+#include "swarm_monitor/audit/evidence.hpp"
 #include "swarm_monitor/audit/fallen_bodies.hpp"
 #include "swarm_monitor/audit/quantile.hpp"
 #include "swarm_monitor/audit/tracking/criteria.hpp"
@@ -154,8 +155,8 @@ void count_robots(const RecordedRun& run, Audit& audit) {
     if (robot.stop_ms) stop_ms.push_back(*robot.stop_ms);
     audit.by_robot.push_back(robot);
     processes.insert(track.processes.begin(), track.processes.end());
-    steps += track.points.size();
-    late += track.late_steps;
+    steps += track.points.size() + track.missed_ticks;
+    late += track.late_ticks;
     states_sent += track.states_sent;
     // The time that a robot was recorded, so that the rate is per robot and independent of the
     // length of the run.
@@ -236,6 +237,13 @@ std::string number_of_pairs(std::uint32_t count) {
 
 /// Collects the reasons why the run fails, one line each; without any the outcome is "ok".
 void judge(const AuditedRun& audited, Audit& audit) {
+  constexpr std::size_t kMostNamed = 10;
+  for (std::size_t i = 0; i < std::min(audit.missing.size(), kMostNamed); ++i) {
+    audit.reasons.push_back("missing: " + audit.missing[i]);
+  }
+  if (audit.missing.size() > kMostNamed) {
+    audit.reasons.push_back(fmt::format("missing: {} more", audit.missing.size() - kMostNamed));
+  }
   if (!audit.lost.empty()) {
     std::vector<std::string> ids;
     for (const RobotId id : audit.lost) ids.push_back(fmt::format("{}", id.value()));
@@ -341,6 +349,7 @@ AuditedRun audit_recorded(RecordedRun recorded) {
   };
   audit.min_robot_gap_m = known(audited.robots.nearest.gap_m);
   audit.min_obstacle_gap_m = known(audited.obstacles.nearest.gap_m);
+  audit.missing = missing_evidence(run);
   judge(audited, audit);
   return audited;
 }

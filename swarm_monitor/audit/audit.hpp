@@ -45,6 +45,7 @@ struct RobotAudit {
 /// What a run achieved, computed from its mission and robot logs alone.
 struct Audit {
   std::vector<std::string> reasons;  ///< why the outcome is not "ok"; empty if it is
+  std::vector<std::string> missing;  ///< evidence that the run lacks; each is a reason, too
   std::uint32_t robots = 0;
   std::uint32_t processes = 0;  ///< distinct process ids
   std::uint32_t arrived = 0;
@@ -63,7 +64,7 @@ struct Audit {
   std::optional<EstimateError> estimate;
   std::optional<double> states_hz;   ///< published by a robot, mean over the run
   std::optional<StopLatency> stop;   ///< empty if no robot was stopped
-  double deadline_miss_ratio = 0.0;  ///< share of control steps that began over 20 ms late
+  double deadline_miss_ratio = 0.0;  ///< share of ticks that were missed or began over 20 ms late
   std::uint64_t refused_messages = 0;
   std::uint32_t outside_bounds = 0;  ///< robots that ever left the world's rectangle
   std::uint64_t damaged_records = 0;

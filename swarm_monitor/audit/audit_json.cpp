@@ -49,6 +49,7 @@ std::string to_json(const Audit& audit) {
   }
   const Json json = {{"outcome", audit.ok() ? "ok" : "criteria_not_met"},
                      {"reasons", audit.reasons},
+                     {"missing", audit.missing},
                      {"robots", audit.robots},
                      {"processes", audit.processes},
                      {"arrived", audit.arrived},

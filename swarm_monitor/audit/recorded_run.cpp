@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <chrono>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -17,6 +18,7 @@
 #include <nlohmann/json.hpp>
 
 #include "swarm_core/app/run_directory.hpp"
+#include "swarm_core/metrics/late_ticks.hpp"
 #include "swarm_core/mission_file/scene_log.hpp"
 #include "swarm_core/plan/plan_json.hpp"
 #include "swarm_core/robot_log/reader.hpp"
@@ -81,7 +83,11 @@ void TrackMaker::take(const robot_log::Header& header) {
 /// One control step. A step that does not ascend in time (a clock that was set back) counts as
 /// damage: interpolation needs strictly ascending times.
 void TrackMaker::take(const robot_log::Step& step) {
-  if (step.lateness_us > Track::kLate_us) ++track_.late_steps;
+  const Duration lateness = std::chrono::microseconds(step.lateness_us);
+  track_.late_ticks += late_ticks(lateness, period_);
+  if (period_ > Duration::zero() && lateness >= period_) {
+    track_.missed_ticks += static_cast<std::uint64_t>(lateness / period_);
+  }
   const double time_s = to_seconds(step.stamp - origin_);
   if (!track_.points.empty() && time_s <= track_.points.back().time_s) {
     ++track_.damaged;
@@ -180,7 +186,8 @@ std::vector<PublishedPlan> read_plans(const Texts& texts) {
 /// which is too coarse for differences of nanosecond stamps.
 class TrackTable {
  public:
-  explicit TrackTable(std::uint32_t robots) : makers_(robots) {}
+  explicit TrackTable(const Mission& mission)
+      : period_(from_seconds(1.0 / mission.control.rate_hz)), makers_(mission.robots.count) {}
 
   // Records of robots that the mission does not have are ignored: a directory may hold logs of an
   // earlier, larger run.
@@ -188,7 +195,7 @@ class TrackTable {
     if (robot.value() >= makers_.size()) return;
     if (!origin_) origin_ = robot_log::stamp_of(record);
     auto& maker = makers_[robot.value()];
-    if (!maker) maker.emplace(robot, *origin_);
+    if (!maker) maker.emplace(robot, *origin_, period_);
     maker->add(record);
   }
 
@@ -218,6 +225,7 @@ class TrackTable {
   }
 
  private:
+  Duration period_;
   std::vector<std::optional<TrackMaker>> makers_;
   std::optional<UtcTime> origin_;
 };
@@ -274,7 +282,7 @@ Result<RecordedRun> read_directory(const std::filesystem::path& run_dir) {
   }
   auto run = with_mission(text_of(texts, shell::kMissionFile), run_dir);
   if (!run) return run;
-  TrackTable tracks(run->mission.robots.count);
+  TrackTable tracks(run->mission);
   std::vector<Result<robot_log::Damage>> damages;
   for (std::uint32_t i = 0; i < run->mission.robots.count; ++i) {
     damages.push_back(
@@ -286,6 +294,7 @@ Result<RecordedRun> read_directory(const std::filesystem::path& run_dir) {
   for (std::size_t i = 0; i < damages.size(); ++i) {
     if (damages[i]) {
       run->tracks[i].damaged += damages[i]->damaged;
+      run->tracks[i].lost = damages[i]->lost;
     } else {
       run->tracks[i].unreadable = damages[i].error().message;
     }
@@ -313,7 +322,7 @@ Result<RecordedRun> read_recording(const std::filesystem::path& file) {
              texts[attachment.name] = attachment.data;
              if (attachment.name != shell::kMissionFile || run) return;
              run = with_mission(attachment.data, file);
-             if (*run) tracks.emplace((*run)->mission.robots.count);
+             if (*run) tracks.emplace((*run)->mission);
            }});
   if (!damage) return tl::unexpected(damage.error());
   if (!run) {

@@ -53,14 +53,13 @@ struct Track {
   double body_until_s = 0.0;
   std::string unreadable{};       ///< why there is no robot log; empty if there is one
   std::uint64_t damaged = 0;      ///< unreadable stretches of the file, and steps back in time
-  std::uint64_t late_steps = 0;   ///< later than kLate_us
+  std::uint64_t lost = 0;         ///< records that the numbering of the log lacks
+  std::uint64_t late_ticks = 0;   ///< that began late, and that were missed
+  std::uint64_t missed_ticks = 0;  ///< that have no step
   std::uint64_t refused = 0;      ///< messages, over all incarnations
   Histogram state_age{};          ///< over all incarnations
   std::uint64_t states_sent = 0;  ///< over all incarnations
   std::vector<robot_log::Note> notes{};
-
-  /// A step that begins later than this counts as a missed deadline [µs].
-  static constexpr std::int32_t kLate_us = 20'000;
 };
 
 /// A line of events.jsonl.
@@ -105,7 +104,11 @@ Result<RecordedRun> read_run(const std::filesystem::path& from);
 /// Builds a track from the records of one robot log, with times since `origin` [s].
 class TrackMaker {
  public:
-  TrackMaker(RobotId robot, UtcTime origin) : origin_(origin) { track_.robot = robot; }
+  /// `period`: of control; 0: missed ticks are not counted.
+  TrackMaker(RobotId robot, UtcTime origin, Duration period = {})
+      : origin_(origin), period_(period) {
+    track_.robot = robot;
+  }
 
   void add(const robot_log::Record& record);
   void take(const robot_log::Header& header);
@@ -120,6 +123,7 @@ class TrackMaker {
   void close_incarnation();
 
   UtcTime origin_;
+  Duration period_;
   Track track_{};
   robot_log::LinkStats incarnation_{};  // newest counters of the current incarnation
 };

@@ -118,7 +118,7 @@ void add_figures(Page& page, const Audit& audit) {
   add_figure(page, number(estimate(&EstimateError::p99_cm), 1, "cm"),
              "error of estimated neighbours, 99 %");
   add_figure(page, fmt::format("{:.3f} %", 100.0 * audit.deadline_miss_ratio),
-             "control steps over 20 ms late");
+             "ticks missed or over 20 ms late");
   add_figure(page, fmt::format("{}", audit.refused_messages), "messages refused");
   add_figure(page, number(audit.cpu_s, 1, "s"), "CPU time of all processes");
   add_figure(page, number(audit.max_rss_mb, 1, "MB"), "memory of the largest process");
@@ -168,13 +168,19 @@ void add_losses(Page& page, const AuditedRun& audited) {
   std::vector<std::string> rows;
   for (std::size_t i = 0; i < audited.run.tracks.size(); ++i) {
     const Track& track = audited.run.tracks[i];
-    if (!audited.audit.by_robot[i].lost && track.damaged == 0) continue;
+    if (!audited.audit.by_robot[i].lost && track.damaged == 0 && track.lost == 0) {
+      continue;
+    }
     std::string why = !track.unreadable.empty() ? escape_xml(track.unreadable)
                       : !track.ended_gracefully ? "its process ended without logging its exit"
                                                 : "";
     if (track.damaged > 0) {
       why += fmt::format("{}{} damaged places in its robot log", why.empty() ? "" : "; ",
                          track.damaged);
+    }
+    if (track.lost > 0) {
+      why +=
+          fmt::format("{}{} records missing in its robot log", why.empty() ? "" : "; ", track.lost);
     }
     if (!track.notes.empty()) {
       why += fmt::format("; last note: {} {}", escape_xml(track.notes.back().code),
@@ -229,7 +235,7 @@ void add_robots(Page& page, const AuditedRun& audited) {
              gap_cell(audited.obstacles.by_robot_m[i]));
     const double steps = static_cast<double>(std::max<std::size_t>(1, track.points.size()));
     page.add("<td>{:.2f}</td><td>{}</td><td>{}</td></tr>\n",
-             100.0 * static_cast<double>(track.late_steps) / steps, track.refused,
+             100.0 * static_cast<double>(track.late_ticks) / steps, track.refused,
              track.processes.size());
   }
   page.add("</tbody></table></div>\n");

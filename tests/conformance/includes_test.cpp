@@ -160,8 +160,10 @@ TEST(Includes, OfTheCoreKnowTheirRingAndThoseBefore) {
   for (const std::string& ring : std::vector<std::string>(rings)) {
     expect_knows_only(ring.substr(0, ring.size() - 1), rings);
   }
-  expect_knows_only("swarm_core/robot_log", {"swarm_core/robot_log/", "swarm_core/base/",
-                                             "swarm_core/metrics/", "swarm_core/plan/"});
+  expect_knows_only("swarm_core/files", {"swarm_core/files/"});
+  expect_knows_only("swarm_core/robot_log",
+                    {"swarm_core/robot_log/", "swarm_core/base/", "swarm_core/files/",
+                     "swarm_core/metrics/", "swarm_core/plan/"});
   rings.push_back("swarm_core/mission/");
   expect_knows_only("swarm_core/mission", rings);
   rings.push_back("swarm_core/mission_file/");

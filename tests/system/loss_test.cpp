@@ -117,7 +117,7 @@ TEST(Loss, ARestartedPlannerLeadsAlsoWithoutWritingItsFiles) {
   ASSERT_EQ(run.planners().size(), 1U);
   ::kill(run.planners().front(), SIGKILL);
 
-  EXPECT_TRUE(eventually([&] { return has_event(run.dir(), "plan-file-missing"); }));
+  EXPECT_TRUE(eventually([&] { return has_event(run.dir(), "disk-fails"); }));
   std::filesystem::remove_all(plan);
   std::filesystem::rename(saved, plan);
   EXPECT_EQ(run.launcher().wait(), 0) << run.launcher().err();

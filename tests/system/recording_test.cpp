@@ -133,7 +133,7 @@ TEST(Recording, OnAFullDiskDoesNotTroubleTheFlight) {
   // The robot logs lack the end of the flight, so the audit counts robots as lost; they flew to the
   // end nevertheless.
   const std::string events = read_text(run->dir() / "events.jsonl");
-  EXPECT_NE(events.find("blackbox-dropped"), std::string::npos);
+  EXPECT_NE(events.find("disk-fails"), std::string::npos);
   EXPECT_EQ(events.find("agent-exit"), std::string::npos);
   EXPECT_GT(steps_in_logs(run->dir()), 12U);
   auto bus = messages_of(run->dir() / "bus.mcap");

@@ -115,6 +115,16 @@ TEST_F(LoneRobot, CountsLateTicks) {
   EXPECT_EQ(log_.steps[1].lateness_us, 21'000);
 }
 
+// As after a stall of 8 s in a tick, and of 0.25 s before one.
+TEST_F(LoneRobot, CountsEveryPeriodThatItMissed) {
+  tick();
+  tick(80 * kPeriod);
+  EXPECT_EQ(loop_.status().late_ticks, 80U);
+  tick(std::chrono::milliseconds(250));
+  EXPECT_EQ(loop_.status().late_ticks, 83U);
+  EXPECT_EQ(loop_.status().ticks, 3U);
+}
+
 TEST_F(LoneRobot, RecordsWhereItsBodyStoppedWhenTicksFailedToCome) {
   body_.command(now_, {1.0, 0.0}, 2 * kPeriod);
   now_ += 9 * kPeriod;

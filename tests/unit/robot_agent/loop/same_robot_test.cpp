@@ -114,8 +114,10 @@ void fly(const Mission& mission, const FlownTwice& flown) {
   SteadyTime now{std::chrono::seconds(77)};
   UtcTime utc_now = launcher::Simulation::begin_utc();
   auto world = std::make_unique<World>(mission.world);
+  shell::FileThread files;
   auto robots = make_local_robots(mission, *world, builtin_robots(),
-                                  {.run_dir = flown.processed.path,
+                                  {.files = files,
+                                   .run_dir = flown.processed.path,
                                    .first = RobotId(0),
                                    .count = kRobots,
                                    .seed = kSeed,
@@ -134,6 +136,7 @@ void fly(const Mission& mission, const FlownTwice& flown) {
     now += kPeriod;
     utc_now += kPeriod;
   }
+  EXPECT_TRUE(files.finish().empty());
   const auto written = recording.write(flown.simulated.path);
   ASSERT_TRUE(written.has_value()) << written.error().message;
 }

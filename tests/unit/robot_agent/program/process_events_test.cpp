@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "robot_agent/program/process_events.hpp"
 
+#include <cerrno>
 #include <string>
 #include <variant>
 #include <vector>
@@ -110,6 +111,35 @@ TEST_F(ProcessEventsTest, NameTheRobotsThatATickOverrunStopped) {
   EXPECT_EQ(writer_.written[0].text,
             "robots 0 to 2: a tick took 1.3 s; their commands ran out, so their bodies stopped "
             "meanwhile");
+}
+
+TEST_F(ProcessEventsTest, AnnounceTheBeginAndTheEndOfADiskFault) {
+  events_.on_files(utc(), {});
+  events_.on_files(utc(), {.failing = 1, .first = "robot-00000.mcap", .error = ENOSPC});
+  events_.on_files(utc(), {.failing = 1, .first = "robot-00000.mcap", .error = ENOSPC});
+  events_.on_files(utc(), {});
+
+  ASSERT_EQ(writer_.written.size(), 2U);
+  EXPECT_EQ(writer_.written[0].code, "disk-fails");
+  EXPECT_EQ(writer_.written[0].severity, link::Severity::kWarning);
+  EXPECT_EQ(writer_.written[1].code, "disk-works");
+  EXPECT_EQ(writer_.written[1].severity, link::Severity::kInfo);
+}
+
+// The log takes nothing any more: on the bus alone.
+TEST_F(ProcessEventsTest, SendWhatIsMissingAtTheEnd) {
+  events_.on_losses(utc(), {});
+  EXPECT_TRUE(writer_.written.empty());
+  const std::vector<shell::FileLoss> losses = {
+      {.file = "/run/robot-00000.mcap", .records = 7, .error = ENOSPC},
+      {.file = "/run/robot-00001.mcap", .records = 8}};
+  events_.on_losses(utc(), losses);
+
+  ASSERT_EQ(writer_.written.size(), 1U);
+  EXPECT_EQ(writer_.written[0].code, "records-lost");
+  EXPECT_EQ(writer_.written[0].text,
+            "robot-00000.mcap: 7 records (No space left on device); and 1 more");
+  EXPECT_TRUE(logged<robot_log::Note>(0).empty());
 }
 
 // Each robot has its own counters once a second; those of the process are in the first log alone.

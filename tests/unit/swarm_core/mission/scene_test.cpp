@@ -237,12 +237,23 @@ TEST(SceneBodies, AreAtMostAsManyAsTheSceneHolds) {
   EXPECT_NE(one_more.error().message.find("256"), std::string::npos);
 }
 
+// A full disk took a part of a line, and later the whole one.
+TEST(SceneLog, LeavesOutALineThatIsCut) {
+  const std::string first = scene_log_line(5, SetRisk{0.3}),
+                    second = scene_log_line(6, SetRisk{0.4});
+  for (std::size_t size = 1; size + 1 < second.size(); ++size) {
+    const auto scenes =
+        replay_scene_log(first + second.substr(0, size) + "\n" + second, mission_world());
+    ASSERT_EQ(scenes.size(), 3U) << size;
+    EXPECT_EQ(scenes.back().version, 6U);
+  }
+}
+
 TEST(SceneLog, EndsWhereALineIsDamaged) {
   const std::string good = scene_log_line(5, SetRisk{0.3});
-  for (const char* bad :
-       {"{\n", "[1, 2]\n", "{\"utc_ns\": -3, \"action\": \"risk\", \"keys\": \"\"}\n",
-        "{\"utc_ns\": 6, \"action\": \"jump\", \"keys\": \"\"}\n",
-        "{\"utc_ns\": 6, \"action\": \"risk\", \"keys\": 7}\n"}) {
+  for (const char* bad : {"[1, 2]\n", "{\"utc_ns\": -3, \"action\": \"risk\", \"keys\": \"\"}\n",
+                          "{\"utc_ns\": 6, \"action\": \"jump\", \"keys\": \"\"}\n",
+                          "{\"utc_ns\": 6, \"action\": \"risk\", \"keys\": 7}\n"}) {
     EXPECT_EQ(replay_scene_log(good + bad + good, mission_world()).size(), 2U) << bad;
   }
 }

@@ -2,17 +2,23 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "swarm_core/robot_log/robot_log_file.hpp"
 
+#include <algorithm>
 #include <csignal>
 #include <fstream>
 #include <iterator>
 #include <limits>
+#include <memory>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "swarm_core/files/append_file.hpp"
+#include "swarm_core/files/disk.hpp"
 #include "swarmflow/core/random.hpp"
 
 namespace swarm::robot_log {
@@ -307,6 +313,61 @@ TEST_F(RobotLogFile, ReportsWhyItCannotBeOpened) {
   ASSERT_FALSE(writer.has_value());
   EXPECT_EQ(writer.error().code, ErrorCode::kEnvironment);
   EXPECT_NE(writer.error().message.find("/dev/null/robot.mcap"), std::string::npos);
+}
+
+/// Keeps the chunks that a test wants, and drops the others.
+class PickySink final : public ChunkSink {
+ public:
+  PickySink(std::vector<mcap::Bytes>& kept, std::vector<int> drops)
+      : kept_(kept), drops_(std::move(drops)) {}
+  void append(std::span<const unsigned char> chunk, std::uint32_t records) override {
+    if (std::find(drops_.begin(), drops_.end(), number_++) != drops_.end()) {
+      dropped_ += records;
+    } else {
+      kept_.emplace_back(chunk.begin(), chunk.end());
+    }
+  }
+  std::uint64_t dropped() const override { return dropped_; }
+
+ private:
+  std::vector<mcap::Bytes>& kept_;
+  std::vector<int> drops_;
+  int number_ = 0;
+  std::uint64_t dropped_ = 0;
+};
+
+TEST_F(RobotLogFile, NumbersRecordsSoThatReadersCountTheMissingOnes) {
+  std::vector<mcap::Bytes> chunks;
+  std::uint64_t dropped = 0;
+  {
+    Writer writer =
+        Writer::to(std::make_unique<PickySink>(chunks, std::vector<int>{0, 3, 4}), a_header());
+    for (int i = 0; i < 8; ++i) writer.append(step_number(i));
+    dropped = writer.dropped();
+  }
+  files::RealDisk disk;
+  for (int incarnation = 0; incarnation < 2; ++incarnation) {
+    files::AppendFile file(format_of(file_, a_header()));
+    for (const mcap::Bytes& chunk : chunks) EXPECT_EQ(file.append(disk, chunk), 0);
+    EXPECT_EQ(file.finish(disk), 0);
+  }
+
+  const auto read = read_file(file_);
+
+  ASSERT_TRUE(read.has_value()) << read.error().message;
+  EXPECT_EQ(dropped, 3U);
+  EXPECT_EQ(read->lost, 2U * 3U);
+  EXPECT_EQ(read->damaged, 0U);
+  EXPECT_TRUE(read->ended);
+  EXPECT_EQ(read->records.size(), 2U * (1U + 5U));
+}
+
+TEST_F(RobotLogFile, LacksNothingOfAWholeLog) {
+  write(steps(20));
+  write(steps(3));
+  const auto read = read_file(file_);
+  ASSERT_TRUE(read.has_value());
+  EXPECT_EQ(read->lost, 0U);
 }
 
 TEST_F(RobotLogFile, CanBeWrittenManyRecordsAtATime) {

@@ -86,8 +86,9 @@ class FlightBench : public ::testing::Test {
   void begin() {
     own = bus.make_participant();
     launcher_bus.emplace(*open_launcher_bus(*own, link::wire_limits(options.mission)));
-    scene.emplace(options.mission.world, dir.path, std::move(launcher_bus->scenes));
-    event_log.emplace(dir.path / shell::kEventsFile);
+    scene.emplace(options.mission.world, append_to_file(dir.path / shell::kSceneFile),
+                  std::move(launcher_bus->scenes));
+    event_log.emplace(append_to_file(dir.path / shell::kEventsFile));
     log.emplace(*event_log, *launcher_bus->event_relay, display);
     loop.emplace(options, dir.path,
                  FlightPorts{.spawner = spawner,

@@ -29,7 +29,7 @@ class EventLogFile : public testing::Test {
 
 // Read while the log is still open: a crash must lose none.
 TEST_F(EventLogFile, HoldsEachEventAsSoonAsItIsWritten) {
-  EventLog sut(folder_ / "events.jsonl");
+  EventLog sut(append_to_file(folder_ / "events.jsonl"));
   for (int i = 1; i <= 3; ++i) {
     sut.write(UtcTime(Duration(1'700'000'000'000'000'000 + i)), "launcher",
               link::Severity::kWarning, "agent-exit", "agent process " + std::to_string(i));
@@ -43,7 +43,7 @@ TEST_F(EventLogFile, HoldsEachEventAsSoonAsItIsWritten) {
 }
 
 TEST_F(EventLogFile, TakesAnEventFromTheBusWithItsStampAndSource) {
-  EventLog sut(folder_ / "events.jsonl");
+  EventLog sut(append_to_file(folder_ / "events.jsonl"));
   const struct {
     std::uint32_t source;
     const char* name;
@@ -65,7 +65,7 @@ TEST_F(EventLogFile, TakesAnEventFromTheBusWithItsStampAndSource) {
 
 // One object a line for any text, since texts come from the bus.
 TEST_F(EventLogFile, KeepsOneLinePerEventWhateverItsText) {
-  EventLog sut(folder_ / "events.jsonl");
+  EventLog sut(append_to_file(folder_ / "events.jsonl"));
   const std::vector<std::string> texts = {"", "two\nlines\r\n", "\"quoted\" \\ {}", "Ω \u2028",
                                           std::string("a\0b", 3)};
   for (const std::string& text : texts) sut.write({}, "s", link::Severity::kInfo, "c", text);
@@ -81,7 +81,7 @@ TEST_F(EventLogFile, KeepsOneLinePerEventWhateverItsText) {
 
 TEST_F(EventLogFile, GoesOnWhereAnEarlierOneEnded) {
   for (const char* code : {"one", "two"}) {
-    EventLog sut(folder_ / "events.jsonl");
+    EventLog sut(append_to_file(folder_ / "events.jsonl"));
     sut.write({}, "launcher", link::Severity::kInfo, code, "");
   }
   ASSERT_EQ(events().size(), 2U);

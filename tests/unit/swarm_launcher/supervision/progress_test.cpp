@@ -13,6 +13,7 @@
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/ioctl.h>
+#include <termios.h>
 #include <unistd.h>
 
 namespace swarm::launcher {
@@ -190,6 +191,22 @@ TEST_F(ProgressLine, BecomesTheChangesOfTheHeadlineWithoutATerminal) {
     play(sut);
   }
   EXPECT_EQ(testing::internal::GetCapturedStderr(), kChanges);
+}
+
+// Ctrl-S: the kernel takes nothing for the terminal until Ctrl-Q.
+TEST_F(ProgressLine, DoesNotStopItsCallerWhereTheTerminalIsStopped) {
+  const std::string written = written_to_terminal(80, [&] {
+    Progress sut;
+    sut.show("before", "");
+    sut.flush();
+    ASSERT_EQ(::tcflow(STDERR_FILENO, TCOOFF), 0);
+    for (int i = 0; i < 20; ++i) sut.show("mission running", std::to_string(i));
+    sut.print("a message");
+    ASSERT_EQ(::tcflow(STDERR_FILENO, TCOON), 0);
+  });
+  EXPECT_LT(written.find("before"), written.find("mission running  19"));
+  EXPECT_LT(written.find("mission running  19"), written.find("a message"));
+  EXPECT_NE(written.find("a message"), std::string::npos);
 }
 
 TEST_F(ProgressLine, BecomesTheChangesOfTheHeadlineWithNoColor) {

@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "swarm_monitor/audit/audit.hpp"
 #include "tests/unit/swarm_core/app/scratch_folder.hpp"
 #include "tests/unit/swarm_monitor/synthetic_run.hpp"
 
@@ -124,6 +125,43 @@ TEST(Summary, DecidesTheExitCodeByHowTheRunEnded) {
       EXPECT_EQ(got.file["outcome"], to_string(outcome));
     }
   }
+}
+
+// The robots arrived and touched nothing, but the records do not prove it.
+TEST(Summary, IsNotOkWhereEvidenceIsMissing) {
+  const monitor::SyntheticRun run(2);
+  run.write_good_run();
+  Measurements measured = completed();
+  measured.missing = {"launcher: scene.jsonl: 2 records (No space left on device)"};
+
+  const Summarised got = summarise_quietly(run.dir(), measured);
+
+  EXPECT_EQ(got.code, ExitCode::kCriteriaNotMet);
+  EXPECT_EQ(got.file["outcome"], "criteria_not_met");
+  EXPECT_EQ(got.file["missing"], json(measured.missing));
+  EXPECT_EQ(got.file["reasons"], json({"missing: " + measured.missing[0]}));
+  // A later audit comes to the same result.
+  const auto again = monitor::audit_run(run.dir());
+  ASSERT_TRUE(again);
+  EXPECT_EQ(again->missing, measured.missing);
+}
+
+TEST(Summary, IsPrintedAndNotOkWhereItCannotBeWritten) {
+  const monitor::SyntheticRun run(2);
+  run.write_good_run();
+  std::filesystem::create_directory(run.dir() / "summary.json");
+  Measurements measured = completed();
+  measured.missing = {"planner: plan.json: all of it"};
+  testing::internal::CaptureStdout();
+  testing::internal::CaptureStderr();
+  const auto code = summarise(run.dir(), measured, false);
+  const std::string printed = testing::internal::GetCapturedStdout();
+  const std::string complaint = testing::internal::GetCapturedStderr();
+
+  EXPECT_EQ(code, ExitCode::kCriteriaNotMet);
+  EXPECT_NE(printed.find("2 of 2 robots arrived"), std::string::npos) << printed;
+  EXPECT_NE(printed.find("missing: planner: plan.json: all of it"), std::string::npos) << printed;
+  EXPECT_NE(complaint.find("summary.json"), std::string::npos) << complaint;
 }
 
 TEST(Summary, CountsThePlansThatExceedTheirRiskLimit) {

@@ -254,7 +254,8 @@ TEST(Audit, SurvivesADamagedRobotLog) {
   const Audit audit = audit_of(files);
 
   EXPECT_EQ(audit.damaged_records, 1U);
-  EXPECT_TRUE(audit.ok());
+  EXPECT_EQ(audit.arrived, 2U);
+  EXPECT_EQ(audit.reasons, (std::vector<std::string>{"missing: 1 record of robot logs: robot 1"}));
 }
 
 TEST(Audit, ReportsTheMessageRateOfRobots) {

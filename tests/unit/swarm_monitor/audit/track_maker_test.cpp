@@ -85,7 +85,20 @@ TEST(TrackMaker, CountsAStepAsLateOnlyBeyondTwentyMilliseconds) {
     maker.take(robot_log::Step{.stamp = at(++k), .lateness_us = lateness_us});
   }
 
-  EXPECT_EQ(maker.finish().late_steps, 2U);
+  EXPECT_EQ(maker.finish().late_ticks, 2U);
+}
+
+TEST(TrackMaker, CountsTheTicksThatWereMissed) {
+  TrackMaker maker(RobotId(0), at(0), std::chrono::milliseconds(100));
+  int k = 0;
+  for (const std::int32_t lateness_us : {0, 21'000, 8'000'000, 250'000, 100'000}) {
+    maker.take(robot_log::Step{.stamp = at(++k), .lateness_us = lateness_us});
+  }
+
+  const Track track = maker.finish();
+
+  EXPECT_EQ(track.missed_ticks, 80U + 2U + 1U);
+  EXPECT_EQ(track.late_ticks, 1U + 80U + 3U + 1U);
 }
 
 TEST(TrackMaker, TakesAnExitOfTheLastIncarnationAlone) {
@@ -147,7 +160,7 @@ TEST(TrackMaker, IsEmptyAfterItsTrackIsFinished) {
   EXPECT_TRUE(empty.points.empty() && empty.processes.empty() && empty.notes.empty());
   EXPECT_FALSE(empty.ended_gracefully);
   EXPECT_EQ(empty.radius_m, 0.0);
-  EXPECT_EQ(empty.damaged + empty.late_steps + empty.refused + empty.states_sent, 0U);
+  EXPECT_EQ(empty.damaged + empty.late_ticks + empty.refused + empty.states_sent, 0U);
   EXPECT_EQ(empty.state_age.count(), 0U);
 }
 

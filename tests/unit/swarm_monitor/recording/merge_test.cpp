@@ -23,7 +23,7 @@ void expect_same_track(const Track& a, const Track& b) {
   EXPECT_EQ(a.radius_m, b.radius_m);
   EXPECT_EQ(a.processes, b.processes);
   EXPECT_EQ(a.ended_gracefully, b.ended_gracefully);
-  EXPECT_EQ(a.late_steps, b.late_steps);
+  EXPECT_EQ(a.late_ticks, b.late_ticks);
   EXPECT_EQ(a.refused, b.refused);
   EXPECT_EQ(a.states_sent, b.states_sent);
   EXPECT_EQ(a.state_age.count(), b.state_age.count());

@@ -1,0 +1,224 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+// The disk of a run fills, becomes read-only, stops answering or is removed, and the planner dies.
+// Needs root, for file systems of its own.
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <cstdint>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <optional>
+#include <string>
+#include <thread>
+#include <utility>
+#include <variant>
+
+#include <sys/mount.h>
+#include <unistd.h>
+
+#include "swarm_core/robot_log/robot_log_file.hpp"
+#include "tests/system/flown_run.hpp"
+
+namespace swarm::test {
+namespace {
+
+bool execute(const std::string& command) { return std::system(command.c_str()) == 0; }
+
+/// A file system in a folder of its own, for as long as this lives.
+class OwnDisk {
+ public:
+  enum class Kind : std::uint8_t { kMemory, kExt4 };
+
+  explicit OwnDisk(Kind kind) {
+    std::filesystem::create_directory(path());
+    if (kind == Kind::kMemory) {
+      is_mounted_ = ::mount("tmpfs", path().c_str(), "tmpfs", 0, "size=6m") == 0;
+      return;
+    }
+    const std::string image = (folder_.path() / "image").string();
+    is_mounted_ = execute("truncate -s 32M " + image + " && mkfs.ext4 -q -F " + image +
+                          " >/dev/null 2>&1 && mount -o loop,errors=remount-ro " + image + " " +
+                          path().string() + " 2>/dev/null");
+  }
+  ~OwnDisk() {
+    if (is_mounted_) ::umount2(path().c_str(), MNT_DETACH);
+  }
+  OwnDisk(const OwnDisk&) = delete;
+  OwnDisk& operator=(const OwnDisk&) = delete;
+
+  bool is_mounted() const { return is_mounted_; }
+  std::filesystem::path path() const { return folder_.path() / "disk"; }
+
+  void fill() const {
+    std::ofstream out(path() / "filler", std::ios::binary);
+    const std::string block(4096, 'x');
+    while (out.write(block.data(), static_cast<std::streamsize>(block.size())).flush()) {
+    }
+  }
+  /// As the kernel does after an error of the device.
+  bool make_read_only() const {
+    return execute("echo 1 >/sys/fs/ext4/$(basename $(findmnt -n -o SOURCE " + path().string() +
+                   "))/trigger_fs_error");
+  }
+
+ private:
+  TemporaryFolder folder_;
+  bool is_mounted_ = false;
+};
+
+class DiskFault : public testing::Test {
+ protected:
+  /// False if this machine does not let us have the disk.
+  bool begin(OwnDisk::Kind kind) {
+    disk_ = std::make_unique<OwnDisk>(kind);
+    if (!disk_->is_mounted()) return false;
+    launcher_ = std::make_unique<Program>(
+        "swarm_launcher", std::vector<std::string>{"run", kSmallMission, "--out", dir().string()});
+    return true;
+  }
+  std::filesystem::path dir() const { return disk_->path() / "run"; }
+  bool mission_started() const {
+    return eventually([this] { return has_event(dir(), "command"); });
+  }
+  void kill_planner() const {
+    const auto planners = children_of(launcher_->pid(), "planner_service");
+    ASSERT_EQ(planners.size(), 1U);
+    ::kill(planners.front(), SIGKILL);
+  }
+  /// A planner has been started after the one that was killed.
+  bool planner_is_back(pid_t killed) const {
+    return eventually([&] {
+      const auto planners = children_of(launcher_->pid(), "planner_service");
+      return planners.size() == 1 && planners.front() != killed;
+    });
+  }
+  pid_t planner() const {
+    const auto planners = children_of(launcher_->pid(), "planner_service");
+    return planners.empty() ? 0 : planners.front();
+  }
+  /// The launcher itself has received all robots at their goals.
+  void expect_that_all_arrived() const {
+    EXPECT_NE(launcher_->out().find("mission          completed"), std::string::npos)
+        << launcher_->out() << launcher_->err();
+    EXPECT_EQ(launcher_->err().find("agent process"), std::string::npos) << launcher_->err();
+  }
+
+  std::unique_ptr<OwnDisk> disk_;
+  std::unique_ptr<Program> launcher_;
+};
+
+#define BEGIN_OR_SKIP(kind) \
+  if (!begin(OwnDisk::Kind::kind)) GTEST_SKIP() << "needs root and a file system of its own"
+
+TEST_F(DiskFault, FullAllArriveAndWhatIsMissingIsNamed) {
+  BEGIN_OR_SKIP(kMemory);
+  ASSERT_TRUE(mission_started());
+  disk_->fill();
+  const pid_t first = planner();
+  kill_planner();
+  EXPECT_TRUE(planner_is_back(first));
+
+  EXPECT_EQ(launcher_->wait(), 1) << launcher_->err();
+
+  expect_that_all_arrived();
+  EXPECT_NE(launcher_->out().find("missing"), std::string::npos) << launcher_->out();
+  EXPECT_NE(launcher_->err().find("No space left on device"), std::string::npos);
+}
+
+// The records of the full minute wait in memory.
+TEST_F(DiskFault, FullForAWhileNothingIsMissing) {
+  BEGIN_OR_SKIP(kMemory);
+  ASSERT_TRUE(mission_started());
+  disk_->fill();
+  const pid_t first = planner();
+  kill_planner();
+  EXPECT_TRUE(planner_is_back(first));
+  std::this_thread::sleep_for(std::chrono::seconds(5));
+  std::filesystem::remove(disk_->path() / "filler");
+
+  EXPECT_EQ(launcher_->wait(), 0) << launcher_->err() << launcher_->out();
+
+  expect_that_all_arrived();
+  EXPECT_TRUE(has_event(dir(), "disk-fails"));
+  EXPECT_TRUE(has_event(dir(), "disk-works"));
+  EXPECT_TRUE(has_event(dir(), "respawn")) << "written when there was room again";
+}
+
+TEST_F(DiskFault, ReadOnlyAllArriveAndWhatIsMissingIsNamed) {
+  BEGIN_OR_SKIP(kExt4);
+  ASSERT_TRUE(mission_started());
+  if (!disk_->make_read_only()) GTEST_SKIP() << "the kernel has no such switch";
+  const pid_t first = planner();
+  kill_planner();
+  EXPECT_TRUE(planner_is_back(first));
+
+  EXPECT_EQ(launcher_->wait(), 1) << launcher_->err();
+
+  expect_that_all_arrived();
+  EXPECT_NE(launcher_->out().find("missing"), std::string::npos) << launcher_->out();
+  EXPECT_NE(launcher_->err().find("Read-only file system"), std::string::npos);
+}
+
+TEST_F(DiskFault, RemovedAllArriveAndTheRestIsWrittenAgain) {
+  BEGIN_OR_SKIP(kMemory);
+  ASSERT_TRUE(mission_started());
+  const pid_t first = planner();
+  std::filesystem::rename(dir(), disk_->path() / "removed");  // before its files are made again
+  std::filesystem::remove_all(disk_->path() / "removed");
+  kill_planner();
+  EXPECT_TRUE(planner_is_back(first));
+
+  EXPECT_EQ(launcher_->wait(), 1) << launcher_->err();
+
+  expect_that_all_arrived();
+  EXPECT_NE(launcher_->out().find("removed"), std::string::npos) << launcher_->out();
+  EXPECT_TRUE(std::filesystem::exists(dir() / "summary.json"));
+  Program audit("swarm_monitor", {"audit", dir().string()});
+  EXPECT_EQ(audit.wait(), 1);
+  EXPECT_NE(audit.out().find("missing"), std::string::npos) << audit.out();
+}
+
+/// Longest time between two steps of a robot.
+Duration longest_gap(const std::filesystem::path& run_dir, std::uint32_t robot) {
+  Duration longest{};
+  std::optional<UtcTime> last;
+  const auto read = robot_log::read_records(
+      robot_log::file_of(run_dir, RobotId(robot)), [&](const robot_log::Record& record) {
+        const auto* step = std::get_if<robot_log::Step>(&record);
+        if (step == nullptr) return;
+        if (last) longest = std::max(longest, step->stamp - *last);
+        last = step->stamp;
+      });
+  EXPECT_TRUE(read) << read.error().message;
+  if (read) EXPECT_EQ(read->lost, 0U);
+  return longest;
+}
+
+TEST_F(DiskFault, FrozenRobotsFlyOnAndNothingIsMissing) {
+  BEGIN_OR_SKIP(kExt4);
+  ASSERT_TRUE(mission_started());
+  constexpr std::chrono::seconds kFrozen{12};
+  const auto thaw_at = std::chrono::steady_clock::now() + kFrozen;
+  if (!execute("fsfreeze -f " + disk_->path().string())) GTEST_SKIP() << "cannot freeze";
+  const pid_t first = planner();
+  kill_planner();
+  EXPECT_TRUE(planner_is_back(first));
+  const bool restarted_in_time = std::chrono::steady_clock::now() < thaw_at;
+  std::this_thread::sleep_until(thaw_at);
+  ASSERT_TRUE(execute("fsfreeze -u " + disk_->path().string()));
+  EXPECT_TRUE(restarted_in_time);
+
+  EXPECT_EQ(launcher_->wait(), 0) << launcher_->err() << launcher_->out();
+
+  expect_that_all_arrived();
+  EXPECT_TRUE(has_event(dir(), "disk-fails"));
+  for (std::uint32_t robot = 0; robot < 12; ++robot) {
+    EXPECT_LT(longest_gap(dir(), robot), kFrozen / 2) << robot;
+  }
+}
+
+}  // namespace
+}  // namespace swarm::test
