@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "swarm_link/event_names.hpp"
+
 namespace swarm::agent {
 namespace {
 
@@ -18,6 +20,7 @@ void ProcessEvents::on_tick(SteadyTime now, UtcTime utc_now, Inbox& inbox,
                             const Histogram& state_age) {
   announce_planner(now, utc_now, inbox);
   announce_faults(utc_now);
+  announce_duplicate(utc_now, inbox);
   if (now - stats_at_ < kStatsEvery) return;
   stats_at_ = now;
   record_link_stats(utc_now, inbox, state_age);
@@ -97,6 +100,17 @@ void ProcessEvents::announce_refusals(UtcTime utc_now, Inbox& inbox) {
     announce(utc_now, link::Severity::kWarning, "refused",
              fmt::format("{} message(s): {}", fresh, link::to_string(reason)));
   }
+}
+
+/// Once: which of the two processes is to end is for a person to decide.
+void ProcessEvents::announce_duplicate(UtcTime utc_now, const Inbox& inbox) {
+  const auto id = inbox.duplicate_id();
+  if (!id || duplicate_announced_) return;
+  duplicate_announced_ = true;
+  announce(utc_now, link::Severity::kError, std::string(link::kDuplicateId),
+           fmt::format("robot {}: a state arrived under its id that it did not publish: another "
+                       "process uses the id, or forges states",
+                       id->value()));
 }
 
 void ProcessEvents::announce_dropped_records(UtcTime utc_now) {
