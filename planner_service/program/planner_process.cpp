@@ -14,8 +14,10 @@
 #include <unistd.h>
 
 #include "planner_service/keeper/plan_keeper.hpp"
+#include "planner_service/program/heartbeat_thread.hpp"
 #include "planner_service/program/planner_inbox.hpp"
 #include "swarm_core/app/run_directory.hpp"
+#include "swarm_core/app/run_membership.hpp"
 #include "swarm_core/app/stop_signal.hpp"
 #include "swarm_core/base/clock.hpp"
 #include "swarm_core/plan/plan_json.hpp"
@@ -31,6 +33,9 @@ namespace {
 // A change of the scene must lead to a published plan within 100 ms; polling may take only a small
 // part of that.
 constexpr Duration kStep = std::chrono::milliseconds(5);
+// A plan takes as long as the mission waits for the first one, or this time if that is longer. The
+// planner hangs if it takes longer.
+constexpr double kLongestPlan_s = 30.0;
 constexpr std::uint64_t kFaultSeed = 0xFA17;  // own random numbers for the link
 
 // std::this_thread::sleep_for would sleep on after a signal.
@@ -60,10 +65,9 @@ struct PlannerProcess::Impl {
   PlannerEpoch epoch;
   std::unique_ptr<link::Participant> participant;
   link::WriterPtr<link::PlanMessage> plan_writer;
-  link::WriterPtr<link::HeartbeatMessage> heartbeat_writer;
   link::WriterPtr<link::EventMessage> event_writer;
   std::optional<PlannerInbox> inbox;
-  std::uint64_t beats = 0;
+  std::optional<HeartbeatThread> heartbeats;  // after the participant: it ends first
   std::ofstream clock_file;
   link::RefusalCounters reported;      // counts already announced as events
   std::vector<std::string> unwritten;  // why files of the first plan are missing
@@ -74,7 +78,7 @@ struct PlannerProcess::Impl {
   void keep_planned(SteadyTime now);
   void publish();
   void announce(link::Severity severity, const std::string& code, const std::string& text);
-  void beat(UtcTime now);
+  void report_refusals();
 };
 
 // Writes plan and statistics to the run directory before the planner joins the bus. A file that
@@ -102,19 +106,18 @@ Result<void> PlannerProcess::Impl::join(const shell::RunInfo& run) {
   if (!made) return tl::unexpected(made.error());
   participant = std::move(*made);
   auto plans = participant->make_writer(link::plan_topic());
-  auto heartbeats = participant->make_writer(link::heartbeat_topic());
+  auto beats = participant->make_writer(link::heartbeat_topic());
   auto events = participant->make_writer(link::event_topic());
   auto orders = participant->make_reader(link::command_topic());
   auto scene_changes = participant->make_reader(link::scene_topic());
   auto health = participant->make_reader(link::status_topic_unacknowledged());
   if (!plans) return tl::unexpected(plans.error());
-  if (!heartbeats) return tl::unexpected(heartbeats.error());
+  if (!beats) return tl::unexpected(beats.error());
   if (!events) return tl::unexpected(events.error());
   if (!orders) return tl::unexpected(orders.error());
   if (!scene_changes) return tl::unexpected(scene_changes.error());
   if (!health) return tl::unexpected(health.error());
   plan_writer = std::move(*plans);
-  heartbeat_writer = std::move(*heartbeats);
   event_writer = std::move(*events);
   inbox.emplace(Readers{std::move(*orders), std::move(*scene_changes), std::move(*health)},
                 link::wire_limits(mission));
@@ -123,6 +126,9 @@ Result<void> PlannerProcess::Impl::join(const shell::RunInfo& run) {
     announce(link::Severity::kWarning, "plan-file-missing", reason);
   }
   keeper->begin(std::chrono::steady_clock::now());
+  const double longest_step_s = std::max(kLongestPlan_s, mission.launcher.quorum_timeout_s);
+  heartbeats.emplace(std::move(*beats), HeartbeatSource(epoch, from_seconds(longest_step_s)),
+                     from_seconds(1.0 / mission.timing.heartbeat_hz));
   return {};
 }
 
@@ -145,18 +151,23 @@ void PlannerProcess::Impl::receive(SteadyTime now) {
 }
 
 // One step of the keeper: events, the plan and the clock go out in this order. A new clock reading
-// also sends a heartbeat at once.
+// also sends a heartbeat at once. While the keeper plans, heartbeats go on: see HeartbeatThread.
 void PlannerProcess::Impl::keep_planned(SteadyTime now) {
   const UtcTime utc = utc_now();
+  keeper->on_published(heartbeats->published());
   const PlanKeeper::Step step = keeper->step(now, utc);
   for (const PlanKeeper::Notice& notice : step.notices) {
     announce(notice.warning ? link::Severity::kWarning : link::Severity::kInfo, notice.code,
              notice.text);
   }
   if (step.publish) publish();
+  heartbeats->on_step({.phase = inbox->phase(),
+                       .t0_utc_ns = inbox->t0_utc_ns(),
+                       .clock = keeper->clock(utc),
+                       .at = now});
   if (!step.clock) return;
   clock_file << plan_clock_line(*step.clock) << std::flush;
-  beat(utc);  // robots need not wait for the next one
+  heartbeats->beat();  // robots need not wait for the next one
 }
 
 // Sends the plan, then writes it to the run directory, since the file must not delay the robots.
@@ -197,25 +208,13 @@ void PlannerProcess::Impl::announce(link::Severity severity, const std::string& 
                        .text = text});
 }
 
-// Refused messages are reported with the heartbeat, so that a flood of them makes few events.
-void PlannerProcess::Impl::beat(UtcTime now) {
+// Refused messages are reported a few times a second, so that a flood of them makes few events.
+void PlannerProcess::Impl::report_refusals() {
   link::report_new(inbox->refused(), reported,
                    [&](link::RefusalReason reason, std::uint32_t times) {
                      announce(link::Severity::kWarning, "refused",
                               fmt::format("{} message(s): {}", times, link::to_string(reason)));
                    });
-  const std::int64_t stamp = now.time_since_epoch().count();
-  const std::int64_t t0 = inbox->t0_utc_ns();
-  const double mission_time_s = t0 == 0 ? 0.0 : 1e-9 * static_cast<double>(stamp - t0);
-  const PlanClock clock = keeper->clock(now);
-  heartbeat_writer->write({.phase = inbox->phase(),
-                           .version = clock.plan_version,
-                           .epoch = epoch.value(),
-                           .sequence_number = ++beats,
-                           .stamp_utc_ns = stamp,
-                           .mission_time_s = mission_time_s,
-                           .plan_time_s = clock.plan_time_s,
-                           .plan_rate = clock.rate});
 }
 
 PlannerProcess::PlannerProcess(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
@@ -227,6 +226,9 @@ Result<std::unique_ptr<PlannerProcess>> PlannerProcess::make(const ProcessOption
                                                              const PlanningRegistry& registry) {
   auto impl = std::make_unique<Impl>();
   impl->options = options;
+  if (auto goes_on = shell::check_run_goes_on(options.run_dir); !goes_on) {
+    return tl::unexpected(goes_on.error());
+  }
   const auto run = shell::read_run_info(options.run_dir);
   if (!run) return tl::unexpected(run.error());
   auto mission = load_mission(options.run_dir / shell::kMissionFile, registry.catalogue());
@@ -246,15 +248,15 @@ Result<std::unique_ptr<PlannerProcess>> PlannerProcess::make(const ProcessOption
 // one.
 Result<void> PlannerProcess::run() {
   Impl& p = *impl_;
-  const Duration beat_period = from_seconds(1.0 / p.mission.timing.heartbeat_hz);
-  SteadyTime next_beat = std::chrono::steady_clock::now();
+  const Duration period = from_seconds(1.0 / p.mission.timing.heartbeat_hz);
+  SteadyTime next_report = std::chrono::steady_clock::now();
   while (shell::stop_requests() == 0) {
     const SteadyTime now = std::chrono::steady_clock::now();
     p.receive(now);
     p.keep_planned(now);
-    if (now >= next_beat) {
-      p.beat(utc_now());
-      next_beat = std::max(next_beat + beat_period, now);
+    if (now >= next_report) {
+      p.report_refusals();
+      next_report = std::max(next_report + period, now);
     }
     if (p.options.parent_pid != 0 &&
         static_cast<std::uint32_t>(::getppid()) != p.options.parent_pid)
