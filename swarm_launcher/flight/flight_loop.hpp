@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,7 @@
 #include "swarm_launcher/flight/flight_choices.hpp"
 #include "swarm_launcher/flight/flight_ports.hpp"
 #include "swarm_launcher/flight/swarm_view.hpp"
+#include "swarm_launcher/supervision/event_throttle.hpp"
 #include "swarm_launcher/supervision/summary.hpp"
 #include "swarm_launcher/supervision/supervisor.hpp"
 
@@ -58,6 +60,7 @@ class FlightLoop {
   /// The parts of a step, in their order.
   void reap(const FlightTime& now);
   void read_bus(const FlightTime& now);
+  void read_events(const FlightTime& now);
   void read_stops(SteadyTime now);
   void serve_requests(const FlightTime& now);
   Result<void> act(const Action& action, UtcTime now);
@@ -81,6 +84,8 @@ class FlightLoop {
   Supervisor supervisor_;
   SwarmView view_;
   FallenRobots fallen_;
+  EventThrottle throttle_;
+  std::set<std::uint32_t> duplicates_;  ///< robots whose duplicate id was displayed
   std::map<pid_t, ProcessIndex> children_;
   std::vector<ControlRequests::ClientId> stopping_;  // wait for the confirmation of a stop
   Measurements measurements_;
