@@ -102,6 +102,7 @@ void Inbox::receive_commands(UtcTime utc_now) {
 
 /// Plans before heartbeats, so that a heartbeat of a plan received at the same tick counts at once.
 void Inbox::receive_fixed_topics(SteadyTime now, UtcTime utc_now) {
+  if (!began_) began_ = utc_now;
   receive_plans(utc_now);
   receive_scenes(utc_now);
   receive_heartbeats(now, utc_now);
@@ -117,10 +118,21 @@ void Inbox::begin_states() {
   states_.take(batches_);
 }
 
+/// A restarted robot may still receive states of the process before it: those are older.
+void Inbox::note_duplicate(const link::RobotStateMessage& state, UtcTime utc_now) {
+  const bool is_older = UtcTime(Duration(state.stamp_utc_ns)) <= began_.value_or(utc_now);
+  if (!duplicate_id_ && !is_older) duplicate_id_ = RobotId(state.robot_id);
+}
+
 /// Checks one state and gives it a time on our steady clock: receipt minus the age by its stamp.
 void Inbox::receive_state(const link::RobotStateMessage& state, SteadyTime steady_now,
                           UtcTime utc_now, const EchoGuard* own) {
-  if (!gate_.state(state, utc_now, own)) return;
+  if (const auto checked = gate_.state(state, utc_now, own); !checked) {
+    if (own != nullptr && checked.error() == link::RefusalReason::kForged) {
+      note_duplicate(state, utc_now);
+    }
+    return;
+  }
   // A state may have waited in the socket since our last tick, however long ago that is, and have
   // been late before that. One that is older still, or comes from the future, has a stamp by a
   // clock that is off: it counts as received right after the last tick.

@@ -86,6 +86,10 @@ class Inbox {
   std::optional<PlanTime> plan_time(SteadyTime now) { return plan_time_.at(now); }
   std::int64_t stop_stamp_utc_ns() const { return stop_stamp_utc_ns_; }
 
+  /// A robot of this process under whose id a state arrived that it did not publish, made after
+  /// this process began to receive; of several the first.
+  std::optional<RobotId> duplicate_id() const { return duplicate_id_; }
+
   const link::RefusalCounters& refused() const { return gate_.refused(); }
   std::uint32_t skewed() const {
     return skewed_;
@@ -102,6 +106,7 @@ class Inbox {
   void begin_states();
   void receive_state(const link::RobotStateMessage& state, SteadyTime steady_now, UtcTime utc_now,
                      const EchoGuard* own);
+  void note_duplicate(const link::RobotStateMessage& state, UtcTime utc_now);
 
   Readers readers_;
   link::StateChannel& states_;
@@ -118,6 +123,8 @@ class Inbox {
   std::uint32_t plan_version_ = 0;
   std::int64_t stop_stamp_utc_ns_ = 0;
   std::uint32_t skewed_ = 0;
+  std::optional<UtcTime> began_;  ///< of the first call of receive()
+  std::optional<RobotId> duplicate_id_;
   std::optional<SteadyTime> received_before_;
   std::vector<ReceivedState> received_;
   ReceivedCells received_cells_;

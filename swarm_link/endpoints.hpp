@@ -34,6 +34,12 @@ class Reader {
   /// Appends every message that arrived since the last call, oldest first, and returns their
   /// number. Samples that cannot be decoded are dropped and counted in undecodable().
   virtual std::size_t take(std::vector<M>& out) = 0;
+  /// As take(); also appends the RawSample::sender of every message.
+  virtual std::size_t take_with_senders(std::vector<M>& out, std::vector<std::uint64_t>& senders) {
+    const std::size_t taken = take(out);
+    senders.resize(senders.size() + taken, 0);
+    return taken;
+  }
   virtual int matched() const = 0;
   /// Samples dropped since the start because they could not be decoded.
   virtual std::uint64_t undecodable() const = 0;
@@ -65,10 +71,13 @@ class DecodingReader final : public Reader<M> {
 
   std::size_t take(std::vector<M>& out) override {
     const std::size_t before = out.size();
-    raw_->take([this, &out](const RawSample& sample) {
-      if (decode(sample.bytes, out.emplace_back())) return;
-      out.pop_back();
-      ++undecodable_;
+    raw_->take([this, &out](const RawSample& sample) { append(sample, out); });
+    return out.size() - before;
+  }
+  std::size_t take_with_senders(std::vector<M>& out, std::vector<std::uint64_t>& senders) override {
+    const std::size_t before = out.size();
+    raw_->take([this, &out, &senders](const RawSample& sample) {
+      if (append(sample, out)) senders.push_back(sample.sender);
     });
     return out.size() - before;
   }
@@ -76,6 +85,13 @@ class DecodingReader final : public Reader<M> {
   std::uint64_t undecodable() const override { return undecodable_; }
 
  private:
+  bool append(const RawSample& sample, std::vector<M>& out) {
+    if (decode(sample.bytes, out.emplace_back())) return true;
+    out.pop_back();
+    ++undecodable_;
+    return false;
+  }
+
   RawReaderPtr raw_;               ///< of the backend
   std::uint64_t undecodable_ = 0;  ///< since the start
 };

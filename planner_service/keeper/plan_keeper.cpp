@@ -179,6 +179,7 @@ void PlanKeeper::publish(SteadyTime now, Step& step) {
 PlanKeeper::Step PlanKeeper::step(SteadyTime now, UtcTime utc) {
   Step step;
   governor_.advance(now, phase_ == MissionPhase::kRunning);
+  if (robots_have_.plan_version == version_) governor_.catch_up(robots_have_.plan_time_s);
   keep_planned(now, utc, step);
   avoid_jams(now, utc, step);
   keep_clock(now, utc, step);

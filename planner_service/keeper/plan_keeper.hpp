@@ -34,6 +34,10 @@ class PlanKeeper {
   /// The keeper is on the bus from now on. Timeouts for the scene and the robots begin here.
   void begin(SteadyTime now) { begun_at_ = now; }
 
+  /// The robots have this reading: the clock does not show less from the next step on. It differs
+  /// from the keeper's own where a command stopped the clock while the keeper planned.
+  void on_published(const PlanClock& clock) { robots_have_ = clock; }
+
   void set_phase(MissionPhase phase) { phase_ = phase; }
   /// False if it is not newer than the present one.
   bool take_scene(Scene scene);
@@ -102,6 +106,7 @@ class PlanKeeper {
   SteadyTime tried_at_;  // to plan anew
   ClockGovernor governor_;
   PlanClock clock_reported_;  // of the last step that had one
+  PlanClock robots_have_;     // as the robots received it
   SteadyTime judged_at_;      // the robots' lags
   SteadyTime full_rate_at_;   // when the clock last ran at full rate
   bool slow_reported_ = false;

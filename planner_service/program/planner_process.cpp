@@ -14,11 +14,13 @@
 
 #include "planner_service/keeper/plan_keeper.hpp"
 #include "planner_service/keeper/rival_watch.hpp"
+#include "planner_service/program/heartbeat_thread.hpp"
 #include "planner_service/program/kept_plans.hpp"
 #include "planner_service/program/planner_inbox.hpp"
 #include "swarm_core/app/file_thread.hpp"
 #include "swarm_core/app/file_watch.hpp"
 #include "swarm_core/app/run_inputs.hpp"
+#include "swarm_core/app/run_membership.hpp"
 #include "swarm_core/app/stop_signal.hpp"
 #include "swarm_core/base/clock.hpp"
 #include "swarm_core/plan/plan_json.hpp"
@@ -33,6 +35,9 @@ namespace {
 // A change of the scene must lead to a published plan within 100 ms; polling may take only a small
 // part of that.
 constexpr Duration kStep = std::chrono::milliseconds(5);
+// A plan takes as long as the mission waits for the first one, or this time if that is longer. The
+// planner hangs if it takes longer.
+constexpr double kLongestPlan_s = 30.0;
 constexpr std::uint64_t kFaultSeed = 0xFA17;  // own random numbers for the link
 constexpr Duration kFilesEvery = std::chrono::seconds(1);
 // Until what a process sends last has been received; its writers end with it.
@@ -68,11 +73,10 @@ struct PlannerProcess::Impl {
   PlannerEpoch epoch;
   std::unique_ptr<link::Participant> participant;
   link::WriterPtr<link::PlanMessage> plan_writer;
-  link::WriterPtr<link::HeartbeatMessage> heartbeat_writer;
   link::WriterPtr<link::EventMessage> event_writer;
   std::optional<PlannerInbox> inbox;
   std::optional<RivalWatch> rivals;
-  std::uint64_t beats = 0;
+  std::optional<HeartbeatThread> heartbeats;  // after the participant: it ends first
   shell::FileThread files;
   std::optional<shell::AppendStream> clock_file;
   shell::FileWatch file_watch;
@@ -89,7 +93,7 @@ struct PlannerProcess::Impl {
   void keep_planned(SteadyTime now);
   void publish();
   void announce(link::Severity severity, const std::string& code, const std::string& text);
-  void beat(UtcTime now);
+  void report_refusals();
   void watch_files(SteadyTime now);
   void finish_files();
 };
@@ -131,19 +135,18 @@ Result<void> PlannerProcess::Impl::join(const shell::RunInfo& run) {
   if (!made) return tl::unexpected(made.error());
   participant = std::move(*made);
   if (auto made_plans = make_plan_writer(); !made_plans) return made_plans;
-  auto heartbeats = participant->make_writer(link::heartbeat_topic());
+  auto beats = participant->make_writer(link::heartbeat_topic());
   auto events = participant->make_writer(link::event_topic());
   auto orders = participant->make_reader(link::command_topic());
   auto scene_changes = participant->make_reader(link::scene_topic());
   auto health = participant->make_reader(link::status_topic_unacknowledged());
   auto planners = participant->make_reader(link::heartbeat_topic());
-  if (!heartbeats) return tl::unexpected(heartbeats.error());
+  if (!beats) return tl::unexpected(beats.error());
   if (!events) return tl::unexpected(events.error());
   if (!orders) return tl::unexpected(orders.error());
   if (!scene_changes) return tl::unexpected(scene_changes.error());
   if (!health) return tl::unexpected(health.error());
   if (!planners) return tl::unexpected(planners.error());
-  heartbeat_writer = std::move(*heartbeats);
   event_writer = std::move(*events);
   const link::WireLimits limits = link::wire_limits(mission);
   inbox.emplace(Readers{std::move(*orders), std::move(*scene_changes), std::move(*health),
@@ -153,6 +156,9 @@ Result<void> PlannerProcess::Impl::join(const shell::RunInfo& run) {
   clock_file.emplace(files.append_to(files::lines_of(options.run_dir / shell::kPlanClockFile),
                                      shell::Flush::kAtOnce, kClockBytes));
   keeper->begin(std::chrono::steady_clock::now());
+  const double longest_step_s = std::max(kLongestPlan_s, mission.launcher.quorum_timeout_s);
+  heartbeats.emplace(std::move(*beats), HeartbeatSource(epoch, from_seconds(longest_step_s)),
+                     from_seconds(1.0 / mission.timing.heartbeat_hz));
   return {};
 }
 
@@ -184,6 +190,7 @@ void PlannerProcess::Impl::watch_rivals(SteadyTime now) {
   const auto role = rivals->step(now);
   if (role == RivalWatch::Role::kStandingBy) {
     plan_writer.reset();
+    heartbeats->pause();
     announce(link::Severity::kWarning, "planner-standby",
              "another planner leads the robots: this one stands by");
   } else if (role == RivalWatch::Role::kLeading && led_before) {
@@ -203,22 +210,27 @@ void PlannerProcess::Impl::take_over(SteadyTime now) {
   keeper->begin(now);
   keeper->take_scene(std::move(scene));
   rivals->begin_epoch(epoch.value());
-  beats = 0;
+  heartbeats->begin_epoch(epoch);
 }
 
 // One step of the keeper: events, the plan and the clock go out in this order. A new clock reading
-// also sends a heartbeat at once.
+// also sends a heartbeat at once. While the keeper plans, heartbeats go on: see HeartbeatThread.
 void PlannerProcess::Impl::keep_planned(SteadyTime now) {
   const UtcTime utc = utc_now();
+  keeper->on_published(heartbeats->published());
   const PlanKeeper::Step step = keeper->step(now, utc);
   for (const PlanKeeper::Notice& notice : step.notices) {
     announce(notice.warning ? link::Severity::kWarning : link::Severity::kInfo, notice.code,
              notice.text);
   }
   if (step.publish) publish();
+  heartbeats->on_step({.phase = inbox->phase(),
+                       .t0_utc_ns = inbox->t0_utc_ns(),
+                       .clock = keeper->clock(utc),
+                       .at = now});
   if (!step.clock) return;
   clock_file->push(plan_clock_line(*step.clock));
-  beat(utc);  // robots need not wait for the next one
+  heartbeats->beat();  // robots need not wait for the next one
 }
 
 // Sends the plan, then queues it for the run directory, which keeps the first and the newest ones.
@@ -278,25 +290,13 @@ void PlannerProcess::Impl::announce(link::Severity severity, const std::string& 
                        .text = text});
 }
 
-// Refused messages are reported with the heartbeat, so that a flood of them makes few events.
-void PlannerProcess::Impl::beat(UtcTime now) {
+// Refused messages are reported a few times a second, so that a flood of them makes few events.
+void PlannerProcess::Impl::report_refusals() {
   link::report_new(inbox->refused(), reported,
                    [&](link::RefusalReason reason, std::uint32_t times) {
                      announce(link::Severity::kWarning, "refused",
                               fmt::format("{} message(s): {}", times, link::to_string(reason)));
                    });
-  const std::int64_t stamp = now.time_since_epoch().count();
-  const std::int64_t t0 = inbox->t0_utc_ns();
-  const double mission_time_s = t0 == 0 ? 0.0 : 1e-9 * static_cast<double>(stamp - t0);
-  const PlanClock clock = keeper->clock(now);
-  heartbeat_writer->write({.phase = inbox->phase(),
-                           .version = clock.plan_version,
-                           .epoch = epoch.value(),
-                           .sequence_number = ++beats,
-                           .stamp_utc_ns = stamp,
-                           .mission_time_s = mission_time_s,
-                           .plan_time_s = clock.plan_time_s,
-                           .plan_rate = clock.rate});
 }
 
 PlannerProcess::PlannerProcess(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
@@ -306,6 +306,9 @@ Result<std::unique_ptr<PlannerProcess>> PlannerProcess::make(const ProcessOption
                                                              const PlanningRegistry& registry) {
   auto impl = std::make_unique<Impl>();
   impl->options = options;
+  if (auto goes_on = shell::check_run_goes_on(options.run_dir); !goes_on) {
+    return tl::unexpected(goes_on.error());
+  }
   auto inputs = shell::read_run_inputs(options.run_dir, options.inputs, registry.catalogue());
   if (!inputs) return tl::unexpected(inputs.error());
   const shell::RunInfo& run = inputs->run;
@@ -323,18 +326,17 @@ Result<std::unique_ptr<PlannerProcess>> PlannerProcess::make(const ProcessOption
 // one.
 Result<void> PlannerProcess::run() {
   Impl& p = *impl_;
-  const Duration beat_period = from_seconds(1.0 / p.mission.timing.heartbeat_hz);
-  SteadyTime next_beat = std::chrono::steady_clock::now();
+  const Duration period = from_seconds(1.0 / p.mission.timing.heartbeat_hz);
+  SteadyTime next_report = std::chrono::steady_clock::now();
   while (shell::stop_requests() == 0) {
     const SteadyTime now = std::chrono::steady_clock::now();
     p.receive(now);
     p.watch_rivals(now);
-    const bool leads = p.rivals->role() == RivalWatch::Role::kLeading && p.plan_writer;
-    if (leads) p.keep_planned(now);
+    if (p.rivals->role() == RivalWatch::Role::kLeading && p.plan_writer) p.keep_planned(now);
     p.watch_files(now);
-    if (leads && now >= next_beat) {
-      p.beat(utc_now());
-      next_beat = std::max(next_beat + beat_period, now);
+    if (now >= next_report) {
+      p.report_refusals();
+      next_report = std::max(next_report + period, now);
     }
     if (p.options.parent_pid != 0 &&
         static_cast<std::uint32_t>(::getppid()) != p.options.parent_pid)

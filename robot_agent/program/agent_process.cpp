@@ -17,6 +17,7 @@
 #include "robot_agent/program/process_loop.hpp"
 #include "swarm_core/app/file_thread.hpp"
 #include "swarm_core/app/run_inputs.hpp"
+#include "swarm_core/app/run_membership.hpp"
 #include "swarm_core/app/stop_signal.hpp"
 #include "swarm_core/base/clock.hpp"
 
@@ -49,6 +50,7 @@ bool parent_is_gone(std::uint32_t parent_pid) {
 struct AgentProcess::Impl {
   ProcessOptions options;
   Mission mission;
+  std::optional<shell::RobotLock> lock;
   shell::FileThread files;  // before the loop, whose robots write to it
   std::optional<ProcessLoop> loop;
 };
@@ -66,6 +68,9 @@ Catalogue catalogue_of(const RobotRegistry& registry) {
 /// Joins the bus last: once others see the process, its robots are ready.
 Result<std::unique_ptr<AgentProcess>> AgentProcess::make(const ProcessOptions& options,
                                                          const RobotRegistry& registry) {
+  if (auto goes_on = shell::check_run_goes_on(options.run_dir); !goes_on) {
+    return tl::unexpected(goes_on.error());
+  }
   auto inputs = shell::read_run_inputs(options.run_dir, options.inputs, catalogue_of(registry));
   if (!inputs) return tl::unexpected(inputs.error());
   const shell::RunInfo& run = inputs->run;
@@ -78,6 +83,10 @@ Result<std::unique_ptr<AgentProcess>> AgentProcess::make(const ProcessOptions& o
     return fail(ErrorCode::kBadInput, fmt::format("--ids: the mission has robots 0 to {}",
                                                   impl->mission.robots.count - 1));
   }
+  // Before the logs are opened: a second process must not write into them.
+  auto lock = shell::RobotLock::take(options.run_dir, options.first, options.count);
+  if (!lock) return tl::unexpected(lock.error());
+  impl->lock.emplace(*std::move(lock));
   auto world = std::make_unique<World>(impl->mission.world);
   auto robots = make_local_robots(impl->mission, *world, registry,
                                   {.files = impl->files,

@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "swarm_link/event_names.hpp"
+
 namespace swarm::agent {
 namespace {
 
@@ -18,6 +20,7 @@ void ProcessEvents::on_tick(SteadyTime now, UtcTime utc_now, Inbox& inbox,
                             const Histogram& state_age) {
   announce_planner(now, utc_now, inbox);
   announce_faults(utc_now);
+  announce_duplicate(utc_now, inbox);
   if (now - stats_at_ < kStatsEvery) return;
   stats_at_ = now;
   record_link_stats(utc_now, inbox, state_age);
@@ -116,6 +119,17 @@ void ProcessEvents::on_losses(UtcTime utc_now, std::span<const shell::FileLoss> 
   std::string text = shell::describe(losses.front());
   if (losses.size() > 1) text += fmt::format("; and {} more", losses.size() - 1);
   send(utc_now, link::Severity::kWarning, std::string(shell::kRecordsLost), text);
+}
+
+/// Once: which of the two processes is to end is for a person to decide.
+void ProcessEvents::announce_duplicate(UtcTime utc_now, const Inbox& inbox) {
+  const auto id = inbox.duplicate_id();
+  if (!id || duplicate_announced_) return;
+  duplicate_announced_ = true;
+  announce(utc_now, link::Severity::kError, std::string(link::kDuplicateId),
+           fmt::format("robot {}: a state arrived under its id that it did not publish: another "
+                       "process uses the id, or forges states",
+                       id->value()));
 }
 
 }  // namespace swarm::agent

@@ -16,8 +16,8 @@
 namespace swarm::agent {
 
 /// Reports what happens to a process as a whole (planner lost and back, messages refused, clock
-/// differences, a full disk) as events on the bus and notes in its first robot's log, and records
-/// the link's counters in all logs once a second.
+/// differences, an id used twice, a full disk) as events on the bus and notes in its first robot's
+/// log, and records the link's counters in all logs once a second.
 class ProcessEvents {
  public:
   /// \pre robots is not empty; all outlive this
@@ -47,6 +47,7 @@ class ProcessEvents {
   void announce_planner(SteadyTime now, UtcTime utc_now, const Inbox& inbox);
   void announce_faults(UtcTime utc_now);
   void announce_refusals(UtcTime utc_now, Inbox& inbox);
+  void announce_duplicate(UtcTime utc_now, const Inbox& inbox);
 
   std::span<LocalRobot> robots_;
   link::Writer<link::EventMessage>& writer_;
@@ -54,6 +55,7 @@ class ProcessEvents {
   shell::FileWatch files_;
   link::RefusalCounters reported_;  // announced already
   std::uint32_t skewed_reported_ = 0;
+  bool duplicate_announced_ = false;
   SteadyTime stats_at_;
   std::vector<std::string> faults_;  // announced already, by robot
 };

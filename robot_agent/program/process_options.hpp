@@ -15,7 +15,7 @@ namespace swarm::agent {
 struct ProcessOptions {
   std::filesystem::path run_dir;
   std::filesystem::path inputs{};  ///< see shell::read_run_inputs(); empty: those of run_dir
-  RobotId first;  ///< the robots first … first + count − 1 run in this process
+  RobotId first;                   ///< the robots first … first + count − 1 run in this process
   std::uint32_t count = 1;
   std::uint32_t number = 0;  ///< of this process among the agents of the run
   LinkFaults faults{};       ///< of what this process receives

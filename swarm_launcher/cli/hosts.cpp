@@ -21,6 +21,7 @@ Command add_join(CLI::App& program) {
   join->add_option("--robots", o->robots,
                    "Number of robots to start, if as many are left (default: 1)")
       ->check(CLI::Range(1, kMostRobots));
+  add_join_token(*join, o->token);
   join->add_option(
           "--interface", o->interface,
           "IPv4 address of the interface to use (default: the one that reaches the launcher)")

@@ -79,6 +79,7 @@ Command add_run(CLI::App& program) {
                   "Number of robots that other hosts start (the last ones): see join");
   run->add_option("--join-port", o->how.join_port,
                   "TCP port at which those hosts connect (default: a free one)");
+  add_join_token(*run, o->how.join_token);
   run->add_flag("--record", o->how.monitors.record,
                 "Record the bus: bus.mcap in the run directory");
   auto* const view = run->add_flag("--view", o->how.monitors.view, "Show the run in the browser");

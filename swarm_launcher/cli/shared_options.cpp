@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "swarm_launcher/cli/shared_options.hpp"
 
+#include <algorithm>
+#include <cstddef>
 #include <map>
 #include <string>
 
@@ -22,6 +24,21 @@ void add_channel(CLI::App& command, std::optional<Channel>& channel) {
 void add_domain(CLI::App& command, int& domain) {
   command.add_option("--domain", domain, "DDS domain (default: a free one)")
       ->check(CLI::Range(0, 229));
+}
+
+// A request is a short line: a longer token would make the launcher drop the connection.
+void add_join_token(CLI::App& command, std::string& token) {
+  constexpr std::size_t kMost = 256;
+  command
+      .add_option("--join-token", token,
+                  "Secret that launcher and joining hosts share (default: none is asked for)")
+      ->envname("SWARMFLOW_JOIN_TOKEN")
+      ->check([](const std::string& text) {
+        const bool printable =
+            std::ranges::all_of(text, [](char c) { return c > ' ' && c < '\x7f'; });
+        return printable && text.size() <= kMost ? std::string()
+                                                 : std::string("up to 256 printable characters");
+      });
 }
 
 }  // namespace swarm::launcher::cli

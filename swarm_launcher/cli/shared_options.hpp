@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include <CLI/CLI.hpp>
 
@@ -18,5 +19,9 @@ void add_domain(CLI::App& command, int& domain);
 
 /// Largest number of robots of a run; plans have no room for more.
 inline constexpr int kMostRobots = 20'000;
+
+/// Adds `--join-token`, also from the environment variable SWARMFLOW_JOIN_TOKEN, which other users
+/// of the machine cannot read.
+void add_join_token(CLI::App& command, std::string& token);
 
 }  // namespace swarm::launcher::cli

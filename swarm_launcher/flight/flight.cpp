@@ -115,7 +115,7 @@ Result<std::unique_ptr<Flight>> Flight::make(FlightOptions options, FlightObserv
   if (!run) return tl::unexpected(run.error());
   auto flight = std::unique_ptr<Flight>(new Flight(std::move(*run), observer));
   flight->report_channel();
-  if (const auto started = flight->helpers_.start(); !started) {
+  if (const auto started = flight->helpers_.start(steady_now()); !started) {
     return tl::unexpected(started.error());
   }
   flight->report_hosts();

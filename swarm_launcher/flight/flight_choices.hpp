@@ -28,6 +28,7 @@ struct FlightChoices {
   std::string interface = "127.0.0.1";      ///< address of the interface to the network
   std::uint32_t remote = 0;                 ///< the last robots, which other hosts start
   std::uint16_t join_port = 0;              ///< TCP port for those hosts; 0: a free one
+  std::string join_token{};                 ///< that those hosts must know; empty: none
   MonitorOptions monitors{};                ///< recording and view
 };
 

@@ -3,12 +3,14 @@
 #include "swarm_launcher/flight/flight_loop.hpp"
 
 #include <algorithm>
+#include <cstddef>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "swarm_core/mission_file/scene_change_file.hpp"
 #include "swarm_launcher/flight/process_commands.hpp"
+#include "swarm_link/event_names.hpp"
 
 namespace swarm::launcher {
 namespace {
@@ -21,7 +23,9 @@ SupervisorOptions supervision_of(const FlightOptions& options) {
           .per_process = options.per_process,
           .remote_processes = (options.how.remote + options.per_process - 1) / options.per_process,
           .launcher = options.mission.launcher,
-          .script = options.mission.script};
+          .script = options.mission.script,
+          .agent_silence = SilenceLimits::of(options.mission.link.status_hz),
+          .planner_silence = SilenceLimits::of(options.mission.timing.heartbeat_hz)};
 }
 
 }  // namespace
@@ -55,6 +59,7 @@ Result<void> FlightLoop::step(const FlightTime& now) {
     if (auto done = act(action, now.utc); !done) return done;
   }
   send_stop(now);
+  for (const LogEvent& event : ports_.helpers.step(now.steady)) ports_.log.log(now.utc, event);
   if (const auto message = ports_.helpers.message()) ports_.display.print(*message);
   if (ports_.observer != nullptr) ports_.observer->on_step(*this, now.steady);
   show(now.steady);
@@ -66,7 +71,9 @@ void FlightLoop::reap(const FlightTime& now) {
   while (const auto child = ports_.spawner.reap()) {
     const auto known = children_.find(child->pid);
     if (known == children_.end()) {
-      if (const auto event = ports_.helpers.on_exit(child->pid)) ports_.log.log(now.utc, *event);
+      if (const auto event = ports_.helpers.on_exit(child->pid, now.steady)) {
+        ports_.log.log(now.utc, *event);
+      }
       continue;
     }
     measurements_.cpu_s += child->cpu_s;
@@ -85,8 +92,30 @@ void FlightLoop::read_bus(const FlightTime& now) {
     ports_.bus.status_relay->write(status);
     on_status(status, now);
   }
-  for (const link::EventMessage& event : ports_.bus.inbox.events()) ports_.log.forward(event);
+  for (const link::HeartbeatMessage& beat : ports_.bus.inbox.heartbeats()) {
+    supervisor_.on_heartbeat(beat.epoch);
+  }
+  read_events(now);
   read_stops(now.steady);
+}
+
+// A robot whose id is used twice is displayed as well, once: of other events the log is enough.
+void FlightLoop::read_events(const FlightTime& now) {
+  const auto events = ports_.bus.inbox.events();
+  const auto senders = ports_.bus.inbox.event_senders();
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    if (!throttle_.admit(senders[i], now.steady)) continue;
+    ports_.log.forward(events[i]);
+    if (events[i].code != link::kDuplicateId || !duplicates_.insert(events[i].source).second) {
+      continue;
+    }
+    ports_.display.print(fmt::format(
+        "{}: its process receives states under an id of its own that another process sent",
+        link::source_name(events[i].source)));
+  }
+  if (const auto dropped = throttle_.report(now.steady)) {
+    ports_.log.log(now.utc, {.warning = true, .code = "events-dropped", .text = *dropped});
+  }
 }
 
 // A command sends its stop to the robots, too, past a launcher that may have been suspended: what

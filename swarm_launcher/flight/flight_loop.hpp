@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,7 @@
 #include "swarm_launcher/flight/flight_choices.hpp"
 #include "swarm_launcher/flight/flight_ports.hpp"
 #include "swarm_launcher/flight/swarm_view.hpp"
+#include "swarm_launcher/supervision/event_throttle.hpp"
 #include "swarm_launcher/supervision/summary.hpp"
 #include "swarm_launcher/supervision/supervisor.hpp"
 
@@ -60,6 +62,7 @@ class FlightLoop {
   /// The parts of a step, in their order.
   void reap(const FlightTime& now);
   void read_bus(const FlightTime& now);
+  void read_events(const FlightTime& now);
   void read_stops(SteadyTime now);
   void serve_requests(const FlightTime& now);
   Result<void> act(const Action& action, UtcTime now);
@@ -86,6 +89,8 @@ class FlightLoop {
   SwarmView view_;
   FallenRobots fallen_;
   Confirmations confirmations_;
+  EventThrottle throttle_;
+  std::set<std::uint32_t> duplicates_;  ///< robots whose duplicate id was displayed
   std::map<pid_t, ProcessIndex> children_;
   std::vector<ControlRequests::ClientId> stopping_;  // wait for the confirmation of a stop
   Measurements measurements_;

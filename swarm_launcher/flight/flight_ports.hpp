@@ -41,7 +41,9 @@ class HelperProcesses {
  public:
   virtual ~HelperProcesses() = default;
   /// An event to log if the child that ended was one of them.
-  virtual std::optional<LogEvent> on_exit(pid_t pid) = 0;
+  virtual std::optional<LogEvent> on_exit(pid_t pid, SteadyTime now) = 0;
+  /// Starts those again whose restart is due, and returns what to log.
+  virtual std::vector<LogEvent> step(SteadyTime now) = 0;
   /// A message for the user that has become available, once.
   virtual std::optional<std::string> message() = 0;
 };

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "swarm_launcher/flight/gateway.hpp"
 
-#include <csignal>
 #include <cstdio>
 
 #include <fmt/format.h>
@@ -21,8 +20,6 @@ namespace {
 
 // Longest wait for states, and so the delay of a stop request.
 constexpr Duration kTimeout = std::chrono::milliseconds(5);
-// A gateway that ends this often has a permanent cause.
-constexpr int kMostRestarts = 10;
 
 }  // namespace
 
@@ -61,26 +58,10 @@ Result<ExitCode> run_gateway(const GatewayCommandOptions& options) {
   return ExitCode::kOk;
 }
 
-// The child is reaped by the launcher's loop, or by init after it.
-GatewayKeeper::~GatewayKeeper() {
-  if (pid_ > 0) ::kill(pid_, SIGTERM);
-}
-
-Result<void> GatewayKeeper::start() {
-  const auto pid = start_process({sibling_program("swarm_launcher"), "gateway", run_dir_.string(),
-                                  "--parent", fmt::format("{}", ::getpid())},
-                                 run_dir_ / shell::kLogsFolder / "gateway.log");
-  if (!pid) return tl::unexpected(pid.error());
-  pid_ = *pid;
-  return {};
-}
-
-std::optional<std::string> GatewayKeeper::on_exit(pid_t pid) {
-  if (pid != pid_) return std::nullopt;
-  pid_ = 0;
-  if (restarts_++ == kMostRestarts) return "the gateway ended too often: see logs/gateway.log";
-  const auto started = start();
-  return "the gateway ended" + (started ? "; started again" : ": " + started.error().message);
+Result<pid_t> start_gateway(const std::filesystem::path& run_dir) {
+  return start_process({sibling_program("swarm_launcher"), "gateway", run_dir.string(), "--parent",
+                        fmt::format("{}", ::getpid())},
+                       run_dir / shell::kLogsFolder / "gateway.log");
 }
 
 }  // namespace swarm::launcher

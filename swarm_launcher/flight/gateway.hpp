@@ -4,8 +4,6 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <optional>
-#include <string>
 
 #include <sys/types.h>
 
@@ -23,24 +21,7 @@ struct GatewayCommandOptions {
 /// receives a stop signal.
 Result<ExitCode> run_gateway(const GatewayCommandOptions& options);
 
-/// Runs the gateway process of a flight and restarts it when it ends, a limited number of times.
-/// Destruction ends the process.
-class GatewayKeeper {
- public:
-  explicit GatewayKeeper(std::filesystem::path run_dir) : run_dir_(std::move(run_dir)) {}
-  ~GatewayKeeper();
-  GatewayKeeper(const GatewayKeeper&) = delete;
-  GatewayKeeper& operator=(const GatewayKeeper&) = delete;
-
-  Result<void> start();
-  /// Restarts the gateway if the child that ended was the gateway, and returns a message for the
-  /// log.
-  std::optional<std::string> on_exit(pid_t pid);
-
- private:
-  std::filesystem::path run_dir_;
-  pid_t pid_ = 0;
-  int restarts_ = 0;
-};
+/// Starts `swarm_launcher gateway` as a child, as start_process() does, with logs/gateway.log.
+Result<pid_t> start_gateway(const std::filesystem::path& run_dir);
 
 }  // namespace swarm::launcher

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -11,12 +12,17 @@
 
 namespace swarm::launcher {
 
-/// Statuses and events of robots and planner as the launcher receives them: takes everything that
-/// arrived, lets the Gate check it, and offers what passed. Not thread-safe.
+/// Statuses and events of robots and planner and the planner's heartbeats as the launcher receives
+/// them: takes everything that arrived, lets the Gate check it, and offers what passed. Not
+/// thread-safe.
 class HealthInbox {
  public:
-  HealthInbox(link::ReaderPtr<link::StatusMessage> statuses,
-              link::ReaderPtr<link::EventMessage> events, const link::WireLimits& limits);
+  struct Readers {
+    link::ReaderPtr<link::StatusMessage> status;
+    link::ReaderPtr<link::EventMessage> event;
+    link::ReaderPtr<link::HeartbeatMessage> heartbeat;
+  };
+  HealthInbox(Readers readers, const link::WireLimits& limits);
 
   /// Replaces what the previous call received.
   void receive(UtcTime now);
@@ -25,15 +31,22 @@ class HealthInbox {
   std::span<const link::StatusMessage> statuses() const { return statuses_; }
   /// Of the last receive().
   std::span<const link::EventMessage> events() const { return events_; }
+  /// Who published each of events(); see RawSample::sender.
+  std::span<const std::uint64_t> event_senders() const { return event_senders_; }
+  /// Of the last receive().
+  std::span<const link::HeartbeatMessage> heartbeats() const { return heartbeats_; }
 
   const link::RefusalCounters& refused() const { return gate_.refused(); }
 
  private:
-  link::ReaderPtr<link::StatusMessage> status_reader_;
-  link::ReaderPtr<link::EventMessage> event_reader_;
+  void receive_events();
+
+  Readers readers_;
   link::Gate gate_;
   std::vector<link::StatusMessage> statuses_;
   std::vector<link::EventMessage> events_;
+  std::vector<std::uint64_t> event_senders_;
+  std::vector<link::HeartbeatMessage> heartbeats_;
 };
 
 }  // namespace swarm::launcher

@@ -10,7 +10,7 @@ namespace swarm::launcher {
 /// The launcher's endpoints on the bus.
 struct LauncherBus {
   link::Participant* participant;  ///< made the endpoints and outlives them
-  HealthInbox inbox;               ///< statuses and events of planner and robots
+  HealthInbox inbox;               ///< what planner and robots report
   link::WriterPtr<link::CommandMessage> commands;
   link::WriterPtr<link::SceneMessage> scenes;
   link::WriterPtr<link::StatusMessage> status_relay;  ///< for monitors

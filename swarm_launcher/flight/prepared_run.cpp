@@ -126,7 +126,7 @@ Result<void> PreparedRun::open_to_hosts() {
                            .first_process = first / per_process,
                            .fault = how.fault,
                            .mission_yaml = to_yaml(mission)},
-                 mission.link.status_hz, dir_);
+                 mission.link.status_hz, dir_, how.join_token);
   return {};
 }
 

@@ -2,26 +2,40 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "swarm_launcher/flight/run_helpers.hpp"
 
+#include <csignal>
+#include <utility>
+
+#include "swarm_launcher/flight/gateway.hpp"
+
 namespace swarm::launcher {
 
 RunHelpers::RunHelpers(const FlightChoices& how, const std::filesystem::path& run_dir)
     : monitors_(how.monitors, run_dir) {
-  if (how.by_gateway > 0) gateway_.emplace(run_dir);
+  if (how.by_gateway > 0) {
+    gateway_.emplace([run_dir] { return start_gateway(run_dir); },
+                     [](pid_t pid) { ::kill(pid, SIGTERM); });
+  }
 }
 
-Result<void> RunHelpers::start() {
+// A run that needs a gateway does not begin without one.
+Result<void> RunHelpers::start(SteadyTime now) {
   if (auto started = monitors_.start(); !started) return started;
-  return gateway_ ? gateway_->start() : Result<void>{};
+  return gateway_ ? gateway_->start(now) : Result<void>{};
 }
 
-std::optional<LogEvent> RunHelpers::on_exit(pid_t pid) {
+std::optional<LogEvent> RunHelpers::on_exit(pid_t pid, SteadyTime now) {
   if (const auto monitor = monitors_.on_exit(pid)) {
     return LogEvent{.warning = true, .code = "monitor-exit", .text = *monitor};
   }
-  if (const auto gateway = gateway_ ? gateway_->on_exit(pid) : std::nullopt) {
-    return LogEvent{.warning = true, .code = "gateway-exit", .text = *gateway};
+  return gateway_ ? gateway_->on_exit(pid, now) : std::nullopt;
+}
+
+std::vector<LogEvent> RunHelpers::step(SteadyTime now) {
+  std::vector<LogEvent> events;
+  if (gateway_) {
+    if (auto event = gateway_->step(now)) events.push_back(*std::move(event));
   }
-  return std::nullopt;
+  return events;
 }
 
 std::optional<std::string> RunHelpers::message() {

@@ -5,10 +5,11 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "swarm_launcher/flight/flight_choices.hpp"
 #include "swarm_launcher/flight/flight_ports.hpp"
-#include "swarm_launcher/flight/gateway.hpp"
+#include "swarm_launcher/flight/gateway_keeper.hpp"
 #include "swarm_launcher/flight/monitors.hpp"
 
 namespace swarm::launcher {
@@ -18,8 +19,9 @@ class RunHelpers final : public HelperProcesses {
  public:
   RunHelpers(const FlightChoices& how, const std::filesystem::path& run_dir);
 
-  Result<void> start();
-  std::optional<LogEvent> on_exit(pid_t pid) override;
+  Result<void> start(SteadyTime now);
+  std::optional<LogEvent> on_exit(pid_t pid, SteadyTime now) override;
+  std::vector<LogEvent> step(SteadyTime now) override;
   /// The address of the view, as soon as it is known.
   std::optional<std::string> message() override;
   /// Ends the monitors, see Monitors::finish(). The gateway ends with the object.

@@ -37,9 +37,11 @@ SteadyTime now() { return std::chrono::steady_clock::now(); }
 
 // Requests robots and waits for the offer. It was sent between our request and its arrival: taking
 // the middle, the two hosts' clocks agree to half of that time, a few hundredths of a second.
-Result<HostOffer> ask(LineSocket& socket, std::uint32_t robots) {
+Result<HostOffer> ask(LineSocket& socket, const JoinOptions& options) {
+  nlohmann::json request = {{"join", options.robots}};
+  if (!options.token.empty()) request["token"] = options.token;
   const SteadyTime asked = now();
-  socket.send(nlohmann::json{{"join", robots}}.dump());
+  socket.send(request.dump());
   for (const SteadyTime until = now() + kAnswerTimeout; now() < until && !socket.gone();) {
     socket.wait(kStep_ms);
     socket.flush();
@@ -217,7 +219,7 @@ Result<ExitCode> join_host(const JoinOptions& options) {
   if (!socket) return tl::unexpected(socket.error());
   const auto dir = shell::make_run_dir(options.out, "joined");
   if (!dir) return tl::unexpected(dir.error());
-  auto offer = ask(*socket, options.robots);
+  auto offer = ask(*socket, options);
   if (!offer) return tl::unexpected(offer.error());
   offer->run.interface = options.interface.empty() ? socket->own_address() : options.interface;
   const auto mission_file = *dir / shell::kMissionFile;

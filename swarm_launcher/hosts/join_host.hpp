@@ -15,6 +15,7 @@ namespace swarm::launcher {
 struct JoinOptions {
   std::string launcher;      ///< HOST:PORT
   std::uint32_t robots = 1;  ///< wanted; the launcher may have fewer left
+  std::string token{};       ///< that the launcher asks for; empty: none
   std::string interface;     ///< our address; empty: the one on the route to the launcher
   link::Vendor dds = link::Vendor::kFastDds;  ///< of the agents
   std::filesystem::path out;                  ///< run directory; empty: runs/<mission>-<time>

@@ -39,6 +39,22 @@ std::optional<std::uint64_t> number(const nlohmann::json& json, const char* key,
   return value <= most ? std::optional(value) : std::nullopt;
 }
 
+/// A field that is a text; empty if it is missing or something else.
+std::string text(const nlohmann::json& json, const char* key) {
+  const auto field = json.find(key);
+  return field != json.end() && field->is_string() ? field->get<std::string>() : "";
+}
+
+/// Takes as long for a text that differs early as for one that differs late, so that a token cannot
+/// be found character by character.
+bool is_same(const std::string& a, const std::string& b) {
+  unsigned difference = a.size() == b.size() ? 0U : 1U;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    difference |= static_cast<unsigned char>(a[i]) ^ static_cast<unsigned char>(b[i % b.size()]);
+  }
+  return difference == 0;
+}
+
 }  // namespace
 
 // The unsigned difference is out of range for robots below the first one as well.
@@ -52,13 +68,17 @@ void RemoteHosts::on_user_command(CommandKind kind) {
   if (kind == CommandKind::kPause) paused_ = false;
 }
 
+// False: the connection is to be closed.
+bool RemoteHosts::refuse(Host& host, const char* why) {
+  host.socket.send(nlohmann::json{{"refused", why}}.dump());
+  return false;
+}
+
 /// Assigns the next free robots, in whole processes and at most as many as requested, and sends the
 /// offer. False if there are none.
 bool RemoteHosts::answer(Host& host, std::uint32_t robots) {
   if (begun_ || free_.empty()) {
-    const char* const why = begun_ ? "the mission has begun" : "it has all the robots it needs";
-    host.socket.send(nlohmann::json{{"refused", why}}.dump());
-    return false;
+    return refuse(host, begun_ ? "the mission has begun" : "it has all the robots it needs");
   }
   const std::uint32_t per = offer_.per_process;
   Block& block = free_.front();
@@ -71,7 +91,7 @@ bool RemoteHosts::answer(Host& host, std::uint32_t robots) {
   host.processes = (given + per - 1) / per;
   host.watch =
       HostWatch(host.processes * ((std::min(per, given) + kRobotsPerStatus - 1) / kRobotsPerStatus),
-                status_hz_);
+                status_hz_, now_);
   block.first += given;
   block.robots -= given;
   if (block.robots == 0) free_.erase(free_.begin());
@@ -89,8 +109,11 @@ bool RemoteHosts::take_line(Host& host, const std::string& line) {
   if (!json.is_object()) return false;
   if (host.robots == 0) {
     const auto wanted = number(json, "join", 1'000'000);
-    return wanted && *wanted > 0 &&
-           answer(host,
+    if (!wanted || *wanted == 0) return false;
+    if (!token_.empty() && !is_same(text(json, "token"), token_)) {
+      return refuse(host, "its --join-token is missing or wrong");
+    }
+    return answer(host,
                   static_cast<std::uint32_t>(std::min<std::uint64_t>(*wanted, offer_.robots)));
   }
   if (json.contains("over")) {
@@ -148,6 +171,7 @@ void RemoteHosts::drop(Host& host) {
 
 std::vector<LogEvent> RemoteHosts::step(Supervisor& supervisor, SteadyTime now) {
   begun_ = supervisor.stage() > Supervisor::Stage::kGathering;
+  now_ = now;
   // Connections that never requested robots are forgotten.
   std::erase_if(hosts_, [](const Host& host) { return host.robots == 0 && host.left; });
   while (hosts_.size() < kMaxHosts) {
@@ -166,34 +190,45 @@ std::vector<LogEvent> RemoteHosts::step(Supervisor& supervisor, SteadyTime now) 
     supervisor.on_joined(host.first_process, host.processes, now);
     log.push_back({.code = "host-joined", .text = describe(host.first_robot, host.robots)});
   }
-  // Reachability of each host. A host that is over counts as ended processes; before the start its
-  // robots become free for another host.
-  bool cut = false;
+  cut_ = false;
   for (Host& host : hosts_) {
-    if (host.robots == 0 || host.counted) continue;
-    const std::string who = describe(host.first_robot, host.robots);
-    const auto change = host.watch.step(now);
-    if (change && !host.over) {
-      const bool lost_it = *change == HostWatch::Change::kCut;
-      log.push_back(
-          {.warning = lost_it,
-           .code = lost_it ? "host-silent" : "host-back",
-           .text = who + (lost_it ? " is not received: the others pause" : " is received again")});
-    }
-    if (host.watch.lost(now)) drop(host);
-    cut = cut || (host.watch.cut() && !host.over);
-    if (!host.over) continue;
-    host.counted = true;
-    for (std::uint32_t i = 0; i < host.processes; ++i) {
-      supervisor.on_exit(ProcessIndex(host.first_process.value() + i), {}, now);
-    }
-    if (!begun_) free_.push_back({host.first_robot - offer_.first_robot, host.robots});
-    log.push_back({.warning = supervisor.stage() != Supervisor::Stage::kEnding,
-                   .code = "host-over",
-                   .text = who + " has ended"});
+    if (host.robots > 0 && !host.counted) watch(host, supervisor, now, log);
   }
-  pause_or_resume(cut, supervisor, now);
+  pause_or_resume(cut_, supervisor, now);
   return log;
+}
+
+// Reachability of a host. A host that is over counts as ended processes; before the start its
+// robots become free for another host.
+void RemoteHosts::watch(Host& host, Supervisor& supervisor, SteadyTime now,
+                        std::vector<LogEvent>& log) {
+  const std::string who = describe(host.first_robot, host.robots);
+  const auto change = host.watch.step(now);
+  if (change && !host.over) {
+    const bool lost_it = *change == HostWatch::Change::kCut;
+    log.push_back(
+        {.warning = lost_it,
+         .code = lost_it ? "host-silent" : "host-back",
+         .text = who + (lost_it ? " is not received: the others pause" : " is received again")});
+  }
+  if (!host.over && host.watch.lost(now)) {
+    if (!host.watch.was_received()) {
+      log.push_back({.warning = true,
+                     .code = "host-absent",
+                     .text = who + " has joined, but its robots send no status: it is dropped"});
+    }
+    drop(host);
+  }
+  cut_ = cut_ || (host.watch.cut() && !host.over);
+  if (!host.over) return;
+  host.counted = true;
+  for (std::uint32_t i = 0; i < host.processes; ++i) {
+    supervisor.on_exit(ProcessIndex(host.first_process.value() + i), {}, now);
+  }
+  if (!begun_) free_.push_back({host.first_robot - offer_.first_robot, host.robots});
+  log.push_back({.warning = supervisor.stage() != Supervisor::Stage::kEnding,
+                 .code = "host-over",
+                 .text = who + " has ended"});
 }
 
 /// Pauses once per cut. If the user resumes during a cut, the mission is not paused again until the

@@ -19,13 +19,17 @@ namespace swarm::launcher {
 /// number of robots over TCP, receives the mission and how to meet, is notified when to end them,
 /// and then sends their robot logs. In flight a host is monitored by its robots' statuses only:
 /// while they are not received, the mission is paused, because the robots of the two sides do not
-/// receive each other.
+/// receive each other. A host that has robots but whose robots never report is dropped, and they
+/// are free for another one.
 class RemoteHosts {
  public:
   /// `offer`: all robots that are for other hosts. `dir`: the run's directory.
-  RemoteHosts(LineServer server, HostOffer offer, double status_hz, std::filesystem::path dir)
+  /// `token`: a host must know it to get robots; empty: none is needed.
+  RemoteHosts(LineServer server, HostOffer offer, double status_hz, std::filesystem::path dir,
+              std::string token = {})
       : server_(std::move(server)),
         offer_(std::move(offer)),
+        token_(std::move(token)),
         status_hz_(status_hz),
         dir_(std::move(dir)),
         free_({{0, offer_.robots}}),
@@ -55,7 +59,7 @@ class RemoteHosts {
   struct Host {
     LineSocket socket;
     SteadyTime came;
-    HostWatch watch{1, 1.0};
+    HostWatch watch{1, 1.0, came};
     std::uint32_t first_robot = 0, robots = 0;  // none: no request yet
     ProcessIndex first_process{};
     std::uint32_t processes = 0;
@@ -76,6 +80,8 @@ class RemoteHosts {
   /// False if the line is not valid: then the connection is dropped.
   bool take_line(Host& host, const std::string& line);
   bool answer(Host& host, std::uint32_t robots);
+  bool refuse(Host& host, const char* why);
+  void watch(Host& host, Supervisor& supervisor, SteadyTime now, std::vector<LogEvent>& log);
   void take_log(Host& host);
   void drop(Host& host);
   /// Pauses the mission while a host is cut off.
@@ -83,6 +89,7 @@ class RemoteHosts {
 
   LineServer server_;
   HostOffer offer_;
+  std::string token_;
   double status_hz_;
   std::filesystem::path dir_;
   std::vector<Host> hosts_;
@@ -91,7 +98,9 @@ class RemoteHosts {
   std::vector<bool> collected_;      // robot logs
   bool paused_ = false;              // by us
   bool overruled_ = false;           // the user resumed in spite of the cut
+  bool cut_ = false;                 // a host is cut off
   bool begun_ = false;
+  SteadyTime now_{};  // of the step in progress
 };
 
 }  // namespace swarm::launcher

@@ -80,13 +80,17 @@ std::pair<RobotId, std::uint32_t> Supervisor::robots_of(ProcessIndex process) co
   return {RobotId(first), std::min(options_.per_process, options_.robots - first)};
 }
 
+// A status that a process sent before it ended may arrive after its end was noticed.
 void Supervisor::on_status(RobotId robot, const RobotReport& report) {
   Robot& r = robots_.at(robot.value());
+  Process& process = process_of(robot);
+  const bool is_late = r.silent_since && report.sent_at <= *r.silent_since;
+  if (is_late && !r.received && !r.absent) return;
   r.report = report;
   r.received = true;
-  processes_[1 + robot.value() / options_.per_process].received = true;
-  // A status that a process sent before it died may arrive after its death was noticed.
-  if (!r.silent_since || report.sent_at <= *r.silent_since) return;
+  process.silence.on_received();
+  if (std::exchange(r.absent, false)) late_joiners_.push_back(robot);
+  if (!r.silent_since || is_late) return;
   r.silent_since.reset();
   std::erase(fallen_, robot);
   risen_.push_back(robot);
@@ -161,9 +165,7 @@ void Supervisor::gather(SteadyTime now, std::vector<Action>& actions) {
       return;
     }
   }
-  for (std::uint32_t i = 0; i < robots_.size(); ++i) {
-    robots_[i].lost = robots_[i].lost || !processes_[1 + i / options_.per_process].started;
-  }
+  leave_out_absent(now);
   stage_ = Stage::kRunning;
   command(CommandKind::kStart, now, actions);
 }
@@ -276,6 +278,7 @@ std::vector<Action> Supervisor::step(SteadyTime now) {
   }
   if (stage_ == Stage::kDone) return actions;
   keep_bodies(actions);
+  report_late_joiners(actions);
   watch_silence(now, actions);
   for (const CommandKind kind : std::exchange(pending_commands_, {})) command(kind, now, actions);
   repeat_stop(now, actions);
@@ -292,7 +295,7 @@ Supervisor::Counts Supervisor::counts() const {
   Counts c;
   for (const Process& p : processes_) c.started += p.started ? 1 : 0;
   for (const Robot& r : robots_) {
-    if (r.lost || has_failed(r)) {
+    if (is_out(r)) {
       ++c.lost;
       continue;
     }
@@ -304,12 +307,12 @@ Supervisor::Counts Supervisor::counts() const {
   return c;
 }
 
-// A robot whose process has ended cannot confirm; its driver stops it without commands.
+// A robot whose process has ended or hangs since its start cannot confirm; its driver stops it
+// without commands.
 std::vector<RobotId> Supervisor::unstopped() const {
   std::vector<RobotId> out;
   for (std::uint32_t i = 0; i < robots_.size(); ++i) {
-    const std::uint32_t process = 1 + i / options_.per_process;
-    const bool runs = processes_[process].alive && !robots_[i].lost;
+    const bool runs = process_of(RobotId(i)).alive && !robots_[i].lost && !robots_[i].absent;
     if (runs && robots_[i].report.mode != RobotMode::kStopped) out.emplace_back(i);
   }
   return out;
@@ -318,7 +321,7 @@ std::vector<RobotId> Supervisor::unstopped() const {
 std::vector<RobotId> Supervisor::lost() const {
   std::vector<RobotId> out;
   for (std::uint32_t i = 0; i < robots_.size(); ++i) {
-    if (robots_[i].lost || has_failed(robots_[i])) out.emplace_back(i);
+    if (is_out(robots_[i])) out.emplace_back(i);
   }
   return out;
 }

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "swarm_launcher/supervision/restart_policy.hpp"
+#include "swarm_launcher/supervision/silence_watch.hpp"
 #include "swarmflow/core/ids.hpp"
 #include "swarmflow/core/strong_id.hpp"
 #include "swarmflow/core/time.hpp"
@@ -30,6 +31,8 @@ struct SupervisorOptions {
   std::uint32_t remote_processes = 0;  ///< number of those that other hosts start: the last ones
   LauncherSpec launcher;
   std::vector<ScriptEvent> script;
+  SilenceLimits agent_silence{};                    ///< between the statuses of an agent process
+  SilenceLimits planner_silence{};                  ///< between the planner's heartbeats
   Duration signal_grace = std::chrono::seconds(5);  ///< time between SIGINT, SIGTERM and SIGKILL
 };
 
@@ -122,7 +125,10 @@ class Supervisor {
   void on_stop_confirmed(RobotId robot) {
     robots_.at(robot.value()).report.mode = RobotMode::kStopped;
   }
-  /// Another host has taken over `count` processes from `first` on.
+  /// A heartbeat of the planner of this epoch arrived.
+  void on_heartbeat(std::uint64_t epoch);
+  /// Another host has taken over `count` processes from `first` on. This gives the robots no more
+  /// time to get ready: otherwise a host that joins again and again would delay the start for ever.
   void on_joined(ProcessIndex first, std::uint32_t count, SteadyTime now);
   /// A process has ended. An agent process is restarted while it died no more often in a row than
   /// the mission allows (see RestartPolicy), and then its robots are lost. The planner is restarted
@@ -170,15 +176,15 @@ class Supervisor {
     bool started = false;
     SteadyTime started_at;
     RestartPolicy restarts{};
-    bool received = false;                    ///< a status, since the last step
-    std::optional<SteadyTime> received_at{};  ///< the last one; none since its start
-    bool is_silent = false;                   ///< reported as such
-    SteadyTime respawn_at;                    ///< when it may be restarted
+    SilenceWatch silence{};
+    bool is_killed = false;  ///< because it was silent
+    SteadyTime respawn_at;   ///< when it may be restarted
     bool respawn_due = false;
   };
   struct Robot {
     RobotReport report;
-    bool received = false;
+    bool received = false;  ///< since the last start of its process
+    bool absent = false;    ///< not received when the mission started
     bool lost = false;
     std::optional<SteadyTime> silent_since{};  // its body is an obstacle
   };
@@ -186,9 +192,16 @@ class Supervisor {
   /// Whether another host starts the process.
   bool is_remote(ProcessIndex process) const { return process.value() >= local_processes(); }
   std::uint32_t local_processes() const { return processes() - options_.remote_processes; }
+  Process& process_of(RobotId robot) {
+    return processes_[1 + robot.value() / options_.per_process];
+  }
+  const Process& process_of(RobotId robot) const {
+    return processes_[1 + robot.value() / options_.per_process];
+  }
   bool is_starting(std::uint32_t process, SteadyTime now) const;
   /// The steps of a stage; each appends its actions.
   void start_due(SteadyTime now, std::vector<Action>& actions);
+  void start(ProcessIndex process, SteadyTime now, std::vector<Action>& actions);
   void gather(SteadyTime now, std::vector<Action>& actions);
   void run(SteadyTime now, std::vector<Action>& actions);
   void play_script(SteadyTime now, std::vector<Action>& actions);
@@ -200,7 +213,21 @@ class Supervisor {
   bool has_failed(const Robot& robot) const {
     return robot.report.mode == RobotMode::kStopped && phase_ != MissionPhase::kStopped;
   }
+  /// The robot cannot arrive: its process has ended for good or hangs, or it stopped by itself.
+  bool is_out(const Robot& robot) const { return robot.lost || robot.absent || has_failed(robot); }
+
+  /// Processes that are silent.
+  const SilenceLimits& limits_of(std::uint32_t process) const {
+    return process == kPlanner.value() ? options_.planner_silence : options_.agent_silence;
+  }
   void watch_silence(SteadyTime now, std::vector<Action>& actions);
+  void end_silent(SteadyTime now, std::vector<Action>& actions);
+  Duration first_beat_timeout() const;
+  static std::string_view sign_of_life(std::uint32_t process);
+  std::string name_of(ProcessIndex process) const;
+  void leave_out_absent(SteadyTime now);
+  void report_late_joiners(std::vector<Action>& actions);
+
   void hold_without_planner(std::uint32_t deaths);
   void repeat_stop(SteadyTime now, std::vector<Action>& actions);
   void begin_ending(Outcome outcome, SteadyTime now);
@@ -216,8 +243,12 @@ class Supervisor {
   std::vector<Robot> robots_;
   std::vector<LogEvent> pending_log_;
   std::vector<CommandKind> pending_commands_;
-  std::vector<RobotId> fallen_;   // since the last step
-  std::vector<RobotId> risen_;    ///< received again since the last step
+  std::vector<RobotId> fallen_;        // since the last step
+  std::vector<RobotId> risen_;         ///< received again since the last step
+  std::vector<RobotId> late_joiners_;  ///< absent ones that reported since the last step
+  std::uint64_t planner_epoch_ = 0;    ///< of the last heartbeat
+  std::uint64_t ended_epoch_ = 0;      ///< of the last planner that ended
+  std::optional<SteadyTime> stepped_at_{};
   std::uint32_t next_start_ = 0;  ///< first process that was never started
   SteadyTime begun_;
   SteadyTime last_start_;

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-// The life of the processes under the supervisor: start, silence, end, restart.
+// The life of the processes under the supervisor: start, end, restart.
 #include <utility>
 
 #include <fmt/format.h>
@@ -12,8 +12,6 @@ namespace {
 
 // A process that has not been received after this time no longer delays the next starts.
 constexpr Duration kStartTimeout = std::chrono::seconds(5);
-// Without a status for this long, a process is reported; it sends one every second.
-constexpr Duration kSilence = std::chrono::seconds(3);
 
 std::string describe(const ProcessExit& exit) {
   return exit.signal != 0 ? fmt::format("killed by signal {}", exit.signal)
@@ -27,25 +25,29 @@ void Supervisor::on_joined(ProcessIndex first, std::uint32_t count, SteadyTime n
   for (std::uint32_t i = first.value(); i < first.value() + count; ++i) {
     Process& p = processes_.at(i);
     p.alive = p.started = true;
-    p.started_at = last_start_ = now;
+    p.started_at = now;
+    p.silence.on_start(now);
     const auto [robot, robots] = robots_of(ProcessIndex(i));
     for (std::uint32_t r = robot.value(); r < robot.value() + robots; ++r) robots_[r].lost = false;
   }
 }
 
 // In this order: the run is ending; a remote process before the start, which another host may
-// replace; restart; given up.
+// replace; restart; given up. What the robots of the process reported does not hold any more.
 void Supervisor::on_exit(ProcessIndex process, const ProcessExit& exit, SteadyTime now) {
   Process& p = processes_.at(process.value());
   p.alive = false;
   if (stage_ == Stage::kEnding || stage_ == Stage::kDone) return;
   const auto [first, count] = robots_of(process);
-  if (is_remote(process) && stage_ != Stage::kRunning) {  // another host may replace it
+  for (std::uint32_t r = first.value(); r < first.value() + count; ++r) {
+    robots_[r].received = false;
+    robots_[r].report = {};
+  }
+  if (is_remote(process) && stage_ != Stage::kRunning) {
     p.started = false;
-    for (std::uint32_t r = first.value(); r < first.value() + count; ++r)
-      robots_[r].received = false;
     return;
   }
+  if (process == kPlanner) ended_epoch_ = planner_epoch_;
 
   for (std::uint32_t i = 0; i < count; ++i) on_silent(RobotId(first.value() + i), now);
   const bool is_planner = process == kPlanner;
@@ -79,23 +81,12 @@ void Supervisor::on_exit(ProcessIndex process, const ProcessExit& exit, SteadyTi
   for (std::uint32_t i = 0; i < count; ++i) robots_[first.value() + i].lost = true;
 }
 
-// A process that hangs or is cut off reports nothing, and does not end either, so an event reports it.
-void Supervisor::watch_silence(SteadyTime now, std::vector<Action>& actions) {
-  for (std::uint32_t i = 1; i < processes(); ++i) {
-    Process& p = processes_[i];
-    if (std::exchange(p.received, false)) p.received_at = now;
-    const bool is_silent = p.alive && p.received_at && now - *p.received_at > kSilence;
-    if (is_silent == p.is_silent) continue;
-    p.is_silent = is_silent;
-    if (!p.alive) continue;  // its end has been reported
-    const auto [first, count] = robots_of(ProcessIndex(i));
-    actions.emplace_back(LogEvent{
-        .warning = is_silent,
-        .code = is_silent ? "agent-silent" : "agent-back",
-        .text = fmt::format("agent process {} (robots {} to {}) {}", i, first.value(),
-                            first.value() + count - 1,
-                            is_silent ? "has sent no status for 3 s" : "sends its status again")});
-  }
+// Robots that were absent when the mission started.
+void Supervisor::report_late_joiners(std::vector<Action>& actions) {
+  if (late_joiners_.empty()) return;
+  actions.emplace_back(LogEvent{.code = "late-joiners",
+                                .text = "robots that were absent at the start report: " +
+                                        launcher::describe(std::exchange(late_joiners_, {}))});
 }
 
 // Robots without a planner hold by themselves: ending their processes would not be safer.
@@ -118,6 +109,16 @@ bool Supervisor::is_starting(std::uint32_t process, SteadyTime now) const {
          !robots_[robots_of(ProcessIndex(process)).first.value()].received;
 }
 
+void Supervisor::start(ProcessIndex process, SteadyTime now, std::vector<Action>& actions) {
+  Process& p = processes_[process.value()];
+  p.alive = p.started = true;
+  p.started_at = now;
+  p.restarts.on_start(now);
+  p.silence.on_start(now);
+  p.is_killed = false;
+  actions.emplace_back(StartProcess{process});
+}
+
 // First the restarts that are due, then new processes: at most starts_per_s on average, and at most
 // starting_max that are not received yet. The planner, with index 0, is the first.
 void Supervisor::start_due(SteadyTime now, std::vector<Action>& actions) {
@@ -125,12 +126,7 @@ void Supervisor::start_due(SteadyTime now, std::vector<Action>& actions) {
     Process& p = processes_[i];
     if (!p.respawn_due || now < p.respawn_at) continue;
     p.respawn_due = false;
-    p.alive = true;
-    p.started_at = now;
-    p.restarts.on_start(now);
-    p.received_at.reset();
-    p.is_silent = false;
-    actions.emplace_back(StartProcess{ProcessIndex(i)});
+    start(ProcessIndex(i), now, actions);
     actions.emplace_back(LogEvent{
         .code = "respawn",
         .text = i == 0 ? "planner restarted" : fmt::format("agent process {} restarted", i)});
@@ -141,10 +137,7 @@ void Supervisor::start_due(SteadyTime now, std::vector<Action>& actions) {
   for (std::uint32_t i = 0; i < next_start_; ++i) starting += is_starting(i, now) ? 1 : 0;
   while (next_start_ < local_processes() && static_cast<double>(next_start_) < due &&
          starting++ < options_.launcher.starting_max) {
-    processes_[next_start_].alive = processes_[next_start_].started = true;
-    processes_[next_start_].started_at = now;
-    processes_[next_start_].restarts.on_start(now);
-    actions.emplace_back(StartProcess{ProcessIndex(next_start_++)});
+    start(ProcessIndex(next_start_++), now, actions);
     last_start_ = now;
   }
 }

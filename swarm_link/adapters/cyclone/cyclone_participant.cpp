@@ -142,7 +142,9 @@ class CycloneReader final : public RawReader {
       if (came <= 0) return taken;
       for (std::size_t i = 0; i < static_cast<std::size_t>(came); ++i) {
         if (infos[i].valid_data) {  // else a notice that a writer has left
-          sink({.bytes = bytes_of(*samples[i]), .published_utc_ns = infos[i].source_timestamp});
+          sink({.bytes = bytes_of(*samples[i]),
+                .published_utc_ns = infos[i].source_timestamp,
+                .sender = infos[i].publication_handle});
           ++taken;
         }
         ddsi_serdata_unref(samples[i]);

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "swarm_link/adapters/fastdds/endpoints.hpp"
 
+#include <cstdint>
+#include <cstring>
 #include <exception>
 
 #include <fastdds/dds/publisher/DataWriter.hpp>
@@ -11,6 +13,21 @@
 namespace swarm::link::fastdds {
 
 namespace dds = eprosima::fastdds::dds;
+
+namespace {
+
+// By participant: a process that makes many writers is one sender.
+std::uint64_t sender_of(const dds::SampleInfo& info) {
+  const auto& prefix = info.sample_identity.writer_guid().guidPrefix;
+  std::uint64_t host_and_process = 0;
+  std::uint32_t participant = 0;
+  static_assert(sizeof prefix.value == sizeof host_and_process + sizeof participant);
+  std::memcpy(&host_and_process, prefix.value, sizeof host_and_process);
+  std::memcpy(&participant, prefix.value + sizeof host_and_process, sizeof participant);
+  return host_and_process ^ (std::uint64_t{participant} << 32U);
+}
+
+}  // namespace
 
 // The endpoint goes before its topic: the vendor refuses to delete a topic in use.
 FastDdsWriter::~FastDdsWriter() {
@@ -46,7 +63,9 @@ std::size_t FastDdsReader::take(const Sink& sink) {
     dds::SampleInfo info;
     while (reader_->take_next_sample(&sample_, &info) == ReturnCode_t::RETCODE_OK) {
       if (!info.valid_data) continue;  // a notice that a writer has left
-      sink({.bytes = sample_.bytes, .published_utc_ns = info.source_timestamp.to_ns()});
+      sink({.bytes = sample_.bytes,
+            .published_utc_ns = info.source_timestamp.to_ns(),
+            .sender = sender_of(info)});
       ++taken;
     }
   } catch (const std::exception&) {

@@ -144,12 +144,16 @@ class PlannerReceiver final : public QueueReceiver<CommandMessage, SceneMessage,
   std::size_t statuses_ = 0;
 };
 
-class LauncherReceiver final : public QueueReceiver<StatusMessage, EventMessage> {
+class LauncherReceiver final
+    : public QueueReceiver<StatusMessage, EventMessage, HeartbeatMessage> {
  public:
   explicit LauncherReceiver(const Mission& mission)
-      : inbox_(reader<StatusMessage>(), reader<EventMessage>(), wire_limits(mission)) {}
+      : inbox_({reader<StatusMessage>(), reader<EventMessage>(), reader<HeartbeatMessage>()},
+               wire_limits(mission)) {}
 
-  std::string state() override { return fmt::format("statuses {} events {}", statuses_, events_); }
+  std::string state() override {
+    return fmt::format("statuses {} events {} heartbeats {}", statuses_, events_, heartbeats_);
+  }
   const RefusalCounters& refused() const override { return inbox_.refused(); }
 
  private:
@@ -157,9 +161,11 @@ class LauncherReceiver final : public QueueReceiver<StatusMessage, EventMessage>
     inbox_.receive(now);
     statuses_ += inbox_.statuses().size();
     events_ += inbox_.events().size();
+    heartbeats_ += inbox_.heartbeats().size();
   }
 
   launcher::HealthInbox inbox_;
+  std::size_t heartbeats_ = 0;
   std::size_t statuses_ = 0;
   std::size_t events_ = 0;
 };

@@ -78,6 +78,27 @@ TEST(PlanKeeperClock, GoesOnAfterARestartWhereTheRobotsAre) {
   EXPECT_LE(bench.keeper.clock(bench.utc).plan_time_s, 41.5);
 }
 
+// Heartbeats went on while the keeper planned; a pause that arrived meanwhile stops its clock.
+TEST(PlanKeeperClock, DoesNotGoBackBehindWhatTheRobotsHave) {
+  Bench bench;
+  bench.keeper.set_phase(MissionPhase::kRunning);
+  bench.run_for(5);
+  const PlanClock before = bench.keeper.clock(bench.utc);
+  bench.keeper.set_phase(MissionPhase::kPaused);
+  bench.keeper.on_published(
+      {.plan_version = before.plan_version, .plan_time_s = before.plan_time_s + 3.0, .rate = 1.0});
+  bench.step_after(std::chrono::seconds(4));
+  EXPECT_DOUBLE_EQ(bench.keeper.clock(bench.utc).plan_time_s, before.plan_time_s + 3.0);
+  EXPECT_EQ(bench.keeper.clock(bench.utc).rate, 0.0);
+  ASSERT_FALSE(bench.readings.empty());
+  EXPECT_DOUBLE_EQ(bench.readings.back().plan_time_s, before.plan_time_s + 3.0);
+
+  bench.keeper.on_published({.plan_version = 99, .plan_time_s = 1000.0, .rate = 1.0});
+  bench.run_for(1);
+  EXPECT_DOUBLE_EQ(bench.keeper.clock(bench.utc).plan_time_s, before.plan_time_s + 3.0)
+      << "of another plan";
+}
+
 TEST(PlanKeeperClock, StartsOverWithANewPlan) {
   Bench bench;
   bench.keeper.set_phase(MissionPhase::kRunning);

@@ -197,5 +197,27 @@ TEST_F(InboxTest, CountsDamagedSamplesOfAllItsReaders) {
   EXPECT_EQ(sut_.refused()[link::RefusalReason::kUndecodable], 32U);
 }
 
+TEST_F(InboxTest, NamesAnIdOfItsOwnThatAnotherProcessUses) {
+  receive();
+  send_state(3, utc_ns(-milliseconds(50)));
+  receive();
+  EXPECT_EQ(sut_.duplicate_id(), RobotId(3));
+}
+
+TEST_F(InboxTest, DoesNotTakeStatesOfItsPredecessorOrItsEchoesForADuplicate) {
+  receive();
+  send_state(3, utc_ns(milliseconds(200)));  // published before this process began
+  receive();
+  EXPECT_FALSE(sut_.duplicate_id());
+
+  const link::RobotStateMessage sent{
+      .robot_id = 3, .sequence_number = 5, .stamp_utc_ns = utc_ns(-milliseconds(50))};
+  own_.record_sent(sent);
+  send_state(3, sent.stamp_utc_ns);
+  send_state(4, utc_ns());
+  receive();
+  EXPECT_FALSE(sut_.duplicate_id());
+}
+
 }  // namespace
 }  // namespace swarm::agent

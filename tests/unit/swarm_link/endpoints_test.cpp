@@ -39,7 +39,9 @@ class FakeReader final : public RawReader {
   explicit FakeReader(RawEnd& end) : end_(end) {}
   std::size_t take(const Sink& sink) override {
     const std::size_t taken = end_.samples.size();
-    for (; !end_.samples.empty(); end_.samples.pop_front()) sink({.bytes = end_.samples.front()});
+    for (std::uint64_t sender = 1; !end_.samples.empty(); end_.samples.pop_front()) {
+      sink({.bytes = end_.samples.front(), .sender = sender++});
+    }
     return taken;
   }
   int matched() const override { return 4; }
@@ -98,6 +100,19 @@ TEST_F(EndpointsTest, DropAndCountWhatIsNoSampleAndKeepWhatTheCallerHad) {
   end.samples.emplace_back();
   EXPECT_EQ(reader.take(received), 0U);
   EXPECT_EQ(reader.undecodable(), 3U) << "since the start";
+}
+
+TEST_F(EndpointsTest, NameTheSenderOfEveryMessageThatIsOne) {
+  EXPECT_TRUE(writer.write(batch(1)));
+  end.samples.push_back(Bytes(7, std::byte{0xAB}));
+  EXPECT_TRUE(writer.write(batch(2)));
+  std::vector<CellStatesMessage> received = {batch(9)};
+  std::vector<std::uint64_t> senders = {77};
+
+  EXPECT_EQ(reader.take_with_senders(received, senders), 2U);
+
+  EXPECT_EQ(received, (std::vector{batch(9), batch(1), batch(2)}));
+  EXPECT_EQ(senders, (std::vector<std::uint64_t>{77, 1, 3}));
 }
 
 TEST_F(EndpointsTest, HaveTheMatchesOfTheBackend) {

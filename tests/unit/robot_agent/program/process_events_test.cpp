@@ -94,6 +94,16 @@ TEST_F(ProcessEventsTest, AnnounceRefusalsByReasonOnceASecond) {
   EXPECT_EQ(tick(seconds(1)), Texts{"refused: 1 message(s): out-of-range"});
 }
 
+TEST_F(ProcessEventsTest, AnnounceADuplicateIdOnce) {
+  EXPECT_EQ(tick(), Texts{});
+  send_state(3, utc_ns(-milliseconds(50)));
+  EXPECT_EQ(tick(), Texts{"duplicate-id: robot 3: a state arrived under its id that it did not "
+                          "publish: another process uses the id, or forges states"});
+  EXPECT_EQ(severity_, link::Severity::kError);
+  send_state(3, utc_ns(-milliseconds(50)));
+  EXPECT_EQ(tick(), Texts{});
+}
+
 TEST_F(ProcessEventsTest, AnnounceClocksThatDiffer) {
   tick();
   send_state(1, utc_ns(-seconds(3)));

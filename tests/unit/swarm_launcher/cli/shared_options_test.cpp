@@ -6,6 +6,7 @@
 #include <string>
 
 #include <gtest/gtest.h>
+#include <stdlib.h>
 
 namespace swarm::launcher::cli {
 namespace {
@@ -16,6 +17,7 @@ struct Parsed {
     CLI::App app;
     add_channel(app, channel);
     add_domain(app, domain);
+    add_join_token(app, token);
     try {
       app.parse(command_line);
     } catch (const CLI::ParseError& e) {
@@ -24,6 +26,7 @@ struct Parsed {
   }
   std::optional<Channel> channel = Channel::kGroups;
   int domain = -1;
+  std::string token;
   std::string refused;
 };
 
@@ -49,6 +52,23 @@ TEST(DomainOption, IsANumberWithRoomForThePortsOfARun) {
   }
   for (const char* wrong : {"-1", "230", "4294967296", "1.5", "seven", ""}) {
     EXPECT_FALSE(Parsed(std::string("--domain=") + wrong).refused.empty()) << wrong;
+  }
+}
+
+TEST(JoinTokenOption, ComesFromTheCommandLineOrTheEnvironment) {
+  EXPECT_EQ(Parsed("").token, "");
+  EXPECT_EQ(Parsed("--join-token s3cret").token, "s3cret");
+  ::setenv("SWARMFLOW_JOIN_TOKEN", "other", 1);
+  EXPECT_EQ(Parsed("").token, "other");
+  EXPECT_EQ(Parsed("--join-token s3cret").token, "s3cret");
+  ::unsetenv("SWARMFLOW_JOIN_TOKEN");
+}
+
+TEST(JoinTokenOption, IsShortAndPrintable) {
+  EXPECT_EQ(Parsed("--join-token " + std::string(256, 'x')).refused, "");
+  for (const std::string& wrong :
+       {std::string(257, 'x'), std::string("a\tb"), std::string("\xC2\x9B")}) {
+    EXPECT_FALSE(Parsed("--join-token=\"" + wrong + "\"").refused.empty()) << wrong;
   }
 }
 

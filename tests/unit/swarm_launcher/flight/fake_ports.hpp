@@ -127,13 +127,15 @@ class FakeHelpers final : public HelperProcesses {
  public:
   static constexpr pid_t kPid = 77;
 
-  std::optional<LogEvent> on_exit(pid_t pid) override {
+  std::optional<LogEvent> on_exit(pid_t pid, SteadyTime) override {
     if (pid != kPid) return std::nullopt;
     return LogEvent{.warning = true, .code = "monitor-exit", .text = "the monitor ended"};
   }
+  std::vector<LogEvent> step(SteadyTime) override { return std::exchange(next_events, {}); }
   std::optional<std::string> message() override { return std::exchange(next_message, {}); }
 
   std::optional<std::string> next_message;
+  std::vector<LogEvent> next_events;
 };
 
 class FakeDisplay final : public Display {

@@ -47,6 +47,7 @@ struct OtherSide {
       : participant(bus.make_participant()),
         statuses(*participant->make_writer(link::status_topic())),
         events(*participant->make_writer(link::event_topic())),
+        heartbeats(*participant->make_writer(link::heartbeat_topic())),
         commands(*participant->make_reader(link::command_topic())),
         scenes(*participant->make_reader(link::scene_topic())),
         relayed_statuses(*participant->make_reader(link::relayed_status_topic())),
@@ -55,6 +56,7 @@ struct OtherSide {
   std::unique_ptr<link::Participant> participant;
   link::WriterPtr<link::StatusMessage> statuses;
   link::WriterPtr<link::EventMessage> events;
+  link::WriterPtr<link::HeartbeatMessage> heartbeats;
   link::ReaderPtr<link::CommandMessage> commands;
   link::ReaderPtr<link::SceneMessage> scenes;
   link::ReaderPtr<link::StatusMessage> relayed_statuses;

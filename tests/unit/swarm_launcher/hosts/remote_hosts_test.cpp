@@ -23,7 +23,7 @@ using std::chrono::seconds;
 constexpr std::uint32_t kRobots = 4;  // two of them remote
 
 struct Bench {
-  Bench() {
+  explicit Bench(const std::string& secret = {}) : token(secret) {
     std::filesystem::create_directories(dir / "blackbox");
     for (int i = 0; i < 20; ++i) {
       supervisor.step(now);
@@ -58,9 +58,11 @@ struct Bench {
   }
 
   LineSocket connect() { return *LineSocket::connect({"127.0.0.1", hosts.port()}); }
-  LineSocket join(int robots) {
+  LineSocket join(int robots) { return request("{\"join\":" + std::to_string(robots) + "}"); }
+  LineSocket request(const std::string& text) {
+    answer.clear();
     LineSocket socket = connect();
-    socket.send("{\"join\":" + std::to_string(robots) + "}");
+    socket.send(text);
     until([&] {
       socket.receive();
       if (auto line = socket.line()) answer = *line;
@@ -85,6 +87,7 @@ struct Bench {
     return std::find(log.begin(), log.end(), code) != log.end();
   }
 
+  std::string token;
   std::filesystem::path dir =
       std::filesystem::temp_directory_path() / ("swarmflow-hosts-" + std::to_string(::getpid()));
   SteadyTime now{seconds(100)};
@@ -97,7 +100,8 @@ struct Bench {
                      .first_process = 2,
                      .mission_yaml = "x"},
                     1.0,
-                    dir};
+                    dir,
+                    token};
   std::vector<std::string> log;
   std::string answer;  // to the last join
 };
@@ -174,6 +178,45 @@ TEST(RemoteHosts, PausesTheOthersWhileAHostIsSilentUnlessSomebodyResumes) {
   bench.hosts.on_user_command(CommandKind::kPause);
   bench.start_mission();
   EXPECT_EQ(bench.supervisor.phase(), MissionPhase::kPaused) << "somebody wants it so";
+}
+
+TEST(RemoteHosts, OneThatJoinsAndNeverReportsIsDroppedAndItsRobotsAreFree) {
+  Bench bench;
+  LineSocket hog = bench.join(2);
+  ASSERT_TRUE(parse_offer(bench.answer));
+  bench.step(190);
+  EXPECT_FALSE(bench.logged("host-absent"));
+  bench.step(20);
+  EXPECT_TRUE(bench.logged("host-absent"));
+  EXPECT_TRUE(bench.is_dropped(hog));
+
+  LineSocket host = bench.join(2);
+  const auto offer = parse_offer(bench.answer);
+  ASSERT_TRUE(offer) << bench.answer;
+  EXPECT_EQ(offer->robots, 2U);
+  bench.start_mission();
+  EXPECT_EQ(bench.supervisor.stage(), Supervisor::Stage::kRunning);
+}
+
+TEST(RemoteHosts, GiveRobotsOnlyToWhoKnowsTheToken) {
+  Bench bench("s3cret");
+  for (const std::string line :
+       {R"({"join":2})", R"({"join":2,"token":""})", R"({"join":2,"token":"s3cre"})",
+        R"({"join":2,"token":"s3crets"})", R"({"join":2,"token":"S3cret"})",
+        R"({"join":2,"token":7})", R"({"join":2,"token":["s3cret"]})"}) {
+    LineSocket stranger = bench.request(line);
+    EXPECT_NE(bench.answer.find("refused"), std::string::npos) << line;
+    EXPECT_NE(bench.answer.find("--join-token"), std::string::npos) << line;
+    EXPECT_TRUE(bench.is_dropped(stranger)) << line;
+  }
+  LineSocket host = bench.request(R"({"join":2,"token":"s3cret"})");
+  EXPECT_TRUE(parse_offer(bench.answer)) << bench.answer;
+}
+
+TEST(RemoteHosts, WithoutATokenTakeAnyone) {
+  Bench bench;
+  LineSocket host = bench.request(R"({"join":2,"token":"whatever"})");
+  EXPECT_TRUE(parse_offer(bench.answer)) << bench.answer;
 }
 
 TEST(RemoteHosts, CollectsRobotLogs) {

@@ -82,6 +82,9 @@ class Play {
       case 3:
         if (rng_() % 40 == 0) sut_->on_interrupt();
         break;
+      case 5:
+        if (known_[0].alive) sut_->on_heartbeat(known_[0].starts);
+        break;
       case 4:
         if (process >= local_ && !known_[process].alive && sut_->stage() <= Stage::kGathering) {
           known_[process].alive = true;
@@ -121,7 +124,12 @@ class Play {
       p.alive = true;
     } else if (const auto* signal = std::get_if<SignalProcess>(&action)) {
       Known& p = known_.at(signal->process.value());
-      EXPECT_EQ(sut_->stage(), Stage::kEnding);
+      if (sut_->stage() != Stage::kEnding) {  // a process that is silent
+        EXPECT_TRUE(p.alive && signal->process.value() < local_);
+        EXPECT_EQ(signal->signal, EndSignal::kKill);
+        exit(signal->process.value());
+        return;
+      }
       EXPECT_TRUE(p.alive) << "a signal to another process, perhaps not ours";
       EXPECT_TRUE(!p.signal || *p.signal < signal->signal) << "only ever a stronger one";
       p.signal = signal->signal;

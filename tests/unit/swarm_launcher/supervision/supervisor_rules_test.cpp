@@ -80,7 +80,7 @@ TEST(SupervisorRules, DivideTheRobotsOverTheProcessesWithoutGapOrOverlap) {
 TEST(SupervisorRules, StartTheMissionWithoutTheMissingIffTheQuorumIsThere) {
   for (std::uint32_t robots = 1; robots <= 5; ++robots) {
     for (std::uint32_t ready = 0; ready < robots; ++ready) {
-      for (const double share : {0.0, 0.25, 0.5, 0.8, 1.0}) {
+      for (const double share : {0.01, 0.25, 0.5, 0.8, 1.0}) {
         SupervisorOptions options = options_of(robots);
         options.launcher.quorum_share = share;
         options.launcher.quorum_timeout_s = 20.0;
@@ -275,7 +275,8 @@ TEST(SupervisorRules, ClimbToTheSignalThatIsDueWhenStepsAreLate) {
   for (const auto& c : cases) {
     Supervisor sut(options, at_s(0));
     sut.step(at_s(0.9));
-    sut.on_exit(kPlanner, {.code = 1, .signal = 0}, at_s(2));  // before the start: begins the ending
+    sut.on_exit(kPlanner, {.code = 1, .signal = 0},
+                at_s(2));  // before the start: begins the ending
     const auto signals = all_of<SignalProcess>(sut.step(at_s(2.0 + c.late_s)));
     ASSERT_EQ(signals.size(), 1U) << "the planner has ended";
     EXPECT_EQ(signals[0].process, ProcessIndex(1));

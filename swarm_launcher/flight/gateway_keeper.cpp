@@ -1,0 +1,50 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "swarm_launcher/flight/gateway_keeper.hpp"
+
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace swarm::launcher {
+
+// The child is reaped by the launcher's loop, or by init after it.
+GatewayKeeper::~GatewayKeeper() {
+  if (pid_ > 0) end_(pid_);
+}
+
+Result<void> GatewayKeeper::start(SteadyTime now) {
+  const auto pid = start_();
+  if (!pid) return tl::unexpected(pid.error());
+  pid_ = *pid;
+  restarts_.on_start(now);
+  return {};
+}
+
+std::optional<LogEvent> GatewayKeeper::on_exit(pid_t pid, SteadyTime now) {
+  if (pid_ == 0 || pid != pid_) return std::nullopt;
+  pid_ = 0;
+  return wait_for_restart("the gateway ended, see logs/gateway.log", now);
+}
+
+// A failed start counts as a process that ended at once.
+std::optional<LogEvent> GatewayKeeper::step(SteadyTime now) {
+  if (!restart_at_ || now < *restart_at_) return std::nullopt;
+  restart_at_.reset();
+  if (const auto started = start(now); !started) {
+    restarts_.on_start(now);
+    return wait_for_restart(started.error().message, now);
+  }
+  return LogEvent{.code = "gateway-restarted", .text = "the gateway runs again"};
+}
+
+LogEvent GatewayKeeper::wait_for_restart(const std::string& reason, SteadyTime now) {
+  const Duration delay = restarts_.on_exit(now);
+  restart_at_ = now + delay;
+  return {.warning = true,
+          .code = "gateway-exit",
+          .text = fmt::format("{} (number {} in a row); it is started again in {:.1f} s", reason,
+                              restarts_.deaths_in_a_row(), to_seconds(delay))};
+}
+
+}  // namespace swarm::launcher

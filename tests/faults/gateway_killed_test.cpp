@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+// A gateway that is killed.
+#include <csignal>
+#include <set>
+
+#include "tests/system/flown_run.hpp"
+
+namespace swarm::test {
+namespace {
+
+TEST(KilledGateway, IsStartedAgainAndTheSwarmArrives) {
+  FlownRun run({"--channel", "groups", "--by-gateway", "1"});
+  ASSERT_TRUE(run.mission_started()) << run.launcher().err();
+  std::set<pid_t> killed;
+  for (int kills = 0; kills < 2; ++kills) {
+    pid_t gateway = 0;
+    ASSERT_TRUE(eventually([&] {
+      const auto gateways = children_of(run.launcher().pid(), "swarm_launcher");
+      gateway = gateways.empty() ? 0 : gateways.front();
+      return gateway != 0 && !killed.contains(gateway);
+    })) << kills;
+    killed.insert(gateway);
+    ::kill(gateway, SIGKILL);
+  }
+
+  EXPECT_EQ(run.launcher().wait(), 0) << run.launcher().err();
+  EXPECT_TRUE(has_event(run.dir(), "gateway-exit"));
+  EXPECT_TRUE(has_event(run.dir(), "gateway-restarted"));
+  EXPECT_EQ(run.summary()["arrived"], 12);
+}
+
+}  // namespace
+}  // namespace swarm::test
