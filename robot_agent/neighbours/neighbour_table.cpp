@@ -48,6 +48,11 @@ struct NeighbourTable::FilterPass {
   std::vector<Neighbour> neighbours;
 };
 
+/// Silent robots within reach; a buffer that the robots of a thread share, like FilterPass.
+struct NeighbourTable::Silent {
+  std::vector<Neighbour> close, far;
+};
+
 NeighbourTable::NeighbourTable(Shared<NeighbourOptions> options)
     : options_(std::move(options)),
       period_s_(to_seconds(options_->period)),
@@ -294,6 +299,29 @@ void NeighbourTable::estimate(std::size_t known, const Vec2& own_position_m, con
   n.possible_stop_age_s = in_s(std::max(0, filtered.age_us[lane] - 2 * period_us_));
 }
 
+/// Whether the last filter pass has estimated where the robot is, within reach or not.
+bool NeighbourTable::is_extrapolated(RobotId robot) {
+  const Slot slot = slot_of(robot);
+  return slot != kFree && blocks_[slot / kLanes].as_of_us[slot % kLanes] != kGone;
+}
+
+/// A silent robot may be anywhere within its circle and stays there: no velocity, and information
+/// that does not age.
+void NeighbourTable::find_silent(std::span<const SilentRobot> robots, const Vec2& own_position_m,
+                                 Silent& found) {
+  for (const SilentRobot& silent : robots) {
+    if (is_extrapolated(silent.robot)) continue;
+    const double grown_m = silent.radius_m - options_->fleet.of(silent.robot).radius_m;
+    const double nearest_m = (silent.center_m - own_position_m).norm() - grown_m;
+    if (nearest_m > options_->reach_m) continue;
+    (nearest_m <= options_->close_m ? found.close : found.far)
+        .push_back({.robot = silent.robot,
+                    .position_m = silent.center_m,
+                    .radius_m = silent.radius_m,
+                    .information_age_s = period_s_});
+  }
+}
+
 /// Removes the lanes of gone robots, in order, and builds the index again. O(known robots).
 void NeighbourTable::sweep() {
   std::size_t kept = 0;
@@ -320,24 +348,35 @@ void NeighbourTable::sweep() {
   rebuild_index();
 }
 
-/// Order of results: close robots first, both groups in the order in which robots became known, so
-/// that equal reports give equal neighbours.
-Neighbourhood NeighbourTable::at(SteadyTime now, const Vec2& own_position_m) {
+/// Order of results: close robots first, both groups in the order in which robots became known and
+/// then the silent ones, so that equal reports give equal neighbours.
+Neighbourhood NeighbourTable::at(SteadyTime now, const Vec2& own_position_m,
+                                 const SilentRobots* silent) {
   update_link_quality();
   keep_frame(now, own_position_m);
   static thread_local FilterPass pass;
   filter(since_then_us(now), own_position_m, pass);
+  static thread_local Silent of_silent;
+  of_silent.close.clear();
+  of_silent.far.clear();
+  if (silent != nullptr) find_silent(silent->all(), own_position_m, of_silent);
+  const std::size_t room =
+      pass.close_found + pass.far_found + of_silent.close.size() + of_silent.far.size();
+  if (pass.neighbours.size() < room) pass.neighbours.resize(2 * room);
   Neighbour* next = pass.neighbours.data();
   for (std::size_t i = 0; i < pass.close_found; ++i) {
     estimate(pass.close[i], own_position_m, pass, *next++);
   }
+  next = std::copy(of_silent.close.begin(), of_silent.close.end(), next);
+  const Neighbour* const end_of_close = next;
   for (std::size_t i = 0; i < pass.far_found; ++i) {
     estimate(pass.far[i], own_position_m, pass, *next++);
   }
+  next = std::copy(of_silent.far.begin(), of_silent.far.end(), next);
   // Last: sweeping renumbers the robots that the filter pass has listed.
   if (gone_ >= kSweepAt) sweep();
   const std::span<const Neighbour> all(pass.neighbours.data(), next);
-  return {.all = all, .close = all.first(pass.close_found)};
+  return {.all = all, .close = {all.data(), end_of_close}};
 }
 
 }  // namespace swarm::agent

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "robot_agent/neighbours/silent_robots.hpp"
 #include "swarm_core/base/lanes.hpp"
 #include "swarm_core/base/prefetch.hpp"
 #include "swarm_core/base/shared.hpp"
@@ -53,16 +54,17 @@ struct NeighbourOptions {
   double near_m = 1.0;          ///< on a degraded link robots this near publish at every tick
   Duration period{};            ///< of control: a body stops two periods after its last command
   Duration expected_silence{};  ///< a healthy robot publishes at least this often
-  Duration forget_after{};
+  Duration forget_after{};      ///< a silent robot is extrapolated until then
 };
 
 /// The robots near us, as known from their published states. Between two state updates the position
 /// of a robot is extrapolated, and `possible_stop_age_s` bounds for how long it may have been
 /// stopped meanwhile. From `expected_silence` on its radius grows by its largest speed for every
-/// second more, and after `forget_after` it is forgotten. In a dense region a robot receives fifty
-/// others at every tick: take() is one look-up in a hash table, at() one SIMD pass over an array,
-/// four robots at a time. The same reports in the same order give the same neighbours in the same
-/// order. No allocation once warm.
+/// second more. From `forget_after` on, or once extrapolated out of the communication radius, it is
+/// no longer extrapolated: then SilentRobots keep its possible positions. In a dense region a robot
+/// receives fifty others at every tick: take() is one look-up in a hash table, at() one SIMD pass
+/// over an array, four robots at a time. The same reports in the same order give the same
+/// neighbours in the same order. No allocation once warm.
 class NeighbourTable {
  public:
   explicit NeighbourTable(Shared<NeighbourOptions> options);
@@ -74,8 +76,10 @@ class NeighbourTable {
   /// refused; a robot that was silent for `forget_after` may start over (it was restarted).
   Outcome take(const NeighbourReport& report, const Vec2& own_position_m, Duration late = {});
 
-  /// Neighbours within reach as of `now`.
-  Neighbourhood at(SteadyTime now, const Vec2& own_position_m);
+  /// Neighbours within reach as of `now`. The silent robots among them are those of the process; if
+  /// there are none (null), robots older than `forget_after` are forgotten.
+  Neighbourhood at(SteadyTime now, const Vec2& own_position_m,
+                   const SilentRobots* silent = nullptr);
 
   /// Brings what take() and at() read into the cache. A loop that ticks many robots in turn calls
   /// it while it ticks the robot before.
@@ -118,6 +122,9 @@ class NeighbourTable {
   void filter(std::int32_t now_us, const Vec2& own_position_m, FilterPass& pass);
   void estimate(std::size_t known, const Vec2& own_position_m, const FilterPass& pass,
                 Neighbour& n) const;
+  struct Silent;
+  bool is_extrapolated(RobotId robot);
+  void find_silent(std::span<const SilentRobot> robots, const Vec2& own_position_m, Silent& found);
   void sweep();
 
   Shared<NeighbourOptions> options_;

@@ -71,6 +71,10 @@ class Page {
             using Value = std::remove_cvref_t<decltype(defaults.*member)>;
             if constexpr (std::is_same_v<Value, std::optional<double>>) {
               row.fallback = "not judged";  // a number that may be left out has no other default
+            } else if constexpr (std::is_same_v<Value, LauncherLoss>) {
+              row.kind = "choice";
+              row.range = fmt::format("{}", fmt::join(kLauncherLosses, ", "));
+              row.fallback = to_string(defaults.*member);
             } else {
               row.fallback = fmt::format("{}", defaults.*member);
               if constexpr (std::is_integral_v<Value>) row.kind = "count";

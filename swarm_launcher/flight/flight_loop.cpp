@@ -54,6 +54,7 @@ Result<void> FlightLoop::step(const FlightTime& now) {
     if (auto done = act(action, now.utc); !done) return done;
   }
   send_stop(now);
+  if (ports_.beats != nullptr) ports_.beats->step(now.steady, supervisor_);
   if (const auto message = ports_.helpers.message()) ports_.display.print(*message);
   if (ports_.observer != nullptr) ports_.observer->on_step(*this, now.steady);
   show(now.steady);

@@ -153,6 +153,9 @@ class Supervisor {
   std::vector<RobotId> unstopped() const;
   /// Robots that cannot arrive any more.
   std::vector<RobotId> lost() const;
+  /// Robots that are not received: no status has come yet, or none since they fell silent.
+  /// Ascending.
+  std::vector<RobotId> silent() const;
 
   /// Time [s] from the last start of a process until every robot was received and had the plan;
   /// negative if that never happened.

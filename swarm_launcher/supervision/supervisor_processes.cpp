@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "swarm_core/mission/supervision_times.hpp"
 #include "swarm_launcher/supervision/supervisor.hpp"
 
 namespace swarm::launcher {
@@ -12,8 +13,6 @@ namespace {
 
 // A process that has not been received after this time no longer delays the next starts.
 constexpr Duration kStartTimeout = std::chrono::seconds(5);
-// Without a status for this long, a process is reported; it sends one every second.
-constexpr Duration kSilence = std::chrono::seconds(3);
 
 std::string describe(const ProcessExit& exit) {
   return exit.signal != 0 ? fmt::format("killed by signal {}", exit.signal)
@@ -79,16 +78,21 @@ void Supervisor::on_exit(ProcessIndex process, const ProcessExit& exit, SteadyTi
   for (std::uint32_t i = 0; i < count; ++i) robots_[first.value() + i].lost = true;
 }
 
-// A process that hangs or is cut off reports nothing, and does not end either, so an event reports it.
+// A process that hangs or is cut off reports nothing, and does not end either, so an event reports
+// it.
 void Supervisor::watch_silence(SteadyTime now, std::vector<Action>& actions) {
   for (std::uint32_t i = 1; i < processes(); ++i) {
     Process& p = processes_[i];
     if (std::exchange(p.received, false)) p.received_at = now;
-    const bool is_silent = p.alive && p.received_at && now - *p.received_at > kSilence;
+    const bool is_silent = p.alive && p.received_at && now - *p.received_at > kStatusSilence;
     if (is_silent == p.is_silent) continue;
     p.is_silent = is_silent;
     if (!p.alive) continue;  // its end has been reported
     const auto [first, count] = robots_of(ProcessIndex(i));
+    // It may have frozen: its bodies are obstacles from the next step until it is received again.
+    for (std::uint32_t r = first.value(); is_silent && r < first.value() + count; ++r) {
+      if (!robots_[r].silent_since) on_silent(RobotId(r), now);
+    }
     actions.emplace_back(LogEvent{
         .warning = is_silent,
         .code = is_silent ? "agent-silent" : "agent-back",

@@ -1,0 +1,84 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+#include "swarmflow/core/time.hpp"
+
+namespace swarm::agent {
+
+/// Why the robots of a process stand at zero velocity, without avoidance.
+enum class StandReason : std::uint8_t {
+  kNone,          ///< they may move
+  kCellsMissing,  ///< the states of a cell that they need cannot be received
+  kWaking,        ///< the process slept longer than a command lasts: it receives before it moves
+  kCutOff,        ///< neither planner nor launcher is received
+};
+
+/// As an event has it.
+constexpr std::string_view to_string(StandReason reason) {
+  switch (reason) {
+    case StandReason::kNone:
+      return "moves again";
+    case StandReason::kCellsMissing:
+      return "cannot receive the states of all cells around: stands";
+    case StandReason::kWaking:
+      return "slept longer than a command lasts: stands until it has received its neighbours";
+    case StandReason::kCutOff:
+      return "receives neither planner nor launcher: stands";
+  }
+  return "";
+}
+
+/// Decides whether the robots of a process may move: only where they would receive who is there.
+/// A robot that is cut off stands at the latest `cut_off_after` + 2 Δt + its lag after the last
+/// message of planner or launcher, so that others can bound where it may be (see NeighbourTable).
+/// Pure; the time is passed in.
+class MotionPermit {
+ public:
+  /// The times of a mission.
+  struct Options {
+    Duration period{};         ///< Δt, of control: a command lasts two of them
+    Duration full_interval{};  ///< within it every healthy neighbour publishes
+    Duration cut_off_after{};  ///< without planner and launcher
+  };
+
+  explicit MotionPermit(const Options& options) : options_(options) {}
+
+  /// What the process receives at a tick.
+  struct Reception {
+    SteadyTime now;
+    std::optional<SteadyTime> planner{};   ///< of the last heartbeat
+    std::optional<SteadyTime> launcher{};  ///< of the last beat
+    bool all_cells = true;
+  };
+
+  /// Call it at each tick. The first reason that applies, in the order of the enumeration.
+  StandReason update(const Reception& reception) {
+    const SteadyTime now = reception.now;
+    if (last_tick_ && now - *last_tick_ > 2 * options_.period) woke_at_ = now;
+    last_tick_ = now;
+    if (!reception.all_cells) return StandReason::kCellsMissing;
+    if (woke_at_ && now - *woke_at_ < options_.full_interval) return StandReason::kWaking;
+    return is_cut_off(reception) ? StandReason::kCutOff : StandReason::kNone;
+  }
+
+ private:
+  /// What a process reads when it wakes may have waited in its sockets all the time it slept: it is
+  /// no sign that anything is received now.
+  bool is_cut_off(const Reception& reception) const {
+    const auto newest = std::max(reception.planner, reception.launcher);  // empty is the smallest
+    if (!newest || (woke_at_ && *newest <= *woke_at_)) return true;
+    return reception.now - *newest > options_.cut_off_after;
+  }
+
+  Options options_;
+  std::optional<SteadyTime> last_tick_;
+  std::optional<SteadyTime> woke_at_;
+};
+
+}  // namespace swarm::agent

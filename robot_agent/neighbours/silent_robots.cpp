@@ -1,0 +1,82 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "robot_agent/neighbours/silent_robots.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "swarmflow/mission/body_limits.hpp"
+
+namespace swarm::agent {
+namespace {
+
+constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+
+/// The longest time that a body of the mission takes to reach a commanded velocity.
+double largest_lag_s(const RobotsSpec& robots) {
+  double largest = body_lag_s(robots);
+  for (const RobotGroupSpec& group : robots.groups) largest = std::max(largest, body_lag_s(group));
+  return largest;
+}
+
+}  // namespace
+
+SilentRobots::SilentRobots(const SilenceOptions& options)
+    : options_(options), index_of_(options.robots, kNone) {
+  received_.reserve(options.robots);
+  silent_.reserve(options.robots);
+}
+
+void SilentRobots::on_state(const State& state) {
+  const std::uint32_t id = state.robot.value();
+  // Ids below the first own one wrap around to large offsets.
+  if (id >= index_of_.size() || id - options_.first_own < options_.own) return;
+  if (index_of_[id] == kNone) {
+    index_of_[id] = static_cast<std::uint32_t>(received_.size());
+    received_.push_back(state);
+  } else if (State& last = received_[index_of_[id]]; last.as_of < state.as_of) {
+    last = state;
+  }
+}
+
+/// Robots that are known to be elsewhere are forgotten; the others close ranks, in their order.
+void SilentRobots::update(SteadyTime now, const Whereabouts& whereabouts) {
+  silent_.clear();
+  std::uint32_t kept = 0;
+  for (const State& state : received_) {
+    const Duration age = now - state.as_of;
+    const bool is_silent = age > options_.expected_silence;
+    if (is_silent && whereabouts.is_elsewhere(state.robot, state.as_of, now)) {
+      index_of_[state.robot.value()] = kNone;
+      continue;
+    }
+    if (is_silent) silent_.push_back(possible_positions(state, age));
+    index_of_[state.robot.value()] = kept;
+    received_[kept++] = state;
+  }
+  received_.resize(kept);
+}
+
+SilentRobot SilentRobots::possible_positions(const State& state, Duration age) const {
+  const Fleet::Body& body = options_.fleet.of(state.robot);
+  const Duration silence = options_.expected_silence;
+  const double moved_m =
+      body.speed_max_mps * to_seconds(std::min(age - silence, options_.dead_man));
+  return {.robot = state.robot,
+          .center_m = state.position_m + to_seconds(silence) * state.velocity_mps,
+          .radius_m = body.radius_m + moved_m};
+}
+
+SilenceOptions silence_options(const Mission& mission, RobotId first, std::uint32_t count) {
+  const Duration period = from_seconds(1.0 / mission.control.rate_hz);
+  return {
+      .fleet = Fleet(mission.robots),
+      .robots = mission.robots.count,
+      .first_own = first.value(),
+      .own = count,
+      .expected_silence = from_seconds(mission.link.send_interval_max_s) + 2 * period,
+      .dead_man = from_seconds(mission.timing.planner_silence_s + largest_lag_s(mission.robots)) +
+                  2 * period};
+}
+
+}  // namespace swarm::agent
