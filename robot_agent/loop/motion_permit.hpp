@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <string_view>
+#include <utility>
 
 #include "swarmflow/core/time.hpp"
 
@@ -16,7 +17,7 @@ enum class StandReason : std::uint8_t {
   kNone,          ///< they may move
   kCellsMissing,  ///< the states of a cell that they need cannot be received
   kWaking,        ///< the process slept longer than a command lasts: it receives before it moves
-  kCutOff,        ///< neither planner nor launcher is received
+  kCutOff,        ///< planner and launcher are not received, or not for a full interval yet
 };
 
 /// As an event has it.
@@ -62,21 +63,34 @@ class MotionPermit {
     const SteadyTime now = reception.now;
     if (last_tick_ && now - *last_tick_ > 2 * options_.period) woke_at_ = now;
     last_tick_ = now;
+    const bool was_cut_off = std::exchange(is_cut_off_, is_cut_off(reception));
+    if (was_cut_off && !is_cut_off_ && has_moved_) back_at_ = now;
     if (!reception.all_cells) return StandReason::kCellsMissing;
-    if (woke_at_ && now - *woke_at_ < options_.full_interval) return StandReason::kWaking;
-    return is_cut_off(reception) ? StandReason::kCutOff : StandReason::kNone;
+    if (is_within_interval_of(woke_at_, now)) return StandReason::kWaking;
+    if (is_cut_off_ || is_within_interval_of(back_at_, now)) return StandReason::kCutOff;
+    has_moved_ = true;
+    return StandReason::kNone;
   }
 
  private:
   /// What a process reads when it wakes may have waited in its sockets all the time it slept: it is
   /// no sign that anything is received now.
   bool is_cut_off(const Reception& reception) const {
-    const auto newest = std::max(reception.planner, reception.launcher);  // empty is the smallest
-    if (!newest || (woke_at_ && *newest <= *woke_at_)) return true;
-    return reception.now - *newest > options_.cut_off_after;
+    constexpr SteadyTime kNever = SteadyTime::min();
+    const SteadyTime newest =
+        std::max(reception.planner.value_or(kNever), reception.launcher.value_or(kNever));
+    if (newest == kNever || newest <= woke_at_.value_or(kNever)) return true;
+    return reception.now - newest > options_.cut_off_after;
+  }
+
+  bool is_within_interval_of(std::optional<SteadyTime> begin, SteadyTime now) const {
+    return begin && now - *begin < options_.full_interval;
   }
 
   Options options_;
+  bool is_cut_off_ = true;
+  bool has_moved_ = false;
+  std::optional<SteadyTime> back_at_;  // received again after a time without
   std::optional<SteadyTime> last_tick_;
   std::optional<SteadyTime> woke_at_;
 };

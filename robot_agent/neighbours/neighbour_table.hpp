@@ -59,12 +59,12 @@ struct NeighbourOptions {
 
 /// The robots near us, as known from their published states. Between two state updates the position
 /// of a robot is extrapolated, and `possible_stop_age_s` bounds for how long it may have been
-/// stopped meanwhile. From `expected_silence` on its radius grows by its largest speed for every
-/// second more. From `forget_after` on, or once extrapolated out of the communication radius, it is
-/// no longer extrapolated: then SilentRobots keep its possible positions. In a dense region a robot
-/// receives fifty others at every tick: take() is one look-up in a hash table, at() one SIMD pass
-/// over an array, four robots at a time. The same reports in the same order give the same
-/// neighbours in the same order. No allocation once warm.
+/// stopped meanwhile. From `expected_silence` on the SilentRobots of the process keep its possible
+/// positions. A table without them lets its radius grow by its largest speed for every second more,
+/// and forgets it after `forget_after`: that is for simulations, in which dead robots are obstacles
+/// at once. In a dense region a robot receives fifty others at every tick: take() is one look-up in
+/// a hash table, at() one SIMD pass over an array, four robots at a time. The same reports in the
+/// same order give the same neighbours in the same order. No allocation once warm.
 class NeighbourTable {
  public:
   explicit NeighbourTable(Shared<NeighbourOptions> options);
@@ -76,8 +76,7 @@ class NeighbourTable {
   /// refused; a robot that was silent for `forget_after` may start over (it was restarted).
   Outcome take(const NeighbourReport& report, const Vec2& own_position_m, Duration late = {});
 
-  /// Neighbours within reach as of `now`. The silent robots among them are those of the process; if
-  /// there are none (null), robots older than `forget_after` are forgotten.
+  /// Neighbours within reach as of `now`; the silent ones from `silent`, if it is not null.
   Neighbourhood at(SteadyTime now, const Vec2& own_position_m,
                    const SilentRobots* silent = nullptr);
 
@@ -123,8 +122,8 @@ class NeighbourTable {
   void estimate(std::size_t known, const Vec2& own_position_m, const FilterPass& pass,
                 Neighbour& n) const;
   struct Silent;
-  bool is_extrapolated(RobotId robot);
-  void find_silent(std::span<const SilentRobot> robots, const Vec2& own_position_m, Silent& found);
+  void find_silent(const SilentRobots& robots, const Vec2& own_position_m, Silent& found) const;
+  bool is_silent(std::size_t known, const FilterPass& pass, const SilentRobots* silent) const;
   void sweep();
 
   Shared<NeighbourOptions> options_;

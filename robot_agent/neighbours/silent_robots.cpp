@@ -29,8 +29,7 @@ SilentRobots::SilentRobots(const SilenceOptions& options)
 
 void SilentRobots::on_state(const State& state) {
   const std::uint32_t id = state.robot.value();
-  // Ids below the first own one wrap around to large offsets.
-  if (id >= index_of_.size() || id - options_.first_own < options_.own) return;
+  if (!covers(state.robot)) return;
   if (index_of_[id] == kNone) {
     index_of_[id] = static_cast<std::uint32_t>(received_.size());
     received_.push_back(state);
@@ -39,18 +38,21 @@ void SilentRobots::on_state(const State& state) {
   }
 }
 
-/// Robots that are known to be elsewhere are forgotten; the others close ranks, in their order.
+/// Robots that are well elsewhere are forgotten; the others close ranks, in their order. A robot
+/// whose body is an obstacle is kept: the launcher may clear the body as soon as it receives the
+/// robot, before the robot's next state arrives here.
 void SilentRobots::update(SteadyTime now, const Whereabouts& whereabouts) {
   silent_.clear();
   std::uint32_t kept = 0;
   for (const State& state : received_) {
     const Duration age = now - state.as_of;
     const bool is_silent = age > options_.expected_silence;
-    if (is_silent && whereabouts.is_elsewhere(state.robot, state.as_of, now)) {
+    if (is_silent && whereabouts.is_well(state.robot, state.as_of, now)) {
       index_of_[state.robot.value()] = kNone;
       continue;
     }
-    if (is_silent) silent_.push_back(possible_positions(state, age));
+    if (is_silent && !whereabouts.is_obstacle(state.robot))
+      silent_.push_back(possible_positions(state, age));
     index_of_[state.robot.value()] = kept;
     received_[kept++] = state;
   }
@@ -60,11 +62,16 @@ void SilentRobots::update(SteadyTime now, const Whereabouts& whereabouts) {
 SilentRobot SilentRobots::possible_positions(const State& state, Duration age) const {
   const Fleet::Body& body = options_.fleet.of(state.robot);
   const Duration silence = options_.expected_silence;
-  const double moved_m =
-      body.speed_max_mps * to_seconds(std::min(age - silence, options_.dead_man));
+  const Duration standing = silence + options_.dead_man;
+  const bool is_recent = age < std::min(2 * silence, standing);
+  const Duration moved = is_recent ? 2 * (age - silence) : std::min(age, standing);
+  const double speed_mps = age < standing ? (is_recent ? 2.0 : 1.0) * body.speed_max_mps : 0.0;
+  const double course_s = is_recent ? to_seconds(silence) : 0.0;
   return {.robot = state.robot,
-          .center_m = state.position_m + to_seconds(silence) * state.velocity_mps,
-          .radius_m = body.radius_m + moved_m};
+          .from_m = state.position_m,
+          .to_m = state.position_m + course_s * state.velocity_mps,
+          .radius_m = body.radius_m + body.speed_max_mps * to_seconds(moved),
+          .growth_mps = speed_mps};
 }
 
 SilenceOptions silence_options(const Mission& mission, RobotId first, std::uint32_t count) {

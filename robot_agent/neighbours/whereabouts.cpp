@@ -39,8 +39,11 @@ void Whereabouts::on_scene(const Scene& scene) {
   std::sort(bodies_.begin(), bodies_.end());
 }
 
-bool Whereabouts::is_elsewhere(RobotId robot, SteadyTime last_state, SteadyTime now) const {
-  if (std::binary_search(bodies_.begin(), bodies_.end(), robot)) return true;
+bool Whereabouts::is_obstacle(RobotId robot) const {
+  return std::binary_search(bodies_.begin(), bodies_.end(), robot);
+}
+
+bool Whereabouts::is_well(RobotId robot, SteadyTime last_state, SteadyTime now) const {
   if (!last_beat_ || now - *last_beat_ > options_.beat_timeout) return false;
   if (robot.value() >= listed_at_.size()) return false;
   const SteadyTime begin = std::max({last_state, since_, listed_at_[robot.value()]});

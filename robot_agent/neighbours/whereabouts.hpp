@@ -38,10 +38,12 @@ class Whereabouts {
   /// Takes the scene, for the robots whose bodies are obstacles. O(obstacles).
   void on_scene(const Scene& scene);
 
-  /// Whether a robot, whose last state received here was measured at `last_state`, is known to be
-  /// elsewhere: its body is an obstacle of the scene, or the launcher has received it since. The
-  /// latter takes `healthy_after` of beats without a gap up to now, none of which lists the robot.
-  bool is_elsewhere(RobotId robot, SteadyTime last_state, SteadyTime now) const;
+  /// Whether a robot's body is an obstacle of the scene.
+  bool is_obstacle(RobotId robot) const;
+  /// Whether the launcher has received a robot whose last state received here was measured at
+  /// `last_state` since then: it is well, somewhere else. This takes `healthy_after` of beats
+  /// without a gap up to now, none of which lists the robot.
+  bool is_well(RobotId robot, SteadyTime last_state, SteadyTime now) const;
 
   /// Whether beats had been received and have stopped.
   bool is_launcher_lost(SteadyTime now) const {

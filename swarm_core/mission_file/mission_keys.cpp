@@ -61,7 +61,9 @@ class Page {
 
   template <class Section, std::size_t N>
   void add(std::string_view name, const std::array<SectionKey<Section>, N>& fields) {
-    const Section defaults{};
+    // Static: g++ 12 takes the members of a local one for uninitialised in the branches of other
+    // types.
+    static const Section defaults{};
     for (const auto& field : fields) {
       Row row{field.key, "number", range_text(field.range), {}, field.doc};
       // Kind and default follow from the type of the member, so tables and documentation cannot

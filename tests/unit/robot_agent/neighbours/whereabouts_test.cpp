@@ -26,8 +26,8 @@ class WhereaboutsTest : public testing::Test {
     link::set_silent(beat_, silent);
     sut_.on_beat(beat_, at(s));
   }
-  bool is_elsewhere(double last_state_s, double now_s) const {
-    return sut_.is_elsewhere(RobotId(3), at(last_state_s), at(now_s));
+  bool is_well(double last_state_s, double now_s) const {
+    return sut_.is_well(RobotId(3), at(last_state_s), at(now_s));
   }
 
   Whereabouts sut_{{.robots = 1000,
@@ -39,30 +39,30 @@ class WhereaboutsTest : public testing::Test {
 };
 
 TEST_F(WhereaboutsTest, KnowNothingWithoutTheLauncher) {
-  EXPECT_FALSE(is_elsewhere(-1000, 0));
+  EXPECT_FALSE(is_well(-1000, 0));
   EXPECT_FALSE(sut_.last_beat());
   EXPECT_FALSE(sut_.is_launcher_lost(at(1000))) << "it was never received";
 }
 
 TEST_F(WhereaboutsTest, ClearARobotThatAllBeatsForLongEnoughLeaveOut) {
   beats(0, 20);
-  EXPECT_FALSE(is_elsewhere(14.5, 20));
-  EXPECT_TRUE(is_elsewhere(14, 20));
-  EXPECT_FALSE(is_elsewhere(14, 21.6)) << "the beats have stopped";
+  EXPECT_FALSE(is_well(14.5, 20));
+  EXPECT_TRUE(is_well(14, 20));
+  EXPECT_FALSE(is_well(14, 21.6)) << "the beats have stopped";
 }
 
 TEST_F(WhereaboutsTest, BeginAnewAfterAGapOrAListing) {
   beats(0, 10);
   beats(12, 17.5);
-  EXPECT_FALSE(is_elsewhere(-1, 17.5)) << "no beat for 2 s";
+  EXPECT_FALSE(is_well(-1, 17.5)) << "no beat for 2 s";
   beat(18);
-  EXPECT_TRUE(is_elsewhere(-1, 18));
+  EXPECT_TRUE(is_well(-1, 18));
 
   beat(18.5, {RobotId(2), RobotId(3)});
   beats(19, 24);
-  EXPECT_FALSE(is_elsewhere(-1, 24)) << "listed at 18.5";
+  EXPECT_FALSE(is_well(-1, 24)) << "listed at 18.5";
   beat(24.5);
-  EXPECT_TRUE(is_elsewhere(-1, 24.5));
+  EXPECT_TRUE(is_well(-1, 24.5));
 }
 
 TEST_F(WhereaboutsTest, BeginAnewWhenABeatHasNoRoomForAllSilentRobots) {
@@ -71,7 +71,7 @@ TEST_F(WhereaboutsTest, BeginAnewWhenABeatHasNoRoomForAllSilentRobots) {
   for (std::uint32_t i = 0; i < 101; ++i) many.emplace_back(5 + 2 * i);
   beat(10.5, many);
   EXPECT_FALSE(beat_.lists_all);
-  EXPECT_FALSE(is_elsewhere(-1, 10.5));
+  EXPECT_FALSE(is_well(-1, 10.5));
 }
 
 TEST_F(WhereaboutsTest, RefuseBeatsOfOthersOldOnesAndUnknownIds) {

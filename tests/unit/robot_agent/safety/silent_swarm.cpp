@@ -3,7 +3,6 @@
 #include "tests/unit/robot_agent/safety/silent_swarm.hpp"
 
 #include <algorithm>
-#include <limits>
 
 #include "swarm_core/mission/scene_bodies.hpp"
 #include "swarm_core/mission/supervision_times.hpp"
@@ -18,9 +17,6 @@ constexpr int kPeriod_ms = 100;
 constexpr int kCommandLasts_ms = 2 * kPeriod_ms;
 constexpr int kStatusEvery_ms = 1000;
 constexpr int kBeatEvery_ms = 500;
-/// Cells are joined this far outside of the communication radius.
-constexpr double kJoinMargin_m = 0.5;
-
 Mission mission_of(std::size_t robots) {
   Mission mission;
   mission.robots.count = static_cast<std::uint32_t>(robots);
@@ -97,19 +93,23 @@ SilentSwarm::SilentSwarm(const Box& bounds_m, const std::vector<RobotPart>& part
   }
 }
 
+SilentSwarm::~SilentSwarm() = default;
+
+const Vec2& SilentSwarm::position_m(std::size_t robot) const { return robots_[robot]->position_m; }
+
 SteadyTime SilentSwarm::time() const { return SteadyTime(milliseconds(100'000 + now_ms_)); }
 
-double SilentSwarm::fly_until(int end_ms) {
-  double least_gap_m = std::numeric_limits<double>::infinity();
+SilentSwarm::Approach SilentSwarm::fly_until(int end_ms) {
+  Approach nearest;
   for (; now_ms_ < end_ms; now_ms_ += kStep_ms) {
     launch();
     for (const auto& robot : robots_) {
       const bool is_due = now_ms_ % kPeriod_ms == robot->part.phase_ms;
       if (is_due && !robot->part.frozen.covers(now_ms_)) tick(*robot);
     }
-    move(least_gap_m);
+    move(nearest);
   }
-  return least_gap_m;
+  return nearest;
 }
 
 /// Takes what has waited since the last tick, as a process does.
@@ -178,8 +178,6 @@ void SilentSwarm::publish(Robot& robot, const Vec2& velocity_mps) {
   if (robot.part.cut_off.covers(now_ms_) || robot.part.mute.covers(now_ms_)) return;
   for (const auto& other : robots_) {
     if (other->id == robot.id || other->part.cut_off.covers(now_ms_)) continue;
-    const double away_m = (other->position_m - robot.position_m).norm();
-    if (away_m > kCommunicationRadius_m + kJoinMargin_m) continue;
     other->socket.push_back({robot.id, robot.sequence, time(), robot.position_m, velocity_mps});
   }
 }
@@ -208,7 +206,7 @@ void SilentSwarm::launch() {
 }
 
 /// Within a step no velocity changes: the least distance of two straight motions is known.
-void SilentSwarm::move(double& least_gap_m) {
+void SilentSwarm::move(Approach& nearest) {
   constexpr double kStep_s = 0.001 * kStep_ms;
   std::vector<Vec2> moved_m;
   for (const auto& robot : robots_) {
@@ -221,7 +219,8 @@ void SilentSwarm::move(double& least_gap_m) {
       const Vec2 by_m = moved_m[i] - moved_m[j];
       const double length = by_m.squaredNorm();
       const double share = length > 0.0 ? std::clamp(-apart_m.dot(by_m) / length, 0.0, 1.0) : 0.0;
-      least_gap_m = std::min(least_gap_m, (apart_m + share * by_m).norm() - 2 * kRadius_m);
+      const double gap_m = (apart_m + share * by_m).norm() - 2 * kRadius_m;
+      if (gap_m < nearest.gap_m) nearest = {gap_m, j, i, now_ms_};
     }
   }
   for (std::size_t i = 0; i < robots_.size(); ++i) robots_[i]->position_m += moved_m[i];

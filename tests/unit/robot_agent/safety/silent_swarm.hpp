@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -20,7 +22,8 @@
 #include "swarmflow/mission/scene.hpp"
 
 /// Robots with the parts that keep them apart, a bus between them and a launcher, all of which may
-/// fail: for tests of what robots do about silence. Time is a number of milliseconds.
+/// fail: for tests of what robots do about silence. All are in one cell: each process receives all
+/// states. Time is a number of milliseconds.
 namespace swarm::agent {
 
 /// From `begin_ms` to `end_ms`; empty by default.
@@ -51,11 +54,19 @@ class SilentSwarm {
   static constexpr double kCommunicationRadius_m = 6.0;
 
   SilentSwarm(const Box& bounds_m, const std::vector<RobotPart>& parts, SilenceRule rule);
+  ~SilentSwarm();
 
-  /// The least gap between two robots up to this time, in continuous time: between two changes of a
-  /// velocity all robots move straight.
-  double fly_until(int end_ms);
-  const Vec2& position_m(std::size_t robot) const { return robots_[robot]->position_m; }
+  /// Two robots, and when they were nearest.
+  struct Approach {
+    double gap_m = std::numeric_limits<double>::infinity();  ///< between their surfaces
+    std::size_t first = 0;
+    std::size_t second = 0;
+    int at_ms = 0;
+  };
+  /// The nearest approach of two robots up to this time, in continuous time: between two changes of
+  /// a velocity all robots move straight.
+  Approach fly_until(int end_ms);
+  const Vec2& position_m(std::size_t robot) const;
 
  private:
   struct Robot;
@@ -66,7 +77,7 @@ class SilentSwarm {
   Vec2 desired_mps(const Robot& robot) const;
   void publish(Robot& robot, const Vec2& velocity_mps);
   void launch();
-  void move(double& least_gap_m);
+  void move(Approach& nearest);
 
   Box bounds_m_;
   SilenceRule rule_;
