@@ -17,7 +17,7 @@ enum class StandReason : std::uint8_t {
   kNone,          ///< they may move
   kCellsMissing,  ///< the states of a cell that they need cannot be received
   kWaking,        ///< the process slept longer than a command lasts: it receives before it moves
-  kCutOff,        ///< planner and launcher are not received, or not for a full interval yet
+  kCutOff,        ///< planner and launcher are not received, or not for long enough yet
 };
 
 /// As an event has it.
@@ -46,6 +46,8 @@ class MotionPermit {
     Duration period{};         ///< Δt, of control: a command lasts two of them
     Duration full_interval{};  ///< within it every healthy neighbour publishes
     Duration cut_off_after{};  ///< without planner and launcher
+    /// By then the launcher has reported who fell silent while this process was cut off.
+    Duration rejoin_interval{};
   };
 
   explicit MotionPermit(const Options& options) : options_(options) {}
@@ -63,28 +65,26 @@ class MotionPermit {
     const SteadyTime now = reception.now;
     if (last_tick_ && now - *last_tick_ > 2 * options_.period) woke_at_ = now;
     last_tick_ = now;
-    const bool was_cut_off = std::exchange(is_cut_off_, is_cut_off(reception));
+    constexpr SteadyTime kNever = SteadyTime::min();
+    const SteadyTime newest =
+        std::max(reception.planner.value_or(kNever), reception.launcher.value_or(kNever));
+    const bool was_cut_off = is_cut_off_;
+    is_cut_off_ = newest == kNever || now - newest > options_.cut_off_after;
     if (was_cut_off && !is_cut_off_ && has_moved_) back_at_ = now;
     if (!reception.all_cells) return StandReason::kCellsMissing;
-    if (is_within_interval_of(woke_at_, now)) return StandReason::kWaking;
-    if (is_cut_off_ || is_within_interval_of(back_at_, now)) return StandReason::kCutOff;
+    if (is_within(options_.full_interval, woke_at_, now)) return StandReason::kWaking;
+    // What a process reads when it wakes may have waited in its sockets all the time it slept: it
+    // is no sign that anything is received now.
+    const bool is_stale = newest <= woke_at_.value_or(kNever);
+    if (is_cut_off_ || is_stale || is_within(options_.rejoin_interval, back_at_, now))
+      return StandReason::kCutOff;
     has_moved_ = true;
     return StandReason::kNone;
   }
 
  private:
-  /// What a process reads when it wakes may have waited in its sockets all the time it slept: it is
-  /// no sign that anything is received now.
-  bool is_cut_off(const Reception& reception) const {
-    constexpr SteadyTime kNever = SteadyTime::min();
-    const SteadyTime newest =
-        std::max(reception.planner.value_or(kNever), reception.launcher.value_or(kNever));
-    if (newest == kNever || newest <= woke_at_.value_or(kNever)) return true;
-    return reception.now - newest > options_.cut_off_after;
-  }
-
-  bool is_within_interval_of(std::optional<SteadyTime> begin, SteadyTime now) const {
-    return begin && now - *begin < options_.full_interval;
+  static bool is_within(Duration span, std::optional<SteadyTime> begin, SteadyTime now) {
+    return begin && now - *begin < span;
   }
 
   Options options_;

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "swarm_core/mission/scene_bodies.hpp"
+#include "swarm_core/mission/supervision_times.hpp"
 
 namespace swarm::agent {
 namespace {
@@ -30,7 +31,9 @@ MotionPermit::Options permit_options(const Mission& mission) {
   const Duration period = from_seconds(1.0 / mission.control.rate_hz);
   return {.period = period,
           .full_interval = from_seconds(mission.link.send_interval_max_s) + 2 * period,
-          .cut_off_after = from_seconds(mission.timing.planner_silence_s)};
+          .cut_off_after = from_seconds(mission.timing.planner_silence_s),
+          .rejoin_interval = kStatusSilence + from_seconds(1.0 / mission.link.status_hz) +
+                             from_seconds(2.0 / kBeatHz)};
 }
 
 /// The bus as one robot of the process sees it.

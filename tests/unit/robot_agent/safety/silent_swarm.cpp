@@ -46,7 +46,8 @@ MotionPermit::Options permit(const Mission& mission) {
   return {.period = milliseconds(kPeriod_ms),
           .full_interval =
               from_seconds(mission.link.send_interval_max_s) + milliseconds(2 * kPeriod_ms),
-          .cut_off_after = from_seconds(mission.timing.planner_silence_s)};
+          .cut_off_after = from_seconds(mission.timing.planner_silence_s),
+          .rejoin_interval = kStatusSilence + milliseconds(kStatusEvery_ms + 2 * kBeatEvery_ms)};
 }
 
 }  // namespace
