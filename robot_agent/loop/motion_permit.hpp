@@ -63,12 +63,14 @@ class MotionPermit {
   /// Call it at each tick. The first reason that applies, in the order of the enumeration.
   StandReason update(const Reception& reception) {
     const SteadyTime now = reception.now;
-    if (last_tick_ && now - *last_tick_ > 2 * options_.period) woke_at_ = now;
+    const Duration slept = now - last_tick_.value_or(now);
+    if (slept > 2 * options_.period) woke_at_ = now;
     last_tick_ = now;
     constexpr SteadyTime kNever = SteadyTime::min();
     const SteadyTime newest =
         std::max(reception.planner.value_or(kNever), reception.launcher.value_or(kNever));
-    const bool was_cut_off = is_cut_off_;
+    // What a process missed that slept for longer is not known: it may have been cut off as well.
+    const bool was_cut_off = is_cut_off_ || slept > options_.cut_off_after;
     is_cut_off_ = newest == kNever || now - newest > options_.cut_off_after;
     if (was_cut_off && !is_cut_off_ && has_moved_) back_at_ = now;
     if (!reception.all_cells) return StandReason::kCellsMissing;

@@ -74,7 +74,8 @@ std::vector<RobotPart> random_group(Rng& rng) {
 
 SilentSwarm::Approach fly(int scene, SilenceRule rule) {
   Rng rng(seed(scene));
-  SilentSwarm swarm({{-8, -8}, {8, 8}}, random_group(rng), rule);
+  // Room to retreat: against a wall a robot cannot avoid one that drives on while it is cut off.
+  SilentSwarm swarm({{-14, -14}, {14, 14}}, random_group(rng), rule);
   return swarm.fly_until(kFlight_ms);
 }
 
@@ -95,12 +96,12 @@ std::string describe(int scene, const SilentSwarm::Approach& nearest) {
 
 /// Whether a robot was cut off so shortly before that others could not know of it.
 bool was_just_cut_off(int scene, const SilentSwarm::Approach& nearest) {
-  constexpr int kSilence_ms = 700 + 100;  // and until the next tick
+  constexpr int kNotice_ms = 700 + 100 + 200;  // the silence, the next tick, and time to react
   Rng rng(seed(scene));
   const std::vector<RobotPart> parts = random_group(rng);
   const auto is_just_cut_off = [&](std::size_t i) {
     const int begin_ms = parts[i].cut_off.begin_ms;
-    return parts[i].cut_off.covers(nearest.at_ms) && nearest.at_ms - begin_ms <= kSilence_ms;
+    return begin_ms > 0 && begin_ms <= nearest.at_ms && nearest.at_ms <= begin_ms + kNotice_ms;
   };
   return is_just_cut_off(nearest.first) || is_just_cut_off(nearest.second);
 }
