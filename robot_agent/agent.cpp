@@ -92,14 +92,16 @@ RobotMode Agent::decide_mode(const AgentInput& input) const {
   if (input.phase == MissionPhase::kStopped || !method_.fault().empty()) return RobotMode::kStopped;
   if (!has_route_ || input.phase == MissionPhase::kReady) return RobotMode::kWaiting;
   if (arrived_) return RobotMode::kArrived;
-  if (input.phase == MissionPhase::kPaused || !input.planner_alive) return RobotMode::kHolding;
+  if (input.phase == MissionPhase::kPaused || !input.planner_alive || !input.may_move) {
+    return RobotMode::kHolding;
+  }
   return RobotMode::kMoving;
 }
 
 /// Estimates the neighbours, has the control method propose a velocity, bounds it by the safety
 /// filter, and decides whether to publish the new state.
 AgentOutput Agent::tick(const AgentInput& input, Rng& rng) {
-  const Neighbourhood neighbourhood = neighbours_.at(input.now, input.position_m);
+  const Neighbourhood neighbourhood = neighbours_.at(input.now, input.position_m, input.silent);
   const ControlView view{.now = input.now,
                          .position_m = input.position_m,
                          .neighbours = neighbourhood.all,
@@ -115,7 +117,7 @@ AgentOutput Agent::tick(const AgentInput& input, Rng& rng) {
   out.neighbours = static_cast<std::uint16_t>(std::min<std::size_t>(neighbours_.known(), 0xFFFF));
   out.remaining_m = has_route_ ? method_.remaining_m() : 0.0;
 
-  if (out.mode != RobotMode::kStopped) {
+  if (out.mode != RobotMode::kStopped && input.may_move) {
     // An arrived robot drives, too: it keeps its slot and makes room. Any other holds its position
     // and lets itself be pushed.
     const bool drives = out.mode == RobotMode::kMoving || out.mode == RobotMode::kArrived;

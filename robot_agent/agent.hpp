@@ -47,10 +47,12 @@ struct AgentInput {
   Vec2 position_m = Vec2::Zero();  ///< measured
   MissionPhase phase = MissionPhase::kReady;
   bool planner_alive = false;
+  bool may_move = true;  ///< otherwise it stands at zero velocity, without avoidance
   /// Measured, of a body that does not have a commanded velocity at once.
   std::optional<Vec2> velocity_mps{};
   std::optional<PlanTime> plan_time{};  ///< of the plan accepted last; empty: no clock is known
   const PlannedDensity* planned_density = nullptr;  ///< then; read if density_push_mps > 0
+  const SilentRobots* silent = nullptr;             ///< of the process; null: none are kept
 };
 
 /// What a robot decides at a tick.

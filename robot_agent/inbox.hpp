@@ -70,7 +70,9 @@ class Inbox {
   /// A command that arrived by another path than the topic: the stop channel.
   void receive(const link::CommandMessage& command, UtcTime utc_now);
 
-  /// The states received at the last tick, to be visited by position.
+  /// The states received at the last tick, in the order of their arrival.
+  std::span<const ReceivedState> states() const { return received_; }
+  /// The same, to be visited by position.
   const ReceivedCells& received() const { return received_cells_; }
 
   /// The newest plan, once, when one arrived.

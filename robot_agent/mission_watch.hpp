@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
+
 #include "swarmflow/core/time.hpp"
 #include "swarmflow/mission/phase.hpp"
 
@@ -31,6 +33,10 @@ class MissionWatch {
   }
 
   MissionPhase phase() const { return phase_; }
+  /// When the planner was received last; empty: never.
+  std::optional<SteadyTime> planner_received_at() const {
+    return received_ ? std::optional(received_at_) : std::nullopt;
+  }
   /// Whether robots may move: the planner is received, and has been for resume_delay.
   bool planner_alive(SteadyTime now) const {
     return received_ && now - received_at_ <= planner_silence_ && now - back_at_ >= resume_delay_;

@@ -65,9 +65,11 @@ void RobotLoop::decide(const RobotTick& tick, const RobotParts& parts, const Mea
                                          .position_m = position_m_,
                                          .phase = tick.phase,
                                          .planner_alive = tick.planner_alive,
+                                         .may_move = tick.may_move,
                                          .velocity_mps = body.velocity_mps,
                                          .plan_time = tick.plan_time,
-                                         .planned_density = tick.planned_density},
+                                         .planned_density = tick.planned_density,
+                                         .silent = tick.silent},
                                         parts.rng)
                           : without_position();
   if (output_.mode == RobotMode::kStopped) {

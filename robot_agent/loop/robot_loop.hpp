@@ -30,11 +30,13 @@ struct RobotTick {
   Duration period{};    ///< of control
   MissionPhase phase = MissionPhase::kReady;
   bool planner_alive = false;
+  bool may_move = true;            ///< see AgentInput
   UtcTime stop_sent{};             ///< stamp of the stop command in force; 0: none
   std::uint32_t plan_version = 0;  ///< of the newest plan; that of new_plan if there is one
   const OfferedPlan* new_plan = nullptr;
   std::optional<PlanTime> plan_time{};              ///< of the plan's clock, if it is known
   const PlannedDensity* planned_density = nullptr;  ///< at that time; null if it is not read
+  const SilentRobots* silent = nullptr;             ///< of the process; null: none are kept
 };
 
 /// The parts outside of the loop that a step uses. All outlive the step.

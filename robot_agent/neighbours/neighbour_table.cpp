@@ -26,6 +26,15 @@ std::int32_t to_us(Duration d) {
       std::clamp<std::int64_t>(d / std::chrono::microseconds(1), -kMost, kMost));
 }
 
+/// The point of a segment that is nearest to a position.
+Vec2 nearest_of(const SilentRobot& segment, const Vec2& position_m) {
+  const Vec2 along_m = segment.to_m - segment.from_m;
+  const double length = along_m.squaredNorm();
+  if (length <= 0.0) return segment.from_m;
+  const double share = (position_m - segment.from_m).dot(along_m) / length;
+  return segment.from_m + std::clamp(share, 0.0, 1.0) * along_m;
+}
+
 constexpr double in_s(std::int64_t us) { return 1e-6 * static_cast<double>(us); }
 
 }  // namespace
@@ -46,6 +55,11 @@ struct NeighbourTable::FilterPass {
   std::size_t close_found = 0;
   std::size_t far_found = 0;
   std::vector<Neighbour> neighbours;
+};
+
+/// Silent robots within reach; a buffer that the robots of a thread share, like FilterPass.
+struct NeighbourTable::Silent {
+  std::vector<Neighbour> close, far;
 };
 
 NeighbourTable::NeighbourTable(Shared<NeighbourOptions> options)
@@ -295,6 +309,36 @@ void NeighbourTable::estimate(std::size_t known, const Vec2& own_position_m, con
   n.possible_stop_age_s = in_s(std::max(0, filtered.age_us[lane] - 2 * period_us_));
 }
 
+/// A silent robot counts as at the nearest point of its segment, with the radius of its set, and
+/// its information does not age. While the set grows, its surface approaches.
+void NeighbourTable::find_silent(const SilentRobots& robots, const Vec2& own_position_m,
+                                 Silent& found) const {
+  for (const SilentRobot& silent : robots.all()) {
+    const Vec2 nearest_m = nearest_of(silent, own_position_m);
+    const Vec2 offset_m = own_position_m - nearest_m;
+    const double distance_m = offset_m.norm();
+    const double grown_m = silent.radius_m - options_->fleet.of(silent.robot).radius_m;
+    if (distance_m - grown_m > options_->reach_m) continue;
+    // On the segment any direction will do.
+    const Vec2 towards = distance_m > 1e-9 ? Vec2(offset_m / distance_m) : Vec2(-1.0, 0.0);
+    (distance_m - grown_m <= options_->close_m ? found.close : found.far)
+        .push_back({.robot = silent.robot,
+                    .position_m = nearest_m,
+                    .velocity_mps = silent.growth_mps * towards,
+                    .radius_m = silent.radius_m,
+                    .information_age_s = period_s_});
+  }
+}
+
+/// Whether the set of a silent robot stands for what the filter pass has extrapolated.
+bool NeighbourTable::is_silent(std::size_t known, const FilterPass& pass,
+                               const SilentRobots* silent) const {
+  if (silent == nullptr) return false;
+  const std::size_t lane = known % kLanes;
+  return pass.blocks[known / kLanes].age_us[lane] > silence_us_ &&
+         silent->covers(blocks_[known / kLanes].robot[lane]);
+}
+
 /// Removes the lanes of gone robots, in order, and builds the index again. O(known robots).
 void NeighbourTable::sweep() {
   std::size_t kept = 0;
@@ -321,24 +365,37 @@ void NeighbourTable::sweep() {
   rebuild_index();
 }
 
-/// Order of results: close robots first, both groups in the order in which robots became known, so
-/// that equal reports give equal neighbours.
-Neighbourhood NeighbourTable::at(SteadyTime now, const Vec2& own_position_m) {
+/// Order of results: close robots first, both groups in the order in which robots became known and
+/// then the silent ones, so that equal reports give equal neighbours.
+Neighbourhood NeighbourTable::at(SteadyTime now, const Vec2& own_position_m,
+                                 const SilentRobots* silent) {
   update_link_quality();
   keep_frame(now, own_position_m);
   static thread_local FilterPass pass;
   filter(since_then_us(now), own_position_m, pass);
+  static thread_local Silent of_silent;
+  of_silent.close.clear();
+  of_silent.far.clear();
+  if (silent != nullptr) find_silent(*silent, own_position_m, of_silent);
+  const std::size_t room =
+      pass.close_found + pass.far_found + of_silent.close.size() + of_silent.far.size();
+  if (pass.neighbours.size() < room) pass.neighbours.resize(2 * room);
   Neighbour* next = pass.neighbours.data();
   for (std::size_t i = 0; i < pass.close_found; ++i) {
+    if (is_silent(pass.close[i], pass, silent)) continue;
     estimate(pass.close[i], own_position_m, pass, *next++);
   }
+  next = std::copy(of_silent.close.begin(), of_silent.close.end(), next);
+  const Neighbour* const end_of_close = next;
   for (std::size_t i = 0; i < pass.far_found; ++i) {
+    if (is_silent(pass.far[i], pass, silent)) continue;
     estimate(pass.far[i], own_position_m, pass, *next++);
   }
+  next = std::copy(of_silent.far.begin(), of_silent.far.end(), next);
   // Last: sweeping renumbers the robots that the filter pass has listed.
   if (gone_ >= kSweepAt) sweep();
   const std::span<const Neighbour> all(pass.neighbours.data(), next);
-  return {.all = all, .close = all.first(pass.close_found)};
+  return {.all = all, .close = {all.data(), end_of_close}};
 }
 
 }  // namespace swarm::agent

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "robot_agent/neighbours/silent_robots.hpp"
 #include "swarm_core/base/lanes.hpp"
 #include "swarm_core/base/prefetch.hpp"
 #include "swarm_core/base/shared.hpp"
@@ -53,17 +54,18 @@ struct NeighbourOptions {
   double near_m = 1.0;          ///< on a degraded link robots this near publish at every tick
   Duration period{};            ///< of control: a body stops two periods after its last command
   Duration expected_silence{};  ///< a healthy robot publishes at least this often
-  Duration forget_after{};
+  Duration forget_after{};      ///< a silent robot is extrapolated until then
   double scale = 1.0;  ///< of the speed below which a robot counts as stopped (body_scale.hpp)
 };
 
 /// The robots near us, as known from their published states. Between two state updates the position
 /// of a robot is extrapolated, and `possible_stop_age_s` bounds for how long it may have been
-/// stopped meanwhile. From `expected_silence` on its radius grows by its largest speed for every
-/// second more, and after `forget_after` it is forgotten. In a dense region a robot receives fifty
-/// others at every tick: take() is one look-up in a hash table, at() one SIMD pass over an array,
-/// four robots at a time. The same reports in the same order give the same neighbours in the same
-/// order. No allocation once warm.
+/// stopped meanwhile. From `expected_silence` on the SilentRobots of the process keep its possible
+/// positions. A table without them lets its radius grow by its largest speed for every second more,
+/// and forgets it after `forget_after`: that is for simulations, in which dead robots are obstacles
+/// at once. In a dense region a robot receives fifty others at every tick: take() is one look-up in
+/// a hash table, at() one SIMD pass over an array, four robots at a time. The same reports in the
+/// same order give the same neighbours in the same order. No allocation once warm.
 class NeighbourTable {
  public:
   explicit NeighbourTable(Shared<NeighbourOptions> options);
@@ -75,8 +77,9 @@ class NeighbourTable {
   /// refused; a robot that was silent for `forget_after` may start over (it was restarted).
   Outcome take(const NeighbourReport& report, const Vec2& own_position_m, Duration late = {});
 
-  /// Neighbours within reach as of `now`.
-  Neighbourhood at(SteadyTime now, const Vec2& own_position_m);
+  /// Neighbours within reach as of `now`; the silent ones from `silent`, if it is not null.
+  Neighbourhood at(SteadyTime now, const Vec2& own_position_m,
+                   const SilentRobots* silent = nullptr);
 
   /// Brings what take() and at() read into the cache. A loop that ticks many robots in turn calls
   /// it while it ticks the robot before.
@@ -119,6 +122,9 @@ class NeighbourTable {
   void filter(std::int32_t now_us, const Vec2& own_position_m, FilterPass& pass);
   void estimate(std::size_t known, const Vec2& own_position_m, const FilterPass& pass,
                 Neighbour& n) const;
+  struct Silent;
+  void find_silent(const SilentRobots& robots, const Vec2& own_position_m, Silent& found) const;
+  bool is_silent(std::size_t known, const FilterPass& pass, const SilentRobots* silent) const;
   void sweep();
 
   Shared<NeighbourOptions> options_;

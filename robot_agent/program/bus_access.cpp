@@ -73,6 +73,7 @@ Result<BusAccess> join_bus(const ProcessOptions& options, const shell::RunInfo& 
   if (!participant) return tl::unexpected(participant.error());
   auto access = open_endpoints(std::move(*participant));
   if (!access) return access;
+  access->run = static_cast<std::uint64_t>(run.began.time_since_epoch().count());
   // Topics do without multicast, and then the reliable command alone stops the robots.
   if (auto stops = link::StopReceiver::open(
           {.domain = run.domain, .interface = run.interface, .faults = faults})) {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <memory>
 
 #include "robot_agent/inbox.hpp"
@@ -23,6 +24,7 @@ struct BusAccess {
   Readers readers;
   link::WriterPtr<link::StatusMessage> status;
   link::WriterPtr<link::EventMessage> event;
+  std::uint64_t run = 0;  // whose launcher's beats count: its begin [ns]
 };
 
 /// Joins the run's bus as the process that the options describe. Fails when the bus cannot be

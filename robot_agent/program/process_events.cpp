@@ -3,6 +3,7 @@
 #include "robot_agent/program/process_events.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -12,6 +13,21 @@ namespace swarm::agent {
 namespace {
 
 constexpr Duration kStatsEvery = std::chrono::seconds(1);
+constexpr Duration kWakingEvery = std::chrono::seconds(10);
+
+constexpr const char* code_of(StandReason reason) {
+  switch (reason) {
+    case StandReason::kNone:
+      return "moves-again";
+    case StandReason::kCellsMissing:
+      return "cells-missing";
+    case StandReason::kWaking:
+      return "woke-late";
+    case StandReason::kCutOff:
+      return "cut-off";
+  }
+  return "";
+}
 
 }  // namespace
 
@@ -65,6 +81,32 @@ void ProcessEvents::announce_planner(SteadyTime now, UtcTime utc_now, const Inbo
   announce(utc_now, alive ? link::Severity::kInfo : link::Severity::kWarning,
            alive ? "planner-heard" : "planner-silent",
            alive ? "receives the planner" : "planner silent: holds with avoidance on");
+}
+
+void ProcessEvents::on_permit(SteadyTime now, UtcTime utc_now, StandReason reason) {
+  if (reason == stand_) return;
+  stand_ = reason;
+  const bool moves = reason == StandReason::kNone;
+  const bool was_reported = std::exchange(stand_reported_, false);
+  const bool before_first_move = !has_moved_ && (moves || reason == StandReason::kCutOff);
+  has_moved_ = has_moved_ || moves;
+  if (before_first_move || (moves && !was_reported)) return;
+  if (reason == StandReason::kWaking) {
+    if (waking_reported_at_ && now - *waking_reported_at_ < kWakingEvery) return;
+    waking_reported_at_ = now;
+  }
+  stand_reported_ = !moves;
+  announce(utc_now, moves ? link::Severity::kInfo : link::Severity::kWarning, code_of(reason),
+           std::string(to_string(reason)));
+}
+
+void ProcessEvents::on_launcher(UtcTime utc_now, bool is_lost) {
+  if (is_lost == launcher_was_lost_) return;
+  launcher_was_lost_ = is_lost;
+  announce(
+      utc_now, is_lost ? link::Severity::kWarning : link::Severity::kInfo,
+      is_lost ? "launcher-silent" : "launcher-back",
+      is_lost ? "launcher silent: as launcher.on_launcher_loss demands" : "receives the launcher");
 }
 
 void ProcessEvents::on_overrun(UtcTime utc_now, Duration took) {

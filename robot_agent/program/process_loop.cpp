@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "swarm_core/mission/scene_bodies.hpp"
+#include "swarm_core/mission/supervision_times.hpp"
 
 namespace swarm::agent {
 namespace {
@@ -23,6 +24,16 @@ Inbox make_inbox(const Mission& mission, Readers readers, link::StateChannel& st
           MissionWatch(silence, from_seconds(resume_delay_s)),
           silence,
           largest_communication_radius_m(mission)};
+}
+
+/// A process stands after the silence that makes it hold, if the launcher is silent as well.
+MotionPermit::Options permit_options(const Mission& mission) {
+  const Duration period = from_seconds(1.0 / mission.control.rate_hz);
+  return {.period = period,
+          .full_interval = from_seconds(mission.link.send_interval_max_s) + 2 * period,
+          .cut_off_after = from_seconds(mission.timing.planner_silence_s),
+          .rejoin_interval = kStatusSilence + from_seconds(1.0 / mission.link.status_hz) +
+                             from_seconds(2.0 / kBeatHz)};
 }
 
 /// The bus as one robot of the process sees it.
@@ -54,14 +65,17 @@ ProcessLoop::ProcessLoop(const Mission& mission, std::unique_ptr<World> world, L
       local_(std::move(robots)),
       bus_(std::move(bus)),
       inbox_(make_inbox(mission, std::move(bus_.readers), *bus_.states)),
+      whereabouts_(whereabouts_options(mission, bus_.run)),
+      silent_(silence_options(mission, local_.robots.front().loop.id(),
+                              static_cast<std::uint32_t>(local_.robots.size()))),
+      permit_(permit_options(mission)),
       plans_(local_.any_is_underway),
       status_(mission, *bus_.status),
       events_(local_.robots, *bus_.event),
       density_(mission, local_.read_density) {}
 
-/// Receives once for all robots, steps them, then publishes: within a tick no robot sees the new
-/// state of another, as in separate processes.
-void ProcessLoop::tick(const Time& time) {
+/// Receives once for all robots.
+void ProcessLoop::receive(const Time& time) {
   std::vector<LocalRobot>& robots = local_.robots;
   bus_.participant->receive();
   inbox_.receive(time.now, time.utc_now, [&](RobotId id) -> const EchoGuard* {
@@ -71,8 +85,44 @@ void ProcessLoop::tick(const Time& time) {
   });
   if (bus_.stops) {
     if (const auto stop = bus_.stops->take()) inbox_.receive(*stop, time.utc_now);
+    for (const link::LauncherBeat& beat : bus_.stops->beats()) whereabouts_.on_beat(beat, time.now);
   }
+}
+
+/// After the beats of this tick, which may clear robots.
+void ProcessLoop::find_silent(SteadyTime now) {
+  for (const ReceivedState& state : inbox_.states()) {
+    silent_.on_state({.robot = state.report.robot,
+                      .as_of = state.report.as_of,
+                      .position_m = state.report.position_m,
+                      .velocity_mps = state.report.velocity_mps});
+  }
+  silent_.update(now, whereabouts_);
+}
+
+/// Whether the robots may move at all.
+bool ProcessLoop::may_move(SteadyTime now, UtcTime utc_now) {
+  const StandReason reason = permit_.update({.now = now,
+                                             .planner = inbox_.mission().planner_received_at(),
+                                             .launcher = whereabouts_.last_beat(),
+                                             .all_cells = bus_.states->receives_all()});
+  events_.on_permit(now, utc_now, reason);
+  return reason == StandReason::kNone;
+}
+
+/// Whether planner and launcher are there as the mission demands; otherwise robots hold.
+bool ProcessLoop::leads(SteadyTime now) const {
+  const bool holds = mission_.launcher.on_launcher_loss == LauncherLoss::kHold &&
+                     whereabouts_.is_launcher_lost(now);
+  return !holds && inbox_.mission().planner_alive(now);
+}
+
+/// Receives, steps the robots, then publishes: within a tick no robot sees the new state of
+/// another, as in separate processes.
+void ProcessLoop::tick(const Time& time) {
+  receive(time);
   follow_scene(time.utc_now);
+  find_silent(time.now);
   const std::optional<PlanTime> plan_time = inbox_.plan_time(time.now);
   plans_.receive(inbox_.take_plan(), time.now);
   const std::optional<NewPlan> new_plan = plans_.take(time.now, plan_time.has_value());
@@ -82,11 +132,13 @@ void ProcessLoop::tick(const Time& time) {
                .lateness = time.lateness,
                .period = period_,
                .phase = inbox_.mission().phase(),
-               .planner_alive = inbox_.mission().planner_alive(time.now),
+               .planner_alive = leads(time.now),
+               .may_move = may_move(time.now, time.utc_now),
                .stop_sent = UtcTime(Duration(inbox_.stop_stamp_utc_ns())),
                .plan_version = inbox_.plan_version(),
                .plan_time = plan_time,
-               .planned_density = planned_density(new_plan, plan_time)},
+               .planned_density = planned_density(new_plan, plan_time),
+               .silent = &silent_},
               new_plan);
   // Cell topics are joined only after the plan: discovery of all endpoints at once takes several
   // times as long, and no robot moves without a plan.
@@ -96,6 +148,7 @@ void ProcessLoop::tick(const Time& time) {
   }
   confirm_stop();
   status_.on_tick(source(time));
+  events_.on_launcher(time.utc_now, whereabouts_.is_launcher_lost(time.now));
   events_.on_tick(time.now, time.utc_now, inbox_, state_age_);
 }
 
@@ -131,6 +184,7 @@ void ProcessLoop::confirm_stop() {
 void ProcessLoop::follow_scene(UtcTime utc_now) {
   if (auto received = inbox_.take_scene()) {
     scene_ = std::move(*received);
+    whereabouts_.on_scene(scene_);
     world_moves_ = true;
     local_.robots.front().log.append(
         robot_log::Note{.stamp = utc_now,

@@ -9,6 +9,9 @@
 
 #include "robot_agent/inbox.hpp"
 #include "robot_agent/loop/density_forecast.hpp"
+#include "robot_agent/loop/motion_permit.hpp"
+#include "robot_agent/neighbours/silent_robots.hpp"
+#include "robot_agent/neighbours/whereabouts.hpp"
 #include "robot_agent/program/bus_access.hpp"
 #include "robot_agent/program/local_robot.hpp"
 #include "robot_agent/program/plan_intake.hpp"
@@ -59,6 +62,10 @@ class ProcessLoop {
   }
 
  private:
+  void receive(const Time& time);
+  void find_silent(SteadyTime now);
+  bool may_move(SteadyTime now, UtcTime utc_now);
+  bool leads(SteadyTime now) const;
   void confirm_stop();
   void follow_scene(UtcTime utc_now);
   void step_robots(RobotTick tick, const std::optional<NewPlan>& new_plan);
@@ -74,6 +81,9 @@ class ProcessLoop {
   LocalRobots local_;
   BusAccess bus_;
   Inbox inbox_;
+  Whereabouts whereabouts_;
+  SilentRobots silent_;
+  MotionPermit permit_;
   PlanIntake plans_;
   StatusReport status_;
   ProcessEvents events_;

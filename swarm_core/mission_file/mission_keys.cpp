@@ -61,7 +61,9 @@ class Page {
 
   template <class Section, std::size_t N>
   void add(std::string_view name, const std::array<SectionKey<Section>, N>& fields) {
-    const Section defaults{};
+    // Static: g++ 12 takes the members of a local one for uninitialised in the branches of other
+    // types.
+    static const Section defaults{};
     for (const auto& field : fields) {
       Row row{field.key, "number", range_text(field.range), {}, field.doc};
       // Kind and default follow from the type of the member, so tables and documentation cannot
@@ -71,6 +73,10 @@ class Page {
             using Value = std::remove_cvref_t<decltype(defaults.*member)>;
             if constexpr (std::is_same_v<Value, std::optional<double>>) {
               row.fallback = "not judged";  // a number that may be left out has no other default
+            } else if constexpr (std::is_same_v<Value, LauncherLoss>) {
+              row.kind = "choice";
+              row.range = fmt::format("{}", fmt::join(kLauncherLosses, ", "));
+              row.fallback = to_string(defaults.*member);
             } else {
               row.fallback = fmt::format("{}", defaults.*member);
               if constexpr (std::is_integral_v<Value>) row.kind = "count";

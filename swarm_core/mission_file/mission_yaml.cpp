@@ -80,6 +80,8 @@ void write_fields(Out out, const Section& section,
         [&](auto member) {
           if constexpr (requires { (section.*member).has_value(); }) {
             if (section.*member) write(*(section.*member));
+          } else if constexpr (requires { to_string(section.*member); }) {
+            write(to_string(section.*member));
           } else {
             write(section.*member);
           }

@@ -85,6 +85,10 @@ class SectionReader {
             const auto read = yaml::read_count(value, path, field.range, violations_);
             if (read) section.*member = *read;
             return read.has_value();
+          } else if constexpr (std::is_same_v<T, LauncherLoss>) {
+            const auto read = yaml::read_choice(value, path, kLauncherLosses, violations_);
+            if (read) section.*member = *launcher_loss_of(*read);
+            return read.has_value();
           } else {
             const auto read = yaml::read_number(value, path, field.range, violations_);
             if (read) section.*member = *read;

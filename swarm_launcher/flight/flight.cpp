@@ -64,6 +64,13 @@ std::optional<StopOrder> make_stop_order(const PreparedRun& run) {
   return StopOrder(std::move(*sender), run.options().mission.robots.count);
 }
 
+std::optional<BeatSender> make_beat_sender(const PreparedRun& run) {
+  auto sender = link::StopSender::open(stop_channel_of(run));
+  if (!sender) return std::nullopt;
+  const auto began = run.info().began.time_since_epoch().count();
+  return BeatSender(std::move(*sender), static_cast<std::uint64_t>(began));
+}
+
 std::unique_ptr<link::StopReceiver> make_stop_receiver(const PreparedRun& run) {
   auto receiver = link::StopReceiver::open(stop_channel_of(run));
   return receiver ? std::move(*receiver) : nullptr;
@@ -92,7 +99,8 @@ Flight::Flight(std::unique_ptr<PreparedRun> run, FlightObserver* observer)
       requests_(std::make_unique<SocketRequests>(run_->control())),
       helpers_(run_->options().how, run_->dir()),
       stop_(make_stop_order(*run_)),
-      stops_(make_stop_receiver(*run_)) {
+      stops_(make_stop_receiver(*run_)),
+      beats_(make_beat_sender(*run_)) {
   loop_.emplace(run_->options(), run_->dir(),
                 FlightPorts{.spawner = spawner_,
                             .bus = run_->bus(),
@@ -106,7 +114,8 @@ Flight::Flight(std::unique_ptr<PreparedRun> run, FlightObserver* observer)
                             .hosts = run_->hosts(),
                             .observer = observer,
                             .stop = stop_ ? &*stop_ : nullptr,
-                            .stops = stops_.get()},
+                            .stops = stops_.get(),
+                            .beats = beats_ ? &*beats_ : nullptr},
                 steady_now());
 }
 

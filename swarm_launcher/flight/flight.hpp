@@ -58,6 +58,7 @@ class Flight {
   RunHelpers helpers_;
   std::optional<StopOrder> stop_;
   std::unique_ptr<link::StopReceiver> stops_;
+  std::optional<BeatSender> beats_;
   std::optional<FlightLoop> loop_;
   shell::FileWatch file_watch_;
   SteadyTime next_look_{};

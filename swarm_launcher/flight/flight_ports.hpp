@@ -10,14 +10,15 @@
 #include <sys/types.h>
 
 #include "swarm_core/app/control_socket.hpp"
+#include "swarm_launcher/flight/beat_sender.hpp"
 #include "swarm_launcher/flight/flight_log.hpp"
 #include "swarm_launcher/flight/launcher_bus.hpp"
 #include "swarm_launcher/flight/scene_keeper.hpp"
+#include "swarm_launcher/flight/stop_order.hpp"
 #include "swarm_launcher/hosts/remote_hosts.hpp"
 #include "swarm_launcher/processes/spawner.hpp"
 #include "swarm_launcher/supervision/fallen_body.hpp"
 #include "swarm_launcher/supervision/progress.hpp"
-#include "swarm_launcher/flight/stop_order.hpp"
 
 /// Everything outside of itself that a FlightLoop uses.
 namespace swarm::launcher {
@@ -73,11 +74,12 @@ struct FlightPorts {
   FlightLog& log;
   Display& display;
   LoggedPosition logged_position;
-  std::string inputs{};  ///< file with what processes read first; empty: run directory
-  RemoteHosts* hosts = nullptr;        ///< null if all robots are on this host
-  FlightObserver* observer = nullptr;  ///< null if there is none
-  StopOrder* stop = nullptr;           ///< null if the interface carries no multicast
+  std::string inputs{};          ///< file with what processes read first; empty: run directory
+  RemoteHosts* hosts = nullptr;  ///< null if all robots are on this host
+  FlightObserver* observer = nullptr;   ///< null if there is none
+  StopOrder* stop = nullptr;            ///< null if the interface carries no multicast
   link::StopReceiver* stops = nullptr;  ///< stops that commands send; null like `stop`
+  BeatSender* beats = nullptr;          ///< null like `stop`
 };
 
 }  // namespace swarm::launcher

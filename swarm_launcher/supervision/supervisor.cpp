@@ -326,6 +326,14 @@ std::vector<RobotId> Supervisor::lost() const {
   return out;
 }
 
+std::vector<RobotId> Supervisor::silent() const {
+  std::vector<RobotId> out;
+  for (std::uint32_t i = 0; i < robots_.size(); ++i) {
+    if (!robots_[i].received || robots_[i].silent_since) out.emplace_back(i);
+  }
+  return out;
+}
+
 MissionTime Supervisor::mission_time(SteadyTime now) const {
   return phase_ == MissionPhase::kReady || started_at_ == SteadyTime{}
              ? MissionTime{0}

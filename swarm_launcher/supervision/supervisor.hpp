@@ -159,6 +159,9 @@ class Supervisor {
   std::vector<RobotId> unstopped() const;
   /// Robots that cannot arrive any more.
   std::vector<RobotId> lost() const;
+  /// Robots that are not received: no status has come yet, or none since they fell silent.
+  /// Ascending.
+  std::vector<RobotId> silent() const;
 
   /// Time [s] from the last start of a process until every robot was received and had the plan;
   /// negative if that never happened.
@@ -221,6 +224,7 @@ class Supervisor {
     return process == kPlanner.value() ? options_.planner_silence : options_.agent_silence;
   }
   void watch_silence(SteadyTime now, std::vector<Action>& actions);
+  void assume_still(ProcessIndex process, SteadyTime now);
   void end_silent(SteadyTime now, std::vector<Action>& actions);
   Duration first_beat_timeout() const;
   static std::string_view sign_of_life(std::uint32_t process);

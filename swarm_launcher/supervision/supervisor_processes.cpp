@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "swarm_core/mission/supervision_times.hpp"
 #include "swarm_launcher/supervision/supervisor.hpp"
 
 namespace swarm::launcher {

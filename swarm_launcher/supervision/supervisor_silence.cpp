@@ -51,8 +51,17 @@ void Supervisor::watch_silence(SteadyTime now, std::vector<Action>& actions) {
                          (is_silent ? fmt::format(" has sent no {} for {:.0f} s", sign_of_life(i),
                                                   to_seconds(limits_of(i).reported))
                                     : fmt::format(" sends its {} again", sign_of_life(i)))});
+    if (is_silent) assume_still(ProcessIndex(i), now);
   }
   end_silent(now, actions);
+}
+
+// The process may be frozen: its robots are obstacles until they are received again.
+void Supervisor::assume_still(ProcessIndex process, SteadyTime now) {
+  const auto [first, count] = robots_of(process);
+  for (std::uint32_t i = first.value(); i < first.value() + count; ++i) {
+    if (!robots_[i].silent_since) on_silent(RobotId(i), now);
+  }
 }
 
 // SIGKILL, because a process that hangs does not act on other signals. Its end is then handled as

@@ -29,12 +29,26 @@ std::span<const Cell> CellInterest::update(std::span<const Vec2> positions_m) {
   return wanted_;
 }
 
+// A robot that returns to the cell it has left needs no second copy.
+std::optional<Cell> LeftCells::update(std::uint32_t robot, const Cell& cell) {
+  const auto [found, is_new] = tracks_.try_emplace(robot, Track{.cell = cell, .left = cell});
+  Track& track = found->second;
+  if (track.cell != cell) track = {.cell = cell, .left = track.cell, .times = kTimes};
+  if (track.times == 0) return std::nullopt;
+  --track.times;
+  return track.left;
+}
+
 // Sorts indices by cell, then splits the sequence at every new cell and at full batches. Batches of
 // earlier calls are reused, with the memory of their states.
-std::span<const CellStatesMessage> CellBatches::sort(std::span<const RobotStateMessage> states) {
+std::span<const CellStatesMessage> CellBatches::sort(std::span<const RobotStateMessage> states,
+                                                     LeftCells* left) {
   order_.clear();
   for (std::size_t i = 0; i < states.size(); ++i) {
-    order_.emplace_back(cell_of({states[i].x_m, states[i].y_m}, cell_size_m_), i);
+    const Cell cell = cell_of({states[i].x_m, states[i].y_m}, cell_size_m_);
+    order_.emplace_back(cell, i);
+    if (left == nullptr) continue;
+    if (const auto other = left->update(states[i].robot_id, cell)) order_.emplace_back(*other, i);
   }
   std::sort(order_.begin(), order_.end());
   std::size_t used = 0;

@@ -2,7 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <span>
+#include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "swarm_link/channels/cell.hpp"
@@ -28,13 +32,35 @@ class CellInterest {
   std::vector<Cell> wanted_;  ///< sorted
 };
 
+/// The cells that robots have left lately. Who receives the old cell but not the new one would take
+/// the robot's silence for that of a robot that has stopped somewhere: so its next states go to
+/// both cells. Several of them, because one may be lost. Allocates for each new robot.
+class LeftCells {
+ public:
+  /// States that go to the old cell as well.
+  static constexpr std::uint32_t kTimes = 4;
+
+  /// Call it for each state that is published, with its cell: the other cell that it goes to.
+  std::optional<Cell> update(std::uint32_t robot, const Cell& cell);
+
+ private:
+  struct Track {
+    Cell cell;
+    Cell left;
+    std::uint32_t times = 0;  // that are still due
+  };
+  std::unordered_map<std::uint32_t, Track> tracks_;
+};
+
 /// Robot states sorted into one batch per cell, or several of at most kMaxCellStates.
 class CellBatches {
  public:
   explicit CellBatches(double cell_size_m) : cell_size_m_(cell_size_m) {}
 
-  /// Sorts the states by cell. The result is valid until the next call; memory is reused.
-  std::span<const CellStatesMessage> sort(std::span<const RobotStateMessage> states);
+  /// Sorts the states by cell. The result is valid until the next call; memory is reused. With
+  /// `left`, a state is also in the batch of the cell that its robot has left.
+  std::span<const CellStatesMessage> sort(std::span<const RobotStateMessage> states,
+                                          LeftCells* left = nullptr);
 
  private:
   double cell_size_m_;

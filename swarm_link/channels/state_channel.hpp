@@ -18,8 +18,8 @@ class StateChannel {
  public:
   virtual ~StateChannel() = default;
 
-  /// Publishes states, one batch per cell or several of at most kMaxCellStates. Returns the number
-  /// of states sent.
+  /// Publishes states, one batch per cell or several of at most kMaxCellStates; for a while also in
+  /// the cell that a robot has left (see LeftCells). Returns the number of states sent.
   virtual std::size_t publish(std::span<const RobotStateMessage> states) = 0;
 
   /// Sets the positions of this process's robots, once per tick: joins the cells they need and
@@ -29,6 +29,11 @@ class StateChannel {
   /// Appends the cell batches received since the last call, including those that this process sent
   /// itself: robots of one process receive each other over the bus like all others.
   virtual std::size_t take(std::vector<CellStatesMessage>& out) = 0;
+
+  /// Whether all cells that the positions of the last listen_around() need can be received, and the
+  /// robots' own states be published. A process for which it is false would enter cells without
+  /// receiving who is there. It is tried again at each listen_around().
+  virtual bool receives_all() const { return true; }
 
   /// Batches that could not be decoded, since the start.
   virtual std::uint64_t undecodable() const = 0;

@@ -25,6 +25,8 @@ constexpr std::size_t kHeaderBytes = 8;
 using Header = std::array<char, kHeaderBytes>;
 constexpr Header kStop{'S', 'W', 'S', 'T', 'O', 'P', 0, 1};
 constexpr Header kConfirmation{'S', 'W', 'S', 'T', 'O', 'P', 1, 1};
+constexpr Header kBeat{'S', 'W', 'S', 'T', 'O', 'P', 2, 1};
+constexpr std::size_t kMaxBeats = 8;  // kept of those that arrive between two calls
 constexpr int kReceiveBytes = 1 << 18;
 constexpr std::size_t kMaxSenders = 8;  // that are answered: launcher and commands, not a flood
 
@@ -76,6 +78,13 @@ struct StopSender::Impl : DatagramSink {
     received.push_back(confirmation);
   }
 
+  void send_sample(const Header& kind) {
+    const auto header = std::as_bytes(std::span(kind));
+    outgoing.assign(header.begin(), header.end());
+    outgoing.insert(outgoing.end(), sample.begin(), sample.end());
+    send_to(fd, outgoing, group);
+  }
+
   sockaddr_in group;
   int fd;
   DatagramDrain drain;
@@ -96,10 +105,12 @@ Result<std::unique_ptr<StopSender>> StopSender::open(const StopChannelOptions& o
 void StopSender::send(const CommandMessage& stop) {
   SWARM_ASSERT(stop.kind == CommandKind::kStop);
   encode(stop, impl_->sample);
-  const auto header = std::as_bytes(std::span(kStop));
-  impl_->outgoing.assign(header.begin(), header.end());
-  impl_->outgoing.insert(impl_->outgoing.end(), impl_->sample.begin(), impl_->sample.end());
-  send_to(impl_->fd, impl_->outgoing, impl_->group);
+  impl_->send_sample(kStop);
+}
+
+void StopSender::send(const LauncherBeat& beat) {
+  encode(beat, impl_->sample);
+  impl_->send_sample(kBeat);
 }
 
 void StopSender::take(std::vector<StopConfirmation>& confirmations) {
@@ -120,6 +131,10 @@ struct StopReceiver::Impl : DatagramSink {
   Impl& operator=(const Impl&) = delete;
 
   void datagram(std::span<std::byte> bytes, const sockaddr_in& sender) override {
+    if (const auto content = content_of(bytes, kBeat)) {
+      if (const auto beat = decode_beat(*content)) keep(*beat);
+      return;
+    }
     const auto content = content_of(bytes, kStop);
     CommandMessage message;
     if (!content || !decode(*content, message)) return;
@@ -131,9 +146,15 @@ struct StopReceiver::Impl : DatagramSink {
     senders.push_back(sender);
   }
 
+  void keep(const LauncherBeat& beat) {
+    if (beats.size() == kMaxBeats) beats.pop_back();
+    beats.push_back(beat);
+  }
+
   int fd;
   int reply_fd;
   DatagramDrain drain;
+  std::vector<LauncherBeat> beats{};
   std::optional<CommandMessage> stop{};
   std::vector<sockaddr_in> senders{};
 };
@@ -150,14 +171,18 @@ Result<std::unique_ptr<StopReceiver>> StopReceiver::open(const StopChannelOption
     return no_multicast(options.interface);
   }
   impl->senders.reserve(kMaxSenders);
+  impl->beats.reserve(kMaxBeats);
   return std::unique_ptr<StopReceiver>(new StopReceiver(std::move(impl)));
 }
 
 std::optional<CommandMessage> StopReceiver::take() {
   impl_->stop.reset();
+  impl_->beats.clear();
   impl_->drain.drain(impl_->fd, *impl_);
   return impl_->stop;
 }
+
+std::span<const LauncherBeat> StopReceiver::beats() const { return impl_->beats; }
 
 void StopReceiver::confirm(const StopConfirmation& stopped) {
   std::array<std::byte, kHeaderBytes + sizeof stopped> bytes;

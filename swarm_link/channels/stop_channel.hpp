@@ -5,10 +5,12 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "swarm_link/channels/faulty_path.hpp"
+#include "swarm_link/channels/launcher_beat.hpp"
 #include "swarm_link/messages.hpp"
 #include "swarmflow/core/result.hpp"
 
@@ -18,8 +20,10 @@
 /// samples back until the lost one is repaired. Any process that reaches the group can stop the
 /// robots, as with the topic.
 ///
+/// The launcher's beats go to the same group: they, too, must not depend on discovery.
+///
 /// A datagram is 8 bytes "SWSTOP", kind and version, then the content: of a stop the CDR bytes of
-/// its CommandMessage, of a confirmation the ids of the stopped robots.
+/// its CommandMessage, of a confirmation the ids of the stopped robots, of a beat see LauncherBeat.
 namespace swarm::link {
 
 /// Where the datagrams of a run go.
@@ -48,6 +52,9 @@ class StopSender {
   /// \pre stop.kind is kStop, asserted
   void send(const CommandMessage& stop);
 
+  /// Sends one datagram to all processes with robots.
+  void send(const LauncherBeat& beat);
+
   /// Appends the confirmations that have arrived since the last call; never waits.
   void take(std::vector<StopConfirmation>& confirmations);
 
@@ -69,6 +76,10 @@ class StopReceiver {
   /// The last stop that has arrived since the previous call, if any; never waits. Its content is
   /// not checked: that is for Gate::command().
   std::optional<CommandMessage> take();
+
+  /// The beats that the last take() read, in the order of their arrival; of more than eight the
+  /// first seven and the last one.
+  std::span<const LauncherBeat> beats() const;
 
   /// Answers all who have sent a stop since the last confirmation.
   void confirm(const StopConfirmation& stopped);

@@ -25,7 +25,7 @@ class TopicChannel final : public StateChannel {
 
   std::size_t publish(std::span<const RobotStateMessage> states) override {
     std::size_t sent = 0;
-    for (const CellStatesMessage& batch : batches_.sort(states)) {
+    for (const CellStatesMessage& batch : batches_.sort(states, &left_)) {
       auto* writer = writer_of({batch.cell_x, batch.cell_y});
       if (writer != nullptr && writer->write(batch)) sent += batch.states.size();
     }
@@ -36,6 +36,7 @@ class TopicChannel final : public StateChannel {
   // Readers follow the wanted cells exactly; writers are created ahead and retired lazily.
   void listen_around(std::span<const Vec2> positions_m) override {
     ++now_;
+    receives_all_ = true;
     const auto wanted = interest_.update(positions_m);
     for (auto it = readers_.begin(); it != readers_.end();) {
       if (std::binary_search(wanted.begin(), wanted.end(), it->first)) {
@@ -48,16 +49,22 @@ class TopicChannel final : public StateChannel {
     for (const Cell& cell : wanted) {
       if (readers_.contains(cell)) continue;
       auto reader = participant_.make_reader(cell_topic(cell));
-      if (reader) readers_.emplace(cell, *std::move(reader));  // else tried again next time
+      if (reader) {
+        readers_.emplace(cell, *std::move(reader));
+      } else {
+        receives_all_ = false;
+      }
     }
     // A writer is discovered some tenths of a second after its creation. It is created before the
     // robot enters the cell; otherwise its first states there would not be received.
     for (const Cell& cell :
          cells_around(positions_m, options_.join_margin_m, options_.cell_size_m)) {
-      writer_of(cell);
+      if (writer_of(cell) == nullptr) receives_all_ = false;
     }
     retire_writers();
   }
+
+  bool receives_all() const override { return receives_all_; }
 
   std::size_t take(std::vector<CellStatesMessage>& out) override {
     std::size_t taken = 0;
@@ -104,6 +111,8 @@ class TopicChannel final : public StateChannel {
   CellOptions options_;
   CellInterest interest_;
   CellBatches batches_;
+  LeftCells left_;
+  bool receives_all_ = true;
   std::uint64_t now_ = 0;  // calls of listen_around()
   std::map<Cell, ReaderPtr<CellStatesMessage>> readers_;
   std::map<Cell, CellWriter> writers_;

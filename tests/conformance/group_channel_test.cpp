@@ -9,6 +9,7 @@
 #include <arpa/inet.h>
 #include <gtest/gtest.h>
 #include <netinet/in.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -112,6 +113,39 @@ TEST_F(GroupChannelTest, ListensToMoreCellsThanASocketHasMemberships) {
     for (const auto& state : batch.states) received.insert(state.robot_id);
   }
   EXPECT_EQ(received.size(), 60U);
+}
+
+/// While it exists, this process can open no further file.
+class NoMoreFiles {
+ public:
+  NoMoreFiles() {
+    ::getrlimit(RLIMIT_NOFILE, &before_);
+    const rlimit none{.rlim_cur = 3, .rlim_max = before_.rlim_max};
+    ::setrlimit(RLIMIT_NOFILE, &none);
+  }
+  ~NoMoreFiles() { ::setrlimit(RLIMIT_NOFILE, &before_); }
+  NoMoreFiles(const NoMoreFiles&) = delete;
+  NoMoreFiles& operator=(const NoMoreFiles&) = delete;
+
+ private:
+  rlimit before_{};
+};
+
+TEST_F(GroupChannelTest, ReportsCellsThatItCannotJoinAndJoinsThemLater) {
+  receives->listen_around({&place_m, 1});
+  EXPECT_TRUE(receives->receives_all());
+  const Vec2 elsewhere_m(100.0, 100.0);
+  {
+    const NoMoreFiles limit;
+    receives->listen_around({&place_m, 1});
+    EXPECT_TRUE(receives->receives_all()) << "joined already";
+    receives->listen_around({&elsewhere_m, 1});
+    EXPECT_FALSE(receives->receives_all());
+    receives->listen_around({&elsewhere_m, 1});
+    EXPECT_FALSE(receives->receives_all());
+  }
+  receives->listen_around({&elsewhere_m, 1});
+  EXPECT_TRUE(receives->receives_all());
 }
 
 TEST_F(GroupChannelTest, GivesCellsOfAMapGroupsOfTheirOwn) {

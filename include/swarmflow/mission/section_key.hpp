@@ -7,6 +7,7 @@
 #include <string_view>
 #include <variant>
 
+#include "swarmflow/mission/launcher_loss.hpp"
 #include "swarmflow/mission/options.hpp"
 
 namespace swarm {
@@ -17,9 +18,10 @@ template <class Section>
 struct SectionKey {
   std::string_view key;  ///< name in the mission file, that of the member
   /// The member that it sets. An optional number is written back only where it is set.
-  std::variant<double Section::*, std::uint32_t Section::*, std::optional<double> Section::*>
+  std::variant<double Section::*, std::uint32_t Section::*, std::optional<double> Section::*,
+               LauncherLoss Section::*>
       member;
-  Range range;           ///< numbers that it accepts
+  Range range;           ///< numbers that it accepts; of no meaning for a choice
   std::string_view doc;  ///< one line for docs/mission-keys.md
 };
 

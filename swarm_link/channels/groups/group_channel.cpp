@@ -82,7 +82,7 @@ class GroupChannel final : public StateChannel, private DatagramSink {
   // state follows a control period later.
   std::size_t publish(std::span<const RobotStateMessage> states) override {
     std::size_t sent = 0;
-    for (const CellStatesMessage& batch : batches_.sort(states)) {
+    for (const CellStatesMessage& batch : batches_.sort(states, &left_)) {
       if (!encode(batch, payload_)) continue;
       encode_rtps(prefix_, ++sequence_number_, payload_, datagram_);
       const sockaddr_in to = group_of(options_.domain, {batch.cell_x, batch.cell_y});
@@ -113,9 +113,12 @@ class GroupChannel final : public StateChannel, private DatagramSink {
       sockaddr_in address = group_of(options_.domain, {});
       address.sin_addr.s_addr = group;
       GroupSocket socket(address, interface_, options_.receive_buffer_bytes);
-      if (socket.joined()) joined_.insert(at, {group, std::move(socket)});  // else next time
+      if (socket.joined()) joined_.insert(at, {group, std::move(socket)});
     }
+    receives_all_ = joined_.size() == groups_.size();
   }
+
+  bool receives_all() const override { return receives_all_; }
 
   std::size_t take(std::vector<CellStatesMessage>& out) override {
     taking_ = &out;
@@ -143,6 +146,8 @@ class GroupChannel final : public StateChannel, private DatagramSink {
   GroupChannelOptions options_;
   CellInterest interest_;
   CellBatches batches_;
+  LeftCells left_;
+  bool receives_all_ = true;
   GuidPrefix prefix_;
   std::uint64_t sequence_number_ = 0;
   in_addr interface_;

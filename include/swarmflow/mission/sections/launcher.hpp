@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 
+#include "swarmflow/mission/launcher_loss.hpp"
 #include "swarmflow/mission/options.hpp"
 #include "swarmflow/mission/section_key.hpp"
 
@@ -17,8 +18,9 @@ struct LauncherSpec {
   double quorum_share = 1.0;       ///< share of robots that is enough after the timeout
   double quorum_timeout_s = 30.0;  ///< until then all are waited for; missing ones are reported
   double time_limit_s = 600.0;     ///< longest mission time
-  std::uint32_t respawn_planner_max = 3;  ///< most restarts of the planner
-  std::uint32_t respawn_agent_max = 0;    ///< most restarts of each agent process
+  std::uint32_t respawn_planner_max = 3;                  ///< most restarts of the planner
+  std::uint32_t respawn_agent_max = 0;                    ///< most restarts of each agent process
+  LauncherLoss on_launcher_loss = LauncherLoss::kFinish;  ///< when its beats stop
 };
 
 /// Keys of the section.
@@ -37,6 +39,8 @@ inline constexpr auto kLauncherKeys = std::to_array<SectionKey<LauncherSpec>>({
      "how often a planner that ended is restarted"},
     {"respawn_agent_max", &LauncherSpec::respawn_agent_max, between(0, 1000),
      "how often a robot's process that ended is restarted"},
+    {"on_launcher_loss", &LauncherSpec::on_launcher_loss, between(0, 1),
+     "what robots do when the launcher's beats stop for timing.launcher_silence_s"},
 });
 
 }  // namespace swarm

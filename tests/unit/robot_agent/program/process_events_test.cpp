@@ -47,6 +47,7 @@ class ProcessEventsTest : public ProcessBench {
   KeepingWriter<link::EventMessage> writer_;
   ProcessEvents events_{robots_, writer_};
   link::Severity severity_ = link::Severity::kInfo;
+  Duration sut_events_at_{};
 };
 
 TEST_F(ProcessEventsTest, AnnounceEachLossAndReturnOfThePlannerOnce) {
@@ -64,6 +65,42 @@ TEST_F(ProcessEventsTest, AnnounceEachLossAndReturnOfThePlannerOnce) {
   ASSERT_EQ(logged<robot_log::Note>(0).size(), 3U);
   EXPECT_EQ(logged<robot_log::Note>(0)[1].code, "planner-silent");
   EXPECT_TRUE(logged<robot_log::Note>(1).empty());
+}
+
+TEST_F(ProcessEventsTest, AnnounceWhyRobotsStandAndWhenTheyMoveAgain) {
+  const auto permit = [&](StandReason reason, Duration later = milliseconds(100)) {
+    sut_events_at_ += later;
+    events_.on_permit(steady() + sut_events_at_, utc(), reason);
+    std::vector<std::string> codes;
+    for (const link::EventMessage& event : writer_.take()) codes.push_back(event.code);
+    return codes;
+  };
+  EXPECT_EQ(permit(StandReason::kCutOff), Texts{}) << "not started yet";
+  EXPECT_EQ(permit(StandReason::kNone), Texts{});
+  EXPECT_EQ(permit(StandReason::kCutOff), Texts{"cut-off"});
+  EXPECT_EQ(permit(StandReason::kCutOff), Texts{});
+  EXPECT_EQ(permit(StandReason::kNone), Texts{"moves-again"});
+  EXPECT_EQ(permit(StandReason::kCellsMissing), Texts{"cells-missing"});
+  EXPECT_EQ(permit(StandReason::kNone), Texts{"moves-again"});
+  EXPECT_EQ(permit(StandReason::kWaking), Texts{"woke-late"});
+  EXPECT_EQ(permit(StandReason::kNone), Texts{"moves-again"});
+  EXPECT_EQ(permit(StandReason::kWaking), Texts{}) << "once in ten seconds";
+  EXPECT_EQ(permit(StandReason::kNone), Texts{});
+  EXPECT_EQ(permit(StandReason::kWaking, seconds(10)), Texts{"woke-late"});
+}
+
+TEST_F(ProcessEventsTest, AnnounceThatCellsAreMissingAlsoBeforeTheFirstMove) {
+  events_.on_permit(steady(), utc(), StandReason::kCellsMissing);
+  EXPECT_EQ(writer_.take().size(), 1U);
+}
+
+TEST_F(ProcessEventsTest, AnnounceEachLossAndReturnOfTheLauncherOnce) {
+  std::vector<std::string> codes;
+  for (const bool is_lost : {false, true, true, false, false}) {
+    events_.on_launcher(utc(), is_lost);
+    for (const link::EventMessage& event : writer_.take()) codes.push_back(event.code);
+  }
+  EXPECT_EQ(codes, (Texts{"launcher-silent", "launcher-back"}));
 }
 
 TEST_F(ProcessEventsTest, AnnounceAFaultWhenItBeginsAndWhenItEnds) {

@@ -5,6 +5,7 @@
 #include <set>
 #include <span>
 #include <string>
+#include <type_traits>
 #include <variant>
 
 #include <gtest/gtest.h>
@@ -14,12 +15,20 @@
 namespace swarm {
 namespace {
 
-/// The number that a key has without being set; empty for an optional number.
+/// The number that a key has without being set, the index of a choice; empty for an optional
+/// number.
 template <class Section>
 std::optional<double> default_of(const SectionKey<Section>& key) {
   const Section section{};
-  return std::visit([&](auto member) -> std::optional<double> { return section.*member; },
-                    key.member);
+  return std::visit(
+      [&](auto member) -> std::optional<double> {
+        if constexpr (std::is_same_v<decltype(member), LauncherLoss Section::*>) {
+          return static_cast<double>(section.*member);
+        } else {
+          return section.*member;
+        }
+      },
+      key.member);
 }
 
 template <class Section>

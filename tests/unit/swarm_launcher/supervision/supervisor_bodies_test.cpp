@@ -85,6 +85,25 @@ TEST(SupervisorBodies, OfASilentRobotIsClearedWhenItReports) {
   EXPECT_EQ(bench.risen, (Robots{{RobotId(2)}}));
 }
 
+TEST(SupervisorBodies, OfAProcessThatFreezesStandUntilItReportsAgain) {
+  RunningBench bench(3);
+  bench.start();
+  for (int i = 0; i < 40; ++i) {  // 4 s, in which robot 1 reports nothing
+    bench.sut->on_status(RobotId(0), report_of(bench.now));
+    bench.sut->on_status(RobotId(2), report_of(bench.now));
+    bench.run_for(milliseconds(100));
+  }
+  EXPECT_EQ(bench.fallen, (Robots{{RobotId(1)}})) << "once";
+  EXPECT_EQ(bench.sut->silent(), std::vector{RobotId(1)});
+  EXPECT_TRUE(bench.sut->lost().empty()) << "its process is alive";
+
+  bench.sut->on_status(RobotId(1), report_of(bench.now));
+  bench.run_for(milliseconds(100));
+
+  EXPECT_EQ(bench.risen, (Robots{{RobotId(1)}}));
+  EXPECT_TRUE(bench.sut->silent().empty());
+}
+
 TEST(SupervisorBodies, AreNoneOfProcessesThatEndWithTheMission) {
   RunningBench bench(3);
   bench.start();

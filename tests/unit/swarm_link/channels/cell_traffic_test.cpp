@@ -160,6 +160,37 @@ RobotStateMessage state(std::uint32_t robot, double x_m, double y_m) {
   return {.robot_id = robot, .sequence_number = robot + 1, .x_m = x_m, .y_m = y_m};
 }
 
+TEST(LeftCells, NameTheOldCellForTheNextStatesOfARobot) {
+  LeftCells sut;
+  EXPECT_FALSE(sut.update(3, {0, 0})) << "it has left none";
+  EXPECT_FALSE(sut.update(3, {0, 0}));
+  for (std::uint32_t i = 0; i < LeftCells::kTimes; ++i) {
+    EXPECT_EQ(sut.update(3, {1, 0}), (Cell{0, 0})) << i;
+    EXPECT_FALSE(sut.update(4, {1, 0})) << "another robot";
+  }
+  EXPECT_FALSE(sut.update(3, {1, 0}));
+  EXPECT_EQ(sut.update(3, {0, 0}), (Cell{1, 0})) << "it returns";
+  EXPECT_EQ(sut.update(3, {0, 1}), (Cell{0, 0})) << "the last cell counts";
+}
+
+TEST(CellBatches, ReportARobotInTheCellThatItHasLeft) {
+  CellBatches sut(10.0);
+  LeftCells left;
+  RobotStateMessage state{.robot_id = 3, .x_m = 9.0, .y_m = 1.0};
+  EXPECT_EQ(sut.sort({&state, 1}, &left).size(), 1U);
+  state.x_m = 11.0;
+
+  const auto batches = sut.sort({&state, 1}, &left);
+
+  ASSERT_EQ(batches.size(), 2U);
+  EXPECT_EQ(batches[0].cell_x, 0);
+  EXPECT_EQ(batches[1].cell_x, 1);
+  for (const CellStatesMessage& batch : batches) {
+    ASSERT_EQ(batch.states.size(), 1U);
+    EXPECT_EQ(batch.states[0].x_m, 11.0) << "where it is now";
+  }
+}
+
 TEST(CellBatches, SortNothingIntoNoBatch) {
   CellBatches sut(10.0);
   EXPECT_TRUE(sut.sort({}).empty());

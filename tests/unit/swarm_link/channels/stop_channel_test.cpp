@@ -74,6 +74,38 @@ TEST_F(StopChannel, BringsConfirmationsToThoseWhoSent) {
   EXPECT_TRUE(to_silent.empty());
 }
 
+TEST_F(StopChannel, CarriesTheLaunchersBeatsBesideStops) {
+  const auto from = sender(217);
+  const auto robots = receiver(217);
+  LauncherBeat beat{.run = 5};
+  const std::vector<RobotId> silent = {RobotId(3), RobotId(4)};
+  set_silent(beat, silent);
+  for (int i = 0; i < 20; ++i) {
+    ++beat.sequence;
+    from->send(beat);
+  }
+  from->send(kStopMessage);
+  // The stop is the last datagram, but the kernel may deliver it later than the others.
+  std::uint64_t newest = 0;
+  bool is_stopped = false;
+  for (int i = 0; i < 5000 && !is_stopped; ++i) {
+    is_stopped = robots->take().has_value();
+    EXPECT_LE(robots->beats().size(), 8U);
+    for (const LauncherBeat& b : robots->beats()) {
+      EXPECT_GT(b.sequence, newest);
+      newest = b.sequence;
+      EXPECT_EQ(b.run, 5U);
+      ASSERT_EQ(b.silent().size(), 1U);
+      EXPECT_EQ(b.silent()[0], (RobotRange{3, 2}));
+    }
+    if (!is_stopped) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  EXPECT_TRUE(is_stopped);
+  EXPECT_EQ(newest, 20U) << "the last one is kept";
+  EXPECT_FALSE(robots->take());
+  EXPECT_TRUE(robots->beats().empty()) << "each beat once";
+}
+
 TEST_F(StopChannel, IgnoresWhatIsNoStop) {
   const auto robots = receiver(213);
   const auto from = sender(213);
@@ -82,12 +114,14 @@ TEST_F(StopChannel, IgnoresWhatIsNoStop) {
   group.sin_addr.s_addr = htonl(0xEFFEFFFFU);
   for (const std::string& text :
        {std::string("?"), std::string("SWSTOP"), std::string("SWSTOP\0\1", 8),
-        std::string("SWSTOP\0\1\0\1\0\0abc", 15), std::string(60'000, 'x')}) {
+        std::string("SWSTOP\0\1\0\1\0\0abc", 15), std::string("SWSTOP\2\1abc", 11),
+        std::string(60'000, 'x')}) {
     ::sendto(fd, text.data(), text.size(), 0, reinterpret_cast<const sockaddr*>(&group),
              sizeof group);
   }
   ::close(fd);
   EXPECT_FALSE(robots->take());
+  EXPECT_TRUE(robots->beats().empty());
   from->send(kStopMessage);
   EXPECT_TRUE(take_sent(*robots));
 }

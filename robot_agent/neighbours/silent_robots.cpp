@@ -1,0 +1,89 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "robot_agent/neighbours/silent_robots.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "swarmflow/mission/body_limits.hpp"
+
+namespace swarm::agent {
+namespace {
+
+constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+
+/// The longest time that a body of the mission takes to reach a commanded velocity.
+double largest_lag_s(const RobotsSpec& robots) {
+  double largest = body_lag_s(robots);
+  for (const RobotGroupSpec& group : robots.groups) largest = std::max(largest, body_lag_s(group));
+  return largest;
+}
+
+}  // namespace
+
+SilentRobots::SilentRobots(const SilenceOptions& options)
+    : options_(options), index_of_(options.robots, kNone) {
+  received_.reserve(options.robots);
+  silent_.reserve(options.robots);
+}
+
+void SilentRobots::on_state(const State& state) {
+  const std::uint32_t id = state.robot.value();
+  if (!covers(state.robot)) return;
+  if (index_of_[id] == kNone) {
+    index_of_[id] = static_cast<std::uint32_t>(received_.size());
+    received_.push_back(state);
+  } else if (State& last = received_[index_of_[id]]; last.as_of < state.as_of) {
+    last = state;
+  }
+}
+
+/// Robots that are well elsewhere are forgotten; the others close ranks, in their order. A robot
+/// whose body is an obstacle is kept: the launcher may clear the body as soon as it receives the
+/// robot, before the robot's next state arrives here.
+void SilentRobots::update(SteadyTime now, const Whereabouts& whereabouts) {
+  silent_.clear();
+  std::uint32_t kept = 0;
+  for (const State& state : received_) {
+    const Duration age = now - state.as_of;
+    const bool is_silent = age > options_.expected_silence;
+    if (is_silent && whereabouts.is_well(state.robot, state.as_of, now)) {
+      index_of_[state.robot.value()] = kNone;
+      continue;
+    }
+    if (is_silent && !whereabouts.is_obstacle(state.robot))
+      silent_.push_back(possible_positions(state, age));
+    index_of_[state.robot.value()] = kept;
+    received_[kept++] = state;
+  }
+  received_.resize(kept);
+}
+
+SilentRobot SilentRobots::possible_positions(const State& state, Duration age) const {
+  const Fleet::Body& body = options_.fleet.of(state.robot);
+  const Duration silence = options_.expected_silence;
+  const Duration standing = silence + options_.dead_man;
+  const bool is_recent = age < std::min(2 * silence, standing);
+  const Duration moved = is_recent ? 2 * (age - silence) : std::min(age, standing);
+  const double speed_mps = age < standing ? (is_recent ? 2.0 : 1.0) * body.speed_max_mps : 0.0;
+  const double course_s = is_recent ? to_seconds(silence) : 0.0;
+  return {.robot = state.robot,
+          .from_m = state.position_m,
+          .to_m = state.position_m + course_s * state.velocity_mps,
+          .radius_m = body.radius_m + body.speed_max_mps * to_seconds(moved),
+          .growth_mps = speed_mps};
+}
+
+SilenceOptions silence_options(const Mission& mission, RobotId first, std::uint32_t count) {
+  const Duration period = from_seconds(1.0 / mission.control.rate_hz);
+  return {
+      .fleet = Fleet(mission.robots),
+      .robots = mission.robots.count,
+      .first_own = first.value(),
+      .own = count,
+      .expected_silence = from_seconds(mission.link.send_interval_max_s) + 2 * period,
+      .dead_man = from_seconds(mission.timing.planner_silence_s + largest_lag_s(mission.robots)) +
+                  2 * period};
+}
+
+}  // namespace swarm::agent

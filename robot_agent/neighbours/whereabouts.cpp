@@ -1,0 +1,64 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "robot_agent/neighbours/whereabouts.hpp"
+
+#include <algorithm>
+
+#include "swarm_core/mission/supervision_times.hpp"
+
+namespace swarm::agent {
+
+Whereabouts::Whereabouts(const WhereaboutsOptions& options)
+    : options_(options), listed_at_(options.robots) {}
+
+bool Whereabouts::has_known_ids(const link::LauncherBeat& beat) const {
+  return std::ranges::all_of(beat.silent(), [&](const link::RobotRange& range) {
+    return std::uint64_t{range.first} + range.count <= options_.robots;
+  });
+}
+
+/// A beat that does not list all silent robots is a sign of life, but ends what earlier ones state.
+void Whereabouts::on_beat(const link::LauncherBeat& beat, SteadyTime now) {
+  if (beat.run != options_.run || beat.sequence <= sequence_ || !has_known_ids(beat)) {
+    ++refused_;
+    return;
+  }
+  sequence_ = beat.sequence;
+  if (!beat.lists_all || !last_beat_ || now - *last_beat_ > options_.beat_timeout) since_ = now;
+  last_beat_ = now;
+  for (const link::RobotRange& range : beat.silent()) {
+    std::fill_n(listed_at_.begin() + range.first, range.count, now);
+  }
+}
+
+void Whereabouts::on_scene(const Scene& scene) {
+  bodies_.clear();
+  for (const SceneObstacle& obstacle : scene.obstacles) {
+    if (obstacle.owner) bodies_.push_back(*obstacle.owner);
+  }
+  std::sort(bodies_.begin(), bodies_.end());
+}
+
+bool Whereabouts::is_obstacle(RobotId robot) const {
+  return std::binary_search(bodies_.begin(), bodies_.end(), robot);
+}
+
+bool Whereabouts::is_well(RobotId robot, SteadyTime last_state, SteadyTime now) const {
+  if (!last_beat_ || now - *last_beat_ > options_.beat_timeout) return false;
+  if (robot.value() >= listed_at_.size()) return false;
+  const SteadyTime begin = std::max({last_state, since_, listed_at_[robot.value()]});
+  return *last_beat_ - begin >= options_.healthy_after;
+}
+
+WhereaboutsOptions whereabouts_options(const Mission& mission, std::uint64_t run) {
+  const Duration beat = from_seconds(1.0 / kBeatHz);
+  return {.robots = mission.robots.count,
+          .run = run,
+          .beat_timeout = 3 * beat,
+          .launcher_silence = from_seconds(mission.timing.launcher_silence_s),
+          // The last status may have been sent just before the robot was cut off, the beat that
+          // lists it follows up to a period later, and may wait in a socket for up to a gap.
+          .healthy_after = kStatusSilence + from_seconds(1.0 / mission.link.status_hz) + 4 * beat};
+}
+
+}  // namespace swarm::agent

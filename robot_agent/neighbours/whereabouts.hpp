@@ -1,0 +1,72 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "swarm_link/channels/launcher_beat.hpp"
+#include "swarmflow/core/ids.hpp"
+#include "swarmflow/core/time.hpp"
+#include "swarmflow/mission/mission.hpp"
+#include "swarmflow/mission/scene.hpp"
+
+namespace swarm::agent {
+
+/// When a robot that is not received may be taken for a healthy robot somewhere else.
+struct WhereaboutsOptions {
+  std::uint32_t robots = 0;     ///< of the mission
+  std::uint64_t run = 0;        ///< whose beats count
+  Duration beat_timeout{};      ///< a longer time between two beats is a gap
+  Duration launcher_silence{};  ///< without a beat for longer, the launcher is lost
+  /// Without a gap for this long, a robot that the launcher has not received for all that time
+  /// would have been listed as silent.
+  Duration healthy_after{};
+};
+
+/// What launcher and scene state about robots that are not received: which are obstacles, and which
+/// the launcher receives. Shared by the robots of a process. Pure; the time is passed in.
+class Whereabouts {
+ public:
+  explicit Whereabouts(const WhereaboutsOptions& options);
+
+  /// Takes a beat. One of another run, out of order or with ids that the mission does not have is
+  /// ignored and counted. O(silent robots).
+  void on_beat(const link::LauncherBeat& beat, SteadyTime now);
+  /// Takes the scene, for the robots whose bodies are obstacles. O(obstacles).
+  void on_scene(const Scene& scene);
+
+  /// Whether a robot's body is an obstacle of the scene.
+  bool is_obstacle(RobotId robot) const;
+  /// Whether the launcher has received a robot whose last state received here was measured at
+  /// `last_state` since then: it is well, somewhere else. This takes `healthy_after` of beats
+  /// without a gap up to now, none of which lists the robot.
+  bool is_well(RobotId robot, SteadyTime last_state, SteadyTime now) const;
+
+  /// Whether beats had been received and have stopped.
+  bool is_launcher_lost(SteadyTime now) const {
+    return last_beat_ && now - *last_beat_ > options_.launcher_silence;
+  }
+  /// Of the last beat; empty: none has been received.
+  std::optional<SteadyTime> last_beat() const { return last_beat_; }
+  std::uint64_t refused() const { return refused_; }
+
+ private:
+  bool has_known_ids(const link::LauncherBeat& beat) const;
+
+  WhereaboutsOptions options_;
+  std::optional<SteadyTime> last_beat_;
+  SteadyTime since_;  // of the first beat after the last gap
+  std::uint64_t sequence_ = 0;
+  std::uint64_t refused_ = 0;
+  std::vector<SteadyTime> listed_at_;  // by robot: the last beat that lists it
+  std::vector<RobotId> bodies_;        // sorted
+};
+
+/// The options of a mission. The launcher reports a robot as silent `launcher_silence` after its
+/// last status.
+WhereaboutsOptions whereabouts_options(const Mission& mission, std::uint64_t run);
+
+}  // namespace swarm::agent

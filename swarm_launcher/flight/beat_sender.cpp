@@ -1,0 +1,24 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "swarm_launcher/flight/beat_sender.hpp"
+
+#include <utility>
+
+#include "swarm_core/mission/supervision_times.hpp"
+
+namespace swarm::launcher {
+
+BeatSender::BeatSender(std::unique_ptr<link::StopSender> sender, std::uint64_t run)
+    : sender_(std::move(sender)) {
+  beat_.run = run;
+}
+
+void BeatSender::step(SteadyTime now, const Supervisor& supervisor) {
+  if (sent_at_ && now - *sent_at_ < from_seconds(1.0 / kBeatHz)) return;
+  sent_at_ = now;
+  ++beat_.sequence;
+  link::set_silent(beat_, supervisor.silent());
+  sender_->send(beat_);
+}
+
+}  // namespace swarm::launcher

@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+
+#include "swarm_launcher/supervision/supervisor.hpp"
+#include "swarm_link/channels/stop_channel.hpp"
+#include "swarmflow/core/time.hpp"
+
+namespace swarm::launcher {
+
+/// Sends the launcher's beats to all robots: that it runs, and which robots it does not receive.
+/// Single thread; the time is passed in.
+class BeatSender {
+ public:
+  /// `run`: the begin of the run [ns], by which robots know that a beat is theirs.
+  BeatSender(std::unique_ptr<link::StopSender> sender, std::uint64_t run);
+
+  /// Sends a beat if one is due. Call it often.
+  void step(SteadyTime now, const Supervisor& supervisor);
+
+ private:
+  std::unique_ptr<link::StopSender> sender_;
+  link::LauncherBeat beat_;
+  std::optional<SteadyTime> sent_at_;
+};
+
+}  // namespace swarm::launcher

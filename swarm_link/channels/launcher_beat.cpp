@@ -1,0 +1,79 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "swarm_link/channels/launcher_beat.hpp"
+
+#include <bit>
+#include <cstring>
+
+namespace swarm::link {
+namespace {
+
+static_assert(std::endian::native == std::endian::little);
+
+constexpr std::size_t kFixedBytes = 20;
+
+template <class Number>
+void put(std::vector<std::byte>& out, Number number) {
+  const std::size_t at = out.size();
+  out.resize(at + sizeof number);
+  std::memcpy(out.data() + at, &number, sizeof number);
+}
+
+template <class Number>
+Number get(std::span<const std::byte>& bytes) {
+  Number number;
+  std::memcpy(&number, bytes.data(), sizeof number);
+  bytes = bytes.subspan(sizeof number);
+  return number;
+}
+
+}  // namespace
+
+void set_silent(LauncherBeat& beat, std::span<const RobotId> robots) {
+  beat.ranges = 0;
+  beat.lists_all = true;
+  for (std::size_t i = 0; i < robots.size();) {
+    if (beat.ranges == LauncherBeat::kMaxRanges) {
+      beat.lists_all = false;
+      return;
+    }
+    std::uint32_t count = 1;
+    while (i + count < robots.size() && robots[i + count].value() == robots[i].value() + count) {
+      ++count;
+    }
+    beat.range[beat.ranges++] = {robots[i].value(), count};
+    i += count;
+  }
+}
+
+void encode(const LauncherBeat& beat, std::vector<std::byte>& out) {
+  out.clear();
+  put(out, beat.run);
+  put(out, beat.sequence);
+  put(out, static_cast<std::uint32_t>(beat.lists_all ? 1 : 0));
+  for (const RobotRange& range : beat.silent()) {
+    put(out, range.first);
+    put(out, range.count);
+  }
+}
+
+std::optional<LauncherBeat> decode_beat(std::span<const std::byte> bytes) {
+  if (bytes.size() < kFixedBytes) return std::nullopt;
+  const std::size_t ranges = (bytes.size() - kFixedBytes) / sizeof(RobotRange);
+  if (bytes.size() != kFixedBytes + ranges * sizeof(RobotRange)) return std::nullopt;
+  if (ranges > LauncherBeat::kMaxRanges) return std::nullopt;
+  LauncherBeat beat;
+  beat.run = get<std::uint64_t>(bytes);
+  beat.sequence = get<std::uint64_t>(bytes);
+  const auto lists_all = get<std::uint32_t>(bytes);
+  if (lists_all > 1) return std::nullopt;
+  beat.lists_all = lists_all == 1;
+  for (beat.ranges = 0; beat.ranges < ranges; ++beat.ranges) {
+    RobotRange& range = beat.range[beat.ranges];
+    range.first = get<std::uint32_t>(bytes);
+    range.count = get<std::uint32_t>(bytes);
+  }
+  return beat;
+}
+
+}  // namespace swarm::link

@@ -1,0 +1,48 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "swarmflow/core/ids.hpp"
+
+namespace swarm::link {
+
+/// Robots with consecutive ids: first to first + count − 1.
+struct RobotRange {
+  std::uint32_t first = 0;
+  std::uint32_t count = 0;
+  bool operator==(const RobotRange&) const = default;
+};
+
+/// The launcher's sign of life, twice a second, with the robots that it does not receive. It states
+/// nothing about the others while `lists_all` is false: then there were more silent robots than a
+/// beat has room for. A plain value without heap memory, so that receiving one allocates nothing.
+struct LauncherBeat {
+  static constexpr std::size_t kMaxRanges = 100;
+
+  std::uint64_t run = 0;       ///< of the run that it belongs to: the time of its begin [ns]
+  std::uint64_t sequence = 0;  ///< from 1; a lower or equal one is out of date
+  bool lists_all = true;
+  std::uint32_t ranges = 0;  ///< number of those in use
+  std::array<RobotRange, kMaxRanges> range{};
+
+  std::span<const RobotRange> silent() const { return std::span(range).first(ranges); }
+};
+
+/// Fills in the silent robots, whose ids ascend.
+void set_silent(LauncherBeat& beat, std::span<const RobotId> robots);
+
+/// The bytes of a beat, without the datagram's header: run, sequence, lists_all and the ranges, as
+/// little-endian integers of 8, 8, 4 and 4 + 4 bytes.
+void encode(const LauncherBeat& beat, std::vector<std::byte>& out);
+
+/// Empty if the bytes are no beat. The ids are not checked.
+std::optional<LauncherBeat> decode_beat(std::span<const std::byte> bytes);
+
+}  // namespace swarm::link

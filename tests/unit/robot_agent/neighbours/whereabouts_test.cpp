@@ -1,0 +1,105 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "robot_agent/neighbours/whereabouts.hpp"
+
+#include <chrono>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace swarm::agent {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+SteadyTime at(double s) { return SteadyTime(from_seconds(100.0 + s)); }
+
+class WhereaboutsTest : public testing::Test {
+ protected:
+  /// Beats every half second in [from, to].
+  void beats(double from_s, double to_s, const std::vector<RobotId>& silent = {}) {
+    for (double s = from_s; s <= to_s; s += 0.5) beat(s, silent);
+  }
+  void beat(double s, const std::vector<RobotId>& silent = {}) {
+    ++beat_.sequence;
+    link::set_silent(beat_, silent);
+    sut_.on_beat(beat_, at(s));
+  }
+  bool is_well(double last_state_s, double now_s) const {
+    return sut_.is_well(RobotId(3), at(last_state_s), at(now_s));
+  }
+
+  Whereabouts sut_{{.robots = 1000,
+                    .run = 7,
+                    .beat_timeout = milliseconds(1500),
+                    .launcher_silence = seconds(3),
+                    .healthy_after = seconds(6)}};
+  link::LauncherBeat beat_{.run = 7};
+};
+
+TEST_F(WhereaboutsTest, KnowNothingWithoutTheLauncher) {
+  EXPECT_FALSE(is_well(-1000, 0));
+  EXPECT_FALSE(sut_.last_beat());
+  EXPECT_FALSE(sut_.is_launcher_lost(at(1000))) << "it was never received";
+}
+
+TEST_F(WhereaboutsTest, ClearARobotThatAllBeatsForLongEnoughLeaveOut) {
+  beats(0, 20);
+  EXPECT_FALSE(is_well(14.5, 20));
+  EXPECT_TRUE(is_well(14, 20));
+  EXPECT_FALSE(is_well(14, 21.6)) << "the beats have stopped";
+}
+
+TEST_F(WhereaboutsTest, BeginAnewAfterAGapOrAListing) {
+  beats(0, 10);
+  beats(12, 17.5);
+  EXPECT_FALSE(is_well(-1, 17.5)) << "no beat for 2 s";
+  beat(18);
+  EXPECT_TRUE(is_well(-1, 18));
+
+  beat(18.5, {RobotId(2), RobotId(3)});
+  beats(19, 24);
+  EXPECT_FALSE(is_well(-1, 24)) << "listed at 18.5";
+  beat(24.5);
+  EXPECT_TRUE(is_well(-1, 24.5));
+}
+
+TEST_F(WhereaboutsTest, BeginAnewWhenABeatHasNoRoomForAllSilentRobots) {
+  beats(0, 10);
+  std::vector<RobotId> many;
+  for (std::uint32_t i = 0; i < 101; ++i) many.emplace_back(5 + 2 * i);
+  beat(10.5, many);
+  EXPECT_FALSE(beat_.lists_all);
+  EXPECT_FALSE(is_well(-1, 10.5));
+}
+
+TEST_F(WhereaboutsTest, RefuseBeatsOfOthersOldOnesAndUnknownIds) {
+  beats(0, 10);
+  link::LauncherBeat other = beat_;
+  other.run = 8;
+  other.sequence += 5;
+  sut_.on_beat(other, at(10.5));
+  sut_.on_beat(beat_, at(10.5));  // again
+  link::LauncherBeat forged = beat_;
+  ++forged.sequence;
+  forged.ranges = 1;
+  forged.range[0] = {.first = 999, .count = 2};
+  sut_.on_beat(forged, at(10.5));
+  forged.range[0] = {.first = 2, .count = 0xFFFF'FFFF};
+  sut_.on_beat(forged, at(10.5));
+
+  EXPECT_EQ(sut_.last_beat(), at(10));
+  EXPECT_EQ(sut_.refused(), 4U);
+}
+
+TEST_F(WhereaboutsTest, ReportALauncherWhoseBeatsHaveStopped) {
+  beats(0, 10);
+  EXPECT_FALSE(sut_.is_launcher_lost(at(13)));
+  EXPECT_TRUE(sut_.is_launcher_lost(at(13.1)));
+  beat(14);
+  EXPECT_FALSE(sut_.is_launcher_lost(at(14)));
+}
+
+}  // namespace
+}  // namespace swarm::agent

@@ -1,0 +1,149 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Random scenes with silent, frozen, waking, cut-off and ramming robots, gaps in continuous time.
+// SWARM_SCENES sets how many, SWARM_SEED which (100000 take some minutes).
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "swarmflow/core/random.hpp"
+#include "tests/unit/robot_agent/safety/silent_swarm.hpp"
+
+namespace swarm::agent {
+namespace {
+
+constexpr int kFlight_ms = 14'000;
+constexpr double kApart_m = 2 * SilentSwarm::kRadius_m + 0.4;
+
+int number(const char* variable, int otherwise) {
+  const char* const text = std::getenv(variable);
+  return text != nullptr ? std::atoi(text) : otherwise;
+}
+int scenes() { return number("SWARM_SCENES", 300); }
+std::uint64_t seed(int scene) {
+  return mix_seed(static_cast<std::uint64_t>(number("SWARM_SEED", 1)),
+                  static_cast<std::uint64_t>(scene));
+}
+
+int random_ms(Rng& rng, double low_s, double high_s) {
+  return 10 * static_cast<int>(100.0 * uniform(rng, low_s, high_s));
+}
+FaultSpan random_span(Rng& rng, double longest_s) {
+  const int begin_ms = random_ms(rng, 0.5, 7.0);
+  return {begin_ms, begin_ms + random_ms(rng, 0.1, longest_s)};
+}
+
+/// A third of the robots fails.
+void add_fault(Rng& rng, RobotPart& part) {
+  const double kind = uniform01(rng);
+  if (kind < 0.15) {
+    part.frozen = random_span(rng, 8.0);
+  } else if (kind < 0.25) {
+    part.cut_off = random_span(rng, 8.0);
+  } else if (kind < 0.35) {  // freezes while it is cut off, and wakes in or after it
+    part.cut_off = random_span(rng, 8.0);
+    part.frozen.begin_ms = part.cut_off.begin_ms + random_ms(rng, 0.0, 3.0);
+    part.frozen.end_ms = part.frozen.begin_ms + random_ms(rng, 0.1, 8.0);
+  }
+}
+
+std::vector<RobotPart> random_group(Rng& rng) {
+  std::vector<RobotPart> parts;
+  const std::size_t robots = 2 + rng() % 7;
+  for (int tries = 0; tries < 80 && parts.size() < robots; ++tries) {
+    const Vec2 start(uniform(rng, -6.0, 6.0), uniform(rng, -6.0, 6.0));
+    const bool has_room = std::all_of(parts.begin(), parts.end(), [&](const RobotPart& p) {
+      return (p.start_m - start).norm() > kApart_m;
+    });
+    if (!has_room) continue;
+    RobotPart part{.start_m = start, .goal_m = -start};
+    if (uniform01(rng) < 0.5) part.goal_m = {uniform(rng, -6.0, 6.0), uniform(rng, -6.0, 6.0)};
+    part.phase_ms = 10 * static_cast<int>(rng() % 10);
+    add_fault(rng, part);
+    parts.push_back(part);
+  }
+  return parts;
+}
+
+SilentSwarm::Approach fly(int scene, SilenceRule rule) {
+  Rng rng(seed(scene));
+  // Room to retreat: against a wall a robot cannot avoid one that drives on while it is cut off.
+  SilentSwarm swarm({{-14, -14}, {14, 14}}, random_group(rng), rule);
+  return swarm.fly_until(kFlight_ms);
+}
+
+std::string describe(const FaultSpan& span) {
+  return fmt::format("{}-{}", span.begin_ms, span.end_ms);
+}
+/// For messages: who came near whom, and what was wrong with them.
+std::string describe(int scene, const SilentSwarm::Approach& nearest) {
+  Rng rng(seed(scene));
+  const std::vector<RobotPart> parts = random_group(rng);
+  std::string text = fmt::format("scene {} at {} ms:", scene, nearest.at_ms);
+  for (const std::size_t i : {nearest.first, nearest.second}) {
+    text += fmt::format(" robot {} frozen {} cut off {} mute {};", i, describe(parts[i].frozen),
+                        describe(parts[i].cut_off), describe(parts[i].mute));
+  }
+  return text;
+}
+
+/// Whether a robot was cut off so shortly before that others could not know of it.
+bool was_just_cut_off(int scene, const SilentSwarm::Approach& nearest) {
+  constexpr int kNotice_ms = 700 + 100 + 200;  // the silence, the next tick, and time to react
+  Rng rng(seed(scene));
+  const std::vector<RobotPart> parts = random_group(rng);
+  const auto is_just_cut_off = [&](std::size_t i) {
+    const int begin_ms = parts[i].cut_off.begin_ms;
+    return begin_ms > 0 && begin_ms <= nearest.at_ms && nearest.at_ms <= begin_ms + kNotice_ms;
+  };
+  return is_just_cut_off(nearest.first) || is_just_cut_off(nearest.second);
+}
+
+TEST(SilenceScenes, NoContactsWithSilentFrozenWakingAndCutOffRobots) {
+  for (int scene = 0; scene < scenes(); ++scene) {
+    const SilentSwarm::Approach nearest = fly(scene, SilenceRule::kKeep);
+    if (nearest.gap_m <= 0.0 && was_just_cut_off(scene, nearest)) continue;
+    EXPECT_GT(nearest.gap_m, 0.0) << describe(scene, nearest);
+  }
+}
+
+// The same scenes: without the rule they contain contacts, so the test above can fail.
+TEST(SilenceScenes, ForgettingSilentRobotsCollides) {
+  int contacts = 0;
+  for (int scene = 0; scene < 300; ++scene) {
+    contacts += fly(scene, SilenceRule::kForget).gap_m <= 0.0 ? 1 : 0;
+  }
+  EXPECT_GT(contacts, 0);
+}
+
+TEST(SilenceScenes, AFrozenRobotIsPassedAndNotDrivenInto) {
+  const std::vector<RobotPart> parts = {
+      {.start_m = {-7, 0}, .goal_m = {7, 0}},
+      {.start_m = {0, 0.05}, .goal_m = {0, 0.05}, .frozen = {300, kFlight_ms}}};
+  SilentSwarm keeps({{-8, -8}, {8, 8}}, parts, SilenceRule::kKeep);
+  EXPECT_GT(keeps.fly_until(2 * kFlight_ms).gap_m, 0.0);
+}
+
+TEST(SilenceScenes, ARobotThatRamsIsEvadedInTheOpenAlsoOnceItIsSilent) {
+  for (int scene = 0; scene < scenes(); ++scene) {
+    Rng rng(seed(scene));
+    const double angle = uniform(rng, 0, 2 * std::numbers::pi);
+    std::vector<RobotPart> parts = {
+        {.goal_m = {uniform(rng, -2, 2), uniform(rng, -2, 2)}},
+        {.start_m = 5.0 * Vec2(std::cos(angle), std::sin(angle)), .rams = 0}};
+    parts[1].phase_ms = 10 * static_cast<int>(rng() % 10);
+    if (scene % 2 == 0) parts[1].frozen = random_span(rng, 8.0);
+    SilentSwarm swarm({{-100, -100}, {100, 100}}, parts, SilenceRule::kKeep);
+    EXPECT_GT(swarm.fly_until(kFlight_ms).gap_m, 0.0) << "scene " << scene;
+  }
+}
+
+}  // namespace
+}  // namespace swarm::agent

@@ -1,0 +1,230 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/unit/robot_agent/safety/silent_swarm.hpp"
+
+#include <algorithm>
+
+#include "swarm_core/mission/scene_bodies.hpp"
+#include "swarm_core/mission/supervision_times.hpp"
+
+namespace swarm::agent {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr int kStep_ms = 10;
+constexpr int kPeriod_ms = 100;
+constexpr int kCommandLasts_ms = 2 * kPeriod_ms;
+constexpr int kStatusEvery_ms = 1000;
+constexpr int kBeatEvery_ms = 500;
+Mission mission_of(std::size_t robots) {
+  Mission mission;
+  mission.robots.count = static_cast<std::uint32_t>(robots);
+  mission.robots.radius_m = SilentSwarm::kRadius_m;
+  mission.robots.speed_max_mps = SilentSwarm::kSpeed_mps;
+  return mission;
+}
+
+SafetyOptions safety() {
+  return {.radius_m = SilentSwarm::kRadius_m,
+          .speed_max_mps = SilentSwarm::kSpeed_mps,
+          .period = milliseconds(kPeriod_ms)};
+}
+
+NeighbourOptions neighbours(const Mission& mission) {
+  return {.radius_m = SilentSwarm::kRadius_m,
+          .fleet = Fleet(mission.robots),
+          .communication_radius_m = SilentSwarm::kCommunicationRadius_m,
+          .reach_growth_mps = 6.0,
+          .period = milliseconds(kPeriod_ms),
+          .expected_silence =
+              from_seconds(mission.link.send_interval_max_s) + milliseconds(2 * kPeriod_ms),
+          .forget_after = from_seconds(mission.timing.neighbour_forget_s)};
+}
+
+MotionPermit::Options permit(const Mission& mission) {
+  return {.period = milliseconds(kPeriod_ms),
+          .full_interval =
+              from_seconds(mission.link.send_interval_max_s) + milliseconds(2 * kPeriod_ms),
+          .cut_off_after = from_seconds(mission.timing.planner_silence_s),
+          .rejoin_interval = kStatusSilence + milliseconds(kStatusEvery_ms + 2 * kBeatEvery_ms)};
+}
+
+}  // namespace
+
+struct SilentSwarm::Robot {
+  Robot(RobotId robot, const RobotPart& what, const Mission& mission, const Box& bounds_m)
+      : id(robot),
+        part(what),
+        position_m(what.start_m),
+        world(World::make(bounds_m, {}).value()),
+        table(neighbours(mission)),
+        filter(world, safety()),
+        sends(SendOptions{.interval_max = from_seconds(mission.link.send_interval_max_s),
+                          .period = milliseconds(kPeriod_ms)}),
+        permission(permit(mission)),
+        whereabouts(whereabouts_options(mission, 0)),
+        silent(silence_options(mission, robot, 1)) {}
+
+  RobotId id;
+  RobotPart part;
+  Vec2 position_m;
+  Vec2 velocity_mps = Vec2::Zero();
+  int valid_until_ms = 0;
+  int status_ms = 0;
+  std::uint32_t sequence = 0;
+  std::uint64_t scene_version = 0;
+  std::optional<SteadyTime> planner_at{};
+  std::vector<NeighbourReport> socket{};  // arrived since its last tick
+  std::vector<link::LauncherBeat> beats{};
+  World world;
+  NeighbourTable table;
+  SafetyFilter filter;
+  SendPolicy sends;
+  MotionPermit permission;
+  Whereabouts whereabouts;
+  SilentRobots silent;
+};
+
+SilentSwarm::SilentSwarm(const Box& bounds_m, const std::vector<RobotPart>& parts, SilenceRule rule)
+    : bounds_m_(bounds_m), rule_(rule), scene_(first_scene(0)) {
+  const Mission mission = mission_of(parts.size());
+  for (std::uint32_t i = 0; i < parts.size(); ++i) {
+    robots_.push_back(std::make_unique<Robot>(RobotId(i), parts[i], mission, bounds_m));
+  }
+}
+
+SilentSwarm::~SilentSwarm() = default;
+
+const Vec2& SilentSwarm::position_m(std::size_t robot) const { return robots_[robot]->position_m; }
+
+SteadyTime SilentSwarm::time() const { return SteadyTime(milliseconds(100'000 + now_ms_)); }
+
+SilentSwarm::Approach SilentSwarm::fly_until(int end_ms) {
+  Approach nearest;
+  for (; now_ms_ < end_ms; now_ms_ += kStep_ms) {
+    launch();
+    for (const auto& robot : robots_) {
+      const bool is_due = now_ms_ % kPeriod_ms == robot->part.phase_ms;
+      if (is_due && !robot->part.frozen.covers(now_ms_)) tick(*robot);
+    }
+    move(nearest);
+  }
+  return nearest;
+}
+
+/// Takes what has waited since the last tick, as a process does.
+void SilentSwarm::receive(Robot& robot) {
+  const SteadyTime now = time();
+  if (!robot.part.cut_off.covers(now_ms_)) {
+    robot.planner_at = now;
+    if (robot.scene_version != scene_.version) {
+      robot.scene_version = scene_.version;
+      const World empty = World::make(bounds_m_, {}).value();
+      robot.world = world_at(empty, without_bodies_of(scene_, robot.id, 1), UtcTime{});
+      robot.whereabouts.on_scene(scene_);
+    }
+  }
+  for (const link::LauncherBeat& beat : robot.beats) robot.whereabouts.on_beat(beat, now);
+  for (const NeighbourReport& report : robot.socket) {
+    robot.table.take(report, robot.position_m, now - report.as_of);
+    robot.silent.on_state({report.robot, report.as_of, report.position_m, report.velocity_mps});
+  }
+  robot.beats.clear();
+  robot.socket.clear();
+  robot.silent.update(now, robot.whereabouts);
+}
+
+/// Straight to the goal, or to another robot, at full speed: the worst method above the filter.
+Vec2 SilentSwarm::desired_mps(const Robot& robot) const {
+  const Vec2 goal_m = robot.part.rams ? robots_[*robot.part.rams]->position_m : robot.part.goal_m;
+  const Vec2 path_m = goal_m - robot.position_m;
+  const double far_m = path_m.norm();
+  if (far_m < 1e-9) return Vec2::Zero();
+  const double speed_mps = robot.part.rams ? kSpeed_mps : std::min(kSpeed_mps, 2.0 * far_m);
+  return path_m * (speed_mps / far_m);
+}
+
+void SilentSwarm::tick(Robot& robot) {
+  receive(robot);
+  const SteadyTime now = time();
+  const StandReason reason = robot.permission.update(
+      {.now = now, .planner = robot.planner_at, .launcher = robot.whereabouts.last_beat()});
+  const bool keeps = rule_ == SilenceRule::kKeep;
+  const Neighbourhood near = robot.table.at(now, robot.position_m, keeps ? &robot.silent : nullptr);
+  const Vec2 desired = desired_mps(robot);
+  const bool gives_way = (robot.part.goal_m - robot.position_m).norm() > 2.0;
+  Vec2 velocity_mps = robot.filter.filter(robot.position_m, desired, near.close, gives_way);
+  if (robot.part.rams) velocity_mps = desired;
+  if (reason != StandReason::kNone) velocity_mps = Vec2::Zero();
+  robot.velocity_mps = velocity_mps;
+  robot.valid_until_ms = now_ms_ + kCommandLasts_ms;
+  const SendInput state{
+      .now = now,
+      .position_m = robot.position_m,
+      .velocity_mps = velocity_mps,
+      .listeners = robot.filter.listeners(robot.position_m, velocity_mps, near.close),
+      .link = robot.table.link()};
+  if (robot.sends.must_send(state)) {
+    robot.sends.record_sent(state);
+    publish(robot, velocity_mps);
+  }
+  if (!robot.part.cut_off.covers(now_ms_) && now_ms_ % kStatusEvery_ms == robot.part.phase_ms) {
+    robot.status_ms = now_ms_;
+  }
+}
+
+void SilentSwarm::publish(Robot& robot, const Vec2& velocity_mps) {
+  ++robot.sequence;
+  if (robot.part.cut_off.covers(now_ms_) || robot.part.mute.covers(now_ms_)) return;
+  for (const auto& other : robots_) {
+    if (other->id == robot.id || other->part.cut_off.covers(now_ms_)) continue;
+    other->socket.push_back({robot.id, robot.sequence, time(), robot.position_m, velocity_mps});
+  }
+}
+
+/// The launcher: beats, and the bodies of silent robots, which it places by their logs.
+void SilentSwarm::launch() {
+  if (now_ms_ % kBeatEvery_ms != 0) return;
+  std::vector<RobotId> silent;
+  for (const auto& robot : robots_) {
+    const bool is_silent = milliseconds(now_ms_ - robot->status_ms) > kStatusSilence;
+    if (is_silent) silent.push_back(robot->id);
+    if (is_silent == has_body(scene_, robot->id)) continue;
+    const SceneChange change =
+        is_silent ? SceneChange(AddBody{robot->id, Circle{robot->position_m, kRadius_m}})
+                  : SceneChange(ClearBody{robot->id});
+    const World empty = World::make(bounds_m_, {}).value();
+    if (auto next = after(scene_, change, empty, UtcTime(milliseconds(1 + now_ms_)))) {
+      scene_ = *std::move(next);
+    }
+  }
+  ++beat_.sequence;
+  link::set_silent(beat_, silent);
+  for (const auto& robot : robots_) {
+    if (!robot->part.cut_off.covers(now_ms_)) robot->beats.push_back(beat_);
+  }
+}
+
+/// Within a step no velocity changes: the least distance of two straight motions is known.
+void SilentSwarm::move(Approach& nearest) {
+  constexpr double kStep_s = 0.001 * kStep_ms;
+  std::vector<Vec2> moved_m;
+  for (const auto& robot : robots_) {
+    const bool drives = now_ms_ < robot->valid_until_ms;
+    moved_m.push_back(drives ? Vec2(kStep_s * robot->velocity_mps) : Vec2::Zero());
+  }
+  for (std::size_t i = 0; i < robots_.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      const Vec2 apart_m = robots_[i]->position_m - robots_[j]->position_m;
+      const Vec2 by_m = moved_m[i] - moved_m[j];
+      const double length = by_m.squaredNorm();
+      const double share = length > 0.0 ? std::clamp(-apart_m.dot(by_m) / length, 0.0, 1.0) : 0.0;
+      const double gap_m = (apart_m + share * by_m).norm() - 2 * kRadius_m;
+      if (gap_m < nearest.gap_m) nearest = {gap_m, j, i, now_ms_};
+    }
+  }
+  for (std::size_t i = 0; i < robots_.size(); ++i) robots_[i]->position_m += moved_m[i];
+}
+
+}  // namespace swarm::agent

@@ -1,0 +1,46 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "swarm_launcher/flight/beat_sender.hpp"
+
+#include <chrono>
+#include <thread>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "swarm_link/udp_socket.hpp"
+
+namespace swarm::launcher {
+namespace {
+
+using std::chrono::milliseconds;
+
+SteadyTime at(int ms) { return SteadyTime(std::chrono::hours(1) + milliseconds(ms)); }
+
+TEST(BeatSender, SendsTwiceASecondAndListsTheRobotsThatAreNotReceived) {
+  if (!link::carries_multicast()) GTEST_SKIP() << "loopback carries no multicast here";
+  const auto robots = *link::StopReceiver::open({.domain = 218});
+  Supervisor supervisor({.robots = 5}, at(0));
+  BeatSender sut(*link::StopSender::open({.domain = 218}), 77);
+  supervisor.on_status(RobotId(3), {});
+
+  for (int ms = 0; ms <= 1000; ms += 20) sut.step(at(ms), supervisor);
+
+  std::vector<link::LauncherBeat> beats;
+  for (int i = 0; i < 5000 && beats.size() < 3; ++i) {
+    robots->take();
+    beats.insert(beats.end(), robots->beats().begin(), robots->beats().end());
+    std::this_thread::sleep_for(milliseconds(1));
+  }
+  ASSERT_EQ(beats.size(), 3U);
+  for (std::size_t i = 0; i < beats.size(); ++i) {
+    EXPECT_EQ(beats[i].run, 77U);
+    EXPECT_EQ(beats[i].sequence, i + 1);
+    ASSERT_EQ(beats[i].silent().size(), 2U);
+    EXPECT_EQ(beats[i].silent()[0], (link::RobotRange{0, 3}));
+    EXPECT_EQ(beats[i].silent()[1], (link::RobotRange{4, 1}));
+  }
+}
+
+}  // namespace
+}  // namespace swarm::launcher
