@@ -17,7 +17,7 @@ namespace {
 /// Violations that are reported at most: a hostile file must not fill the terminal.
 constexpr std::size_t kMaxReported = 1000;
 
-/// A key of missions of version 0.1 whose name the nearest spelling would not lead to.
+/// A key of missions of version 0.1 under its former name, which is still read.
 constexpr std::string_view kFormerKey = "hear_radius_m";
 constexpr std::string_view kRenamedKey = "communication_radius_m";
 
@@ -97,7 +97,8 @@ std::string MapReader::path_of(std::string_view key) const {
 /// remembered for "did you mean".
 const Node* MapReader::take(std::string_view key, bool required) {
   known_.emplace_back(key);
-  const auto it = entries_.find(key);
+  auto it = entries_.find(key);
+  if (it == entries_.end() && key == kRenamedKey) it = entries_.find(kFormerKey);
   if (it != entries_.end()) {
     const Node* value = &it->second->value;
     entries_.erase(it);
@@ -123,10 +124,7 @@ std::vector<std::pair<std::string, const Node*>> MapReader::take_scalars() {
 /// A key that is far from every known one gets the list of known keys instead of a suggestion.
 void MapReader::finish() {
   for (const auto& [key, entry] : entries_) {
-    const bool was_renamed =
-        key == kFormerKey && std::find(known_.begin(), known_.end(), kRenamedKey) != known_.end();
-    const std::optional<std::string> nearest =
-        was_renamed ? std::string(kRenamedKey) : nearest_key(key, known_);
+    const std::optional<std::string> nearest = nearest_key(key, known_);
     violations_.add(entry->at,
                     nearest ? fmt::format("unknown key {}; did you mean {}?",
                                           path_of(key.substr(0, 80)), path_of(*nearest))
