@@ -56,7 +56,7 @@ TEST(MemoryFile, CanBeReadByOtherProcessesAndNotChanged) {
   const pid_t child = ::fork();
   ASSERT_GE(child, 0);
   if (child == 0) {
-    ::execl("/bin/sh", "sh", "-c", R"([ "$(cat "$0")" = content ] && ! (echo x >"$0") 2>/dev/null)",
+    ::execl("/bin/sh", "sh", "-c", "test `cat $0` = content && ! (echo x >$0) 2>/dev/null",
             sut->path().c_str(), static_cast<char*>(nullptr));
     ::_exit(9);
   }
