@@ -104,7 +104,7 @@ class DiskFault : public testing::Test {
   void expect_that_all_arrived() const {
     EXPECT_NE(launcher_->out().find("mission          completed"), std::string::npos)
         << launcher_->out() << launcher_->err();
-    EXPECT_EQ(launcher_->err().find("agent process"), std::string::npos) << launcher_->err();
+    EXPECT_EQ(launcher_->err().find("agent process "), std::string::npos) << launcher_->err();
   }
 
   std::unique_ptr<OwnDisk> disk_;
