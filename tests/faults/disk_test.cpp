@@ -15,6 +15,7 @@
 #include <thread>
 #include <utility>
 #include <variant>
+#include <vector>
 
 #include <sys/mount.h>
 #include <unistd.h>
@@ -103,7 +104,7 @@ class DiskFault : public testing::Test {
   void expect_that_all_arrived() const {
     EXPECT_NE(launcher_->out().find("mission          completed"), std::string::npos)
         << launcher_->out() << launcher_->err();
-    EXPECT_EQ(launcher_->err().find("agent process"), std::string::npos) << launcher_->err();
+    EXPECT_EQ(launcher_->err().find("agent process "), std::string::npos) << launcher_->err();
   }
 
   std::unique_ptr<OwnDisk> disk_;
@@ -193,7 +194,7 @@ Duration longest_gap(const std::filesystem::path& run_dir, std::uint32_t robot) 
         last = step->stamp;
       });
   EXPECT_TRUE(read) << read.error().message;
-  if (read) EXPECT_EQ(read->lost, 0U);
+  EXPECT_EQ(read ? read->lost : 0U, 0U);
   return longest;
 }
 

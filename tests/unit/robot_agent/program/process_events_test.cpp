@@ -162,8 +162,11 @@ TEST_F(ProcessEventsTest, NameTheRobotsThatATickOverrunStopped) {
 
 TEST_F(ProcessEventsTest, AnnounceTheBeginAndTheEndOfADiskFault) {
   events_.on_files(utc(), {});
-  events_.on_files(utc(), {.failing = 1, .first = "robot-00000.mcap", .error = ENOSPC});
-  events_.on_files(utc(), {.failing = 1, .first = "robot-00000.mcap", .error = ENOSPC});
+  shell::FileHealth full;
+  full.failing = 1;
+  full.error = ENOSPC;
+  events_.on_files(utc(), full);
+  events_.on_files(utc(), full);
   events_.on_files(utc(), {});
 
   ASSERT_EQ(writer_.written.size(), 2U);

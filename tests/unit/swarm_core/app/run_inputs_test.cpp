@@ -53,11 +53,12 @@ TEST(RunInputs, NameWhatIsWrong) {
 TEST(MemoryFile, CanBeReadByOtherProcessesAndNotChanged) {
   const auto sut = MemoryFile::make("test", "content");
   ASSERT_TRUE(sut);
+  const std::string path = sut->path();  // of this process
   const pid_t child = ::fork();
   ASSERT_GE(child, 0);
   if (child == 0) {
-    ::execl("/bin/sh", "sh", "-c", R"([ "$(cat "$0")" = content ] && ! (echo x >"$0") 2>/dev/null)",
-            sut->path().c_str(), static_cast<char*>(nullptr));
+    ::execl("/bin/sh", "sh", "-c", "test `cat $0` = content && ! (echo x >$0) 2>/dev/null",
+            path.c_str(), static_cast<char*>(nullptr));
     ::_exit(9);
   }
   int status = 0;

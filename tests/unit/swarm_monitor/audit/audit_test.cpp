@@ -282,7 +282,7 @@ TEST(Audit, IsADocumentWithEveryKey) {
     EXPECT_TRUE(json.at(key).is_null()) << key;
   }
   EXPECT_TRUE(json.at("tracking").at("swarm").is_null());
-  EXPECT_EQ(json.size(), 29U);
+  EXPECT_EQ(json.size(), 30U);
 }
 
 }  // namespace

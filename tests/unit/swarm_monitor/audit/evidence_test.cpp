@@ -20,6 +20,20 @@ RecordedRun run_of(std::uint32_t robots) {
   return run;
 }
 
+Scene scene(std::uint64_t version) {
+  Scene made;
+  made.version = version;
+  return made;
+}
+
+RunEvent event(const char* code, const char* source = "", const char* text = "") {
+  RunEvent made;
+  made.source = source;
+  made.code = code;
+  made.text = text;
+  return made;
+}
+
 FlowPlan a_plan() { return FlowPlan(); }
 
 TEST(MissingEvidence, IsNothingOfACompleteRun) {
@@ -27,10 +41,10 @@ TEST(MissingEvidence, IsNothingOfACompleteRun) {
   run.tracks[0].notes = {{.code = "scene", .text = "took scene version 17"},
                          {.code = "scene", .text = "took scene version x"},
                          {.code = "mode", .text = "took scene version 9"}};
-  run.scenes.push_back({.version = 17});
+  run.scenes.push_back(scene(17));
   run.clock = {{.plan_version = 0}, {.plan_version = 1}};
   run.plans.push_back({1, a_plan()});
-  run.events = {{.code = "disk-fails"}, {.code = "disk-works"}};
+  run.events = {event("disk-fails"), event("disk-works")};
   run.launcher_summary = R"({"missing": []})";
   EXPECT_EQ(missing_evidence(run), Texts{});
 }
@@ -48,7 +62,7 @@ TEST(MissingEvidence, AreScenesThatOnlyRobotsKnow) {
     track.notes = {{.code = "scene", .text = "took scene version 17"},
                    {.code = "scene", .text = "took scene version 18"}};
   }
-  run.scenes = {{.version = 0}, {.version = 18}};
+  run.scenes = {scene(0), scene(18)};
   EXPECT_EQ(missing_evidence(run), Texts{"1 scene that robots took and scene.jsonl lacks"});
 }
 
@@ -70,8 +84,8 @@ TEST(MissingEvidence, ArePlansThatTheClockNamesButForOldOnes) {
 
 TEST(MissingEvidence, IsWhatProcessesReportedAsLost) {
   RecordedRun run = run_of(1);
-  run.events = {{.source = "planner", .code = "records-lost", .text = "plan.json: all of it"},
-                {.source = "planner", .code = "records-lost", .text = "plan.json: all of it"}};
+  run.events = {event("records-lost", "planner", "plan.json: all of it"),
+                event("records-lost", "planner", "plan.json: all of it")};
   run.launcher_summary = R"({"missing": ["planner: plan.json: all of it", "launcher: a", 7]})";
   EXPECT_EQ(missing_evidence(run), (Texts{"launcher: a", "planner: plan.json: all of it"}));
   run.launcher_summary = "half of a fi";
