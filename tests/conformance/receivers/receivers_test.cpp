@@ -85,7 +85,7 @@ INSTANTIATE_TEST_SUITE_P(Messages, Receivers, testing::ValuesIn(all_cases()),
 TEST(ReceiversOfTopics, AreTheseFivePrograms) {
   const std::vector<std::string> expected = {"plan Agent Monitor",
                                              "scene Agent Planner Monitor",
-                                             "heartbeat Agent Monitor",
+                                             "heartbeat Agent Launcher Monitor",
                                              "command Agent Planner Monitor",
                                              "status Planner Launcher Monitor",
                                              "event Launcher Monitor",
