@@ -97,7 +97,7 @@ std::string describe(int scene, const SilentSwarm::Approach& nearest) {
 }
 
 /// Whether one of the two drove on blindly, and the other was within its reach when it could
-/// notice: nothing says then in which direction it would have to retreat from a robot as fast as
+/// notice: no retreat is known to be the right one then from a robot as fast as
 /// itself.
 bool was_within_reach(int scene, const SilentSwarm::Approach& nearest) {
   constexpr int kNotice_ms = 700 + 100;  // the expected silence, and the next tick
