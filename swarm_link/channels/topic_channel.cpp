@@ -27,7 +27,7 @@ class TopicChannel final : public StateChannel {
     std::size_t sent = 0;
     for (const CellStatesMessage& batch : batches_.sort(states, &left_)) {
       auto* writer = writer_of({batch.cell_x, batch.cell_y});
-      if (writer != nullptr && writer->write(batch)) sent += batch.states.size();
+      if (writer != nullptr && writer->write(batch)) sent += count_inside(batch);
     }
     retire_writers();
     return sent;
@@ -83,6 +83,15 @@ class TopicChannel final : public StateChannel {
     WriterPtr<CellStatesMessage> writer;
     std::uint64_t used = 0;  // value of now_
   };
+
+  // States of robots in the cell: the copies for cells that robots have left do not count.
+  std::size_t count_inside(const CellStatesMessage& batch) const {
+    const Cell cell{batch.cell_x, batch.cell_y};
+    return static_cast<std::size_t>(
+        std::ranges::count_if(batch.states, [&](const RobotStateMessage& state) {
+          return cell_of({state.x_m, state.y_m}, options_.cell_size_m) == cell;
+        }));
+  }
 
   // The writer of a cell, created if necessary; null if the bus refuses it for now.
   Writer<CellStatesMessage>* writer_of(const Cell& cell) {

@@ -88,7 +88,7 @@ class GroupChannel final : public StateChannel, private DatagramSink {
       const sockaddr_in to = group_of(options_.domain, {batch.cell_x, batch.cell_y});
       if (::sendto(sender_, datagram_.data(), datagram_.size(), 0,
                    reinterpret_cast<const sockaddr*>(&to), sizeof to) >= 0) {
-        sent += batch.states.size();
+        sent += count_inside(batch);
       }
     }
     return sent;
@@ -134,6 +134,15 @@ class GroupChannel final : public StateChannel, private DatagramSink {
     in_addr_t group;
     GroupSocket socket;
   };
+
+  // States of robots in the cell: the copies for cells that robots have left do not count.
+  std::size_t count_inside(const CellStatesMessage& batch) const {
+    const Cell cell{batch.cell_x, batch.cell_y};
+    return static_cast<std::size_t>(
+        std::ranges::count_if(batch.states, [&](const RobotStateMessage& state) {
+          return cell_of({state.x_m, state.y_m}, options_.cells.cell_size_m) == cell;
+        }));
+  }
 
   // Decodes one datagram into the caller's vector; called by the drain during take().
   void datagram(std::span<std::byte> bytes, const sockaddr_in&) override {

@@ -40,7 +40,7 @@ struct RobotPart {
   int phase_ms = 0;     ///< of its ticks, a multiple of 10
   FaultSpan frozen{};   ///< its process does not run; its sockets keep what arrives
   FaultSpan cut_off{};  ///< nothing reaches it, nothing of it reaches others
-  FaultSpan mute{};     ///< its states reach nobody; it receives, and reports its status
+  FaultSpan mute{};     ///< its states are lost; it receives, and reports its status
   std::optional<std::uint32_t> rams{};  ///< drives into this robot and avoids none
 };
 
