@@ -50,7 +50,7 @@ struct SilentRobot {
 /// that is cut off from planner and launcher stands after the silence (MotionPermit). Up to σ it
 /// counts as extrapolated, since it would have published had it left its course; from σ to 2σ the
 /// set grows at 2 v_max from p … p + σv to the circle above. Two limits: within σ of the moment at
-/// which a robot is cut off nothing tells others that it has turned; and one that is not received
+/// which a robot is cut off others cannot know that it has turned; and one that is not received
 /// but receives the others goes on, and keeps off them by itself (SafetyFilter, 3). A robot that
 /// froze before it was received for the first time is known to the launcher alone, which makes its
 /// body an obstacle.

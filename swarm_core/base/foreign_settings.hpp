@@ -34,7 +34,7 @@ inline constexpr ForeignSetting kForeignSettings[] = {
     {"RMW_FASTRTPS_PUBLICATION_MODE", false},
 };
 
-/// Fast DDS reads a file of this name in the current directory, unless it is told not to.
+/// Fast DDS reads a file of this name in the current directory, unless SKIP_DEFAULT_XML forbids it.
 inline constexpr const char* kForeignProfiles = "DEFAULT_FASTRTPS_PROFILES.xml";
 
 /// Names of the foreign settings that are there now. O(settings), reads the environment.

@@ -16,7 +16,8 @@ namespace swarm {
 ///   the one of r / 0.2 m and v / 1.5 m/s that is nearer to 1; 1 if they lie on both sides of it
 ///
 /// Some constants are about the body and some about how far it drives in a time, most about both;
-/// a small body that is fast needs the distances of a fast one and the other way round.
+/// a small body that is fast needs the distances of a fast one, and a large slow one those of a
+/// large one.
 inline double length_scale(const BodySpec& body) {
   const BodySpec usual;
   const double by_radius = body.radius_m / usual.radius_m;

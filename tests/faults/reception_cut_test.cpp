@@ -6,10 +6,10 @@
 namespace swarm::test {
 namespace {
 
-class OneWayCut : public testing::TestWithParam<const char*> {};
+class ReceptionCut : public testing::TestWithParam<const char*> {};
 
 // Three of them hold, since they do not receive the planner, and fly on afterwards.
-TEST_P(OneWayCut, OfThreeRobotsEndsWithoutContact) {
+TEST_P(ReceptionCut, OfThreeRobotsEndsWithoutContact) {
   FlownRun run({"--channel", GetParam(), "--fault", "loss=1,robots=3-5,from=10,to=16"});
 
   EXPECT_EQ(run.launcher().wait(), 0) << run.launcher().err();
@@ -22,7 +22,7 @@ TEST_P(OneWayCut, OfThreeRobotsEndsWithoutContact) {
 }
 
 // Duplicates change nothing, also for the launcher.
-TEST_P(OneWayCut, DuplicatesAreHarmless) {
+TEST_P(ReceptionCut, DuplicatesAreHarmless) {
   FlownRun run(
       {"--channel", GetParam(), "--fault", "duplicate=0.5,delay-ms=20,jitter-ms=20,launcher=1"});
 
@@ -32,7 +32,7 @@ TEST_P(OneWayCut, DuplicatesAreHarmless) {
   EXPECT_EQ(run.summary()["collisions_robot"], 0);
 }
 
-INSTANTIATE_TEST_SUITE_P(Channels, OneWayCut, testing::Values("topics", "groups"));
+INSTANTIATE_TEST_SUITE_P(Channels, ReceptionCut, testing::Values("topics", "groups"));
 
 }  // namespace
 }  // namespace swarm::test
