@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "swarm_core/base/stamp.hpp"
 #include "tests/unit/robot_agent/inbox_bench.hpp"
 
 namespace swarm::agent {

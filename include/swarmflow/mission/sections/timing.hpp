@@ -28,7 +28,7 @@ inline constexpr auto kTimingKeys = std::to_array<SectionKey<TimingSpec>>({
     {"launcher_silence_s", &TimingSpec::launcher_silence_s, between(1, 3600),
      "without a beat for this long the launcher is lost; see launcher.on_launcher_loss"},
     {"neighbour_forget_s", &TimingSpec::neighbour_forget_s, positive(60),
-     "a silent neighbour is extrapolated until then; after that its possible positions stay"},
+     "in simulations a silent neighbour is extrapolated until then; in flight it keeps its place"},
     {"clock_skew_warn_s", &TimingSpec::clock_skew_warn_s, positive(3600),
      "a larger difference of clocks is reported"},
     {"clock_skew_refuse_s", &TimingSpec::clock_skew_refuse_s, positive(3600),

@@ -20,7 +20,7 @@ SteadyTime at(int ms) { return SteadyTime(std::chrono::hours(1) + milliseconds(m
 TEST(BeatSender, SendsTwiceASecondAndListsTheRobotsThatAreNotReceived) {
   if (!link::carries_multicast()) GTEST_SKIP() << "loopback carries no multicast here";
   const auto robots = *link::StopReceiver::open({.domain = 218});
-  Supervisor supervisor({.robots = 5}, at(0));
+  Supervisor supervisor({.robots = 5, .launcher = {}, .script = {}}, at(0));
   BeatSender sut(*link::StopSender::open({.domain = 218}), 77);
   supervisor.on_status(RobotId(3), {});
 
