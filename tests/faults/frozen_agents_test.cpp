@@ -38,7 +38,7 @@ TEST_P(FrozenAgents, AreNotTouchedAndArriveAfterTheyWake) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Channels, FrozenAgents, testing::Values("groups", "topics"),
-                         [](const auto& info) { return info.param; });
+                         [](const auto& channel) { return channel.param; });
 
 TEST(FrozenLauncher, IsReportedAndRobotsFlyOn) {
   FlownRun run;  // launcher.on_launcher_loss: finish

@@ -120,10 +120,14 @@ class AgentReceiver final : public QueueReceiver<PlanMessage, SceneMessage, Hear
   int states_ = 0;
 };
 
+// Its heartbeats are left out: it watches those of all planners, in any order
+// (Gate::any_heartbeat).
 class PlannerReceiver final : public QueueReceiver<CommandMessage, SceneMessage, StatusMessage> {
  public:
   explicit PlannerReceiver(const Mission& mission)
-      : inbox_({reader<CommandMessage>(), reader<SceneMessage>(), reader<StatusMessage>()},
+      : inbox_({reader<CommandMessage>(), reader<SceneMessage>(), reader<StatusMessage>(),
+                std::make_unique<QueueReader<HeartbeatMessage>>(
+                    std::make_shared<std::vector<HeartbeatMessage>>())},
                wire_limits(mission)) {}
 
   std::string state() override {
@@ -144,8 +148,7 @@ class PlannerReceiver final : public QueueReceiver<CommandMessage, SceneMessage,
   std::size_t statuses_ = 0;
 };
 
-class LauncherReceiver final
-    : public QueueReceiver<StatusMessage, EventMessage, HeartbeatMessage> {
+class LauncherReceiver final : public QueueReceiver<StatusMessage, EventMessage, HeartbeatMessage> {
  public:
   explicit LauncherReceiver(const Mission& mission)
       : inbox_({reader<StatusMessage>(), reader<EventMessage>(), reader<HeartbeatMessage>()},
