@@ -30,10 +30,10 @@ bool is_after(std::int64_t stamp_utc_ns, std::uint64_t latest_ns) {
 
 }  // namespace
 
-// A recording may be played faster than it was made: there the newest planner leads at once.
 Gate::Gate(const GateOptions& options)
     : options_(options),
-      ruler_(options.stamps == Stamps::kLive ? options.limits.planner_takeover : Duration(-1)) {}
+      ruler_(options.stamps == Stamps::kLive ? std::optional(options.limits.planner_takeover)
+                                             : std::nullopt) {}
 
 std::uint64_t Gate::latest_ns(UtcTime now) const {
   return to_ns(now + options_.limits.clock_skew_refuse);

@@ -76,7 +76,7 @@ world:
 robots: {count: 4, radius_m: 0.2}
 start: [{mean_m: [6, 21], covariance_m2: [[4, 0], [0, 4]], weight: 1}]
 goal: [{mean_m: [33, 22], covariance_m2: [[4, 0], [0, 4]], weight: 1}]
-script: [{at_s: 5, do: pause}, {at_s: 6, do: resume}]
+script: [{at_s: 5, action: pause}, {at_s: 6, action: resume}]
 )";
 
 // What is accepted can be written and is read again.
@@ -96,7 +96,7 @@ std::vector<Bytes> missions() {
 // Changes of the scene, as `command` and scripts give them: "action keys".
 
 const World& yard() {
-  static const Mission mission = *parse_mission(kYard, "yard");
+  static const Mission mission = parse_mission(kYard, "yard").value();  // throws if it is wrong
   return mission.world;
 }
 void scene_change(Input bytes) {

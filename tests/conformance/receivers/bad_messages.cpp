@@ -132,8 +132,6 @@ std::vector<Case> heartbeat_cases() {
       spoiled("HeartbeatOlder", heartbeat(2), R::kStale, [](H& h) { h.sequence_number = 1; }),
       spoiled("HeartbeatOfAForeignEpoch", heartbeat(2), R::kStale,
               [](H& h) { h.epoch = id_after(-9999); }),
-      spoiled("HeartbeatOfALaterEpoch", heartbeat(2), R::kStale,
-              [](H& h) { h.epoch = id_after(0); }),
       spoiled("HeartbeatAgain", heartbeat(2), R::kDuplicate, [](H& h) { h = heartbeat(1); }),
       spoiled("HeartbeatOfAFutureEpoch", heartbeat(2), R::kForged, [](H& h) { h.epoch = kHuge; }),
       spoiled("HeartbeatHugeNumber", heartbeat(2), R::kForged,

@@ -61,7 +61,7 @@ TEST(HostOffer, KeepsEveryField) {
 
 TEST(HostOffer, IsRefusedWithoutAnyOneOfItsFields) {
   const json whole = json::parse(to_line(offer()));
-  ASSERT_EQ(whole.size(), 14U);
+  ASSERT_EQ(whole.size(), 15U);
   for (const auto& [key, value] : whole.items()) {
     json part = whole;
     part.erase(key);
@@ -119,11 +119,11 @@ TEST(HostOffer, ReportsARefusalAndAnotherRelease) {
   EXPECT_EQ(refused.error().code, ErrorCode::kEnvironment);
   EXPECT_EQ(refused.error().message, "the launcher refused: the mission has begun");
 
-  const auto other = parse_offer(R"({"version": 3, "new": "form"})");
+  const auto other = parse_offer(R"({"version": 4, "new": "form"})");
   ASSERT_FALSE(other);
   EXPECT_EQ(other.error().code, ErrorCode::kEnvironment);
   EXPECT_EQ(other.error().message,
-            "the launcher speaks version 3 of this protocol, this program 2: use the same release "
+            "the launcher speaks version 4 of this protocol, this program 3: use the same release "
             "on all hosts");
 }
 

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <csignal>
 #include <filesystem>
+#include <fstream>
 #include <string>
 #include <thread>
 #include <vector>
@@ -138,13 +139,14 @@ TEST_F(ChildProcess, OfAProgramThatIsNotThereEndsAsInAShell) {
 }
 
 TEST_F(ChildProcess, RunsWithoutItsLogAndReportsThat) {
-  const auto log = folder_ / "none/log";
+  std::ofstream(folder_ / "file") << "no folder";
+  const auto log = folder_ / "file/log";
   testing::internal::CaptureStderr();
   const auto pid = start_process({"/bin/sh", "-c", "echo lost; exit 3"}, log);
   const std::string reported = testing::internal::GetCapturedStderr();
   ASSERT_TRUE(pid) << pid.error().message;
   EXPECT_EQ(reap().exit.code, 3);
-  EXPECT_NE(reported.find("cannot open " + log.string() + ": No such file or directory"),
+  EXPECT_NE(reported.find("cannot open " + log.string() + ": Not a directory"),
             std::string::npos)
       << reported;
 }

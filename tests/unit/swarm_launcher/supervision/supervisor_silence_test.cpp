@@ -53,7 +53,7 @@ TEST(SupervisorSilence, NamesAnAgentAfterThreeSecondsAndKillsItAfterTen) {
 
   bench.run_for(seconds(1));
   EXPECT_EQ(bench.starts(2), 2) << "then it is a death like any other";
-  EXPECT_EQ(bench.fallen, (Robots{{RobotId(1)}}));
+  EXPECT_EQ(bench.fallen, (Robots{{RobotId(1)}, {RobotId(1)}})) << "when silent, when dead";
   EXPECT_TRUE(bench.sut->lost().empty());
 }
 

@@ -106,6 +106,18 @@ TEST_F(GateTest, ComesBackToAnOlderPlanner) {
   EXPECT_TRUE(sut.plan(plan(real, 4), kNow + 2 * kTakeover));
 }
 
+TEST_F(GateTest, OfARecordingFollowsTheNewestPlannerAtOnce) {
+  Gate recorded{{.limits = limits(), .stamps = Stamps::kRecorded}};
+  const std::uint64_t first = id(s_later(-100)), second = id(s_later(-50));
+  EXPECT_TRUE(recorded.plan(plan(first, 7), kNow));
+  EXPECT_TRUE(recorded.heartbeat(heartbeat(first, 500), kNow));
+  EXPECT_FALSE(recorded.heartbeat(heartbeat(first, 499), kNow + 2 * kTakeover));
+  EXPECT_TRUE(recorded.plan(plan(second, 1), kNow));
+  EXPECT_TRUE(recorded.heartbeat(heartbeat(second, 1), kNow));
+  EXPECT_FALSE(recorded.plan(plan(first, 8), kNow));
+  EXPECT_FALSE(recorded.heartbeat(heartbeat(first, 501), kNow + 2 * kTakeover));
+}
+
 // A plan shows a planner's epoch; only heartbeats show that it lives.
 TEST_F(GateTest, FollowsTheHeartbeatsOfAnyPlannerAfterAPlanAlone) {
   EXPECT_TRUE(sut.plan(plan(id(kNow), 1), kNow));
