@@ -223,6 +223,7 @@ Result<std::string> FlightLoop::change(const SceneChange& change, UtcTime now) {
   if (std::holds_alternative<GoTo>(change)) {
     supervisor_.on_new_goal(ports_.scene.scene().version);
   }
+  if (const auto* clear = std::get_if<ClearBody>(&change)) supervisor_.on_cleared(clear->robot);
   ports_.log.note(now, link::Severity::kInfo, "scene", what);
   return changed;
 }

@@ -88,6 +88,7 @@ void Supervisor::on_status(RobotId robot, const RobotReport& report) {
   if (is_late && !r.received && !r.absent) return;
   r.report = report;
   r.received = true;
+  r.cleared = false;
   process.silence.on_received();
   if (std::exchange(r.absent, false)) late_joiners_.push_back(robot);
   if (!r.silent_since || is_late) return;
@@ -100,6 +101,7 @@ void Supervisor::on_status(RobotId robot, const RobotReport& report) {
 void Supervisor::on_silent(RobotId robot, SteadyTime now) {
   Robot& r = robots_.at(robot.value());
   r.silent_since = now;
+  r.cleared = false;
   std::erase(risen_, robot);
   if (std::find(fallen_.begin(), fallen_.end(), robot) == fallen_.end()) fallen_.push_back(robot);
 }
@@ -329,7 +331,8 @@ std::vector<RobotId> Supervisor::lost() const {
 std::vector<RobotId> Supervisor::silent() const {
   std::vector<RobotId> out;
   for (std::uint32_t i = 0; i < robots_.size(); ++i) {
-    if (!robots_[i].received || robots_[i].silent_since) out.emplace_back(i);
+    const Robot& robot = robots_[i];
+    if (!robot.cleared && (!robot.received || robot.silent_since)) out.emplace_back(i);
   }
   return out;
 }

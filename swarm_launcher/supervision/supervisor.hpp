@@ -137,6 +137,8 @@ class Supervisor {
   /// A robot is silent: nothing is received from it, for whatever reason. It is assumed to stay
   /// where it is, as an obstacle, until it reports again.
   void on_silent(RobotId robot, SteadyTime now);
+  /// A user has taken the robot away: it is no obstacle any more.
+  void on_cleared(RobotId robot) { robots_.at(robot.value()).cleared = true; }
   void on_command(CommandKind kind, SteadyTime now);  ///< by the user
   /// The swarm has a new goal: robots that arrive by a plan for an older scene do not count as
   /// arrived.
@@ -159,8 +161,8 @@ class Supervisor {
   std::vector<RobotId> unstopped() const;
   /// Robots that cannot arrive any more.
   std::vector<RobotId> lost() const;
-  /// Robots that are not received: no status has come yet, or none since they fell silent.
-  /// Ascending.
+  /// Robots that are not received, no status has come yet or none since they fell silent, but for
+  /// those that a user has cleared. Ascending.
   std::vector<RobotId> silent() const;
 
   /// Time [s] from the last start of a process until every robot was received and had the plan;
@@ -189,6 +191,7 @@ class Supervisor {
     bool received = false;  ///< since the last start of its process
     bool absent = false;    ///< not received when the mission started
     bool lost = false;
+    bool cleared = false;                      ///< by a user, since it fell silent
     std::optional<SteadyTime> silent_since{};  // its body is an obstacle
   };
 

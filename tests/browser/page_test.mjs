@@ -31,9 +31,9 @@ async function open({ scheme = 'light', motion = 'no-preference', width = 1280, 
   ]);
   if (prepare) await opened.evaluateOnNewDocument(prepare);
   await opened.goto(URL_OF_VIEW, { timeout: TIMEOUT_MS });
-  await opened.waitForFunction(() => window.swarmflow?.state().robots > 0);
+  await opened.waitForFunction(() => window.swarmflow?.state().robots > 0, { timeout: TIMEOUT_MS });
   // The panels follow the picture a little later.
-  await opened.waitForFunction(() => document.getElementById('received').textContent !== '–');
+  await opened.waitForFunction(() => document.getElementById('received').textContent !== '–', { timeout: TIMEOUT_MS });
   return opened;
 }
 

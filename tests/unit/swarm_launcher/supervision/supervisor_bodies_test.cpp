@@ -102,6 +102,18 @@ TEST(SupervisorBodies, OfAProcessThatFreezesStandUntilItReportsAgain) {
   EXPECT_TRUE(bench.sut->silent().empty());
 }
 
+TEST(SupervisorBodies, ThatAUserClearedAreNotAmongTheSilent) {
+  RunningBench bench(3);
+  bench.start();
+  bench.sut->on_exit(ProcessIndex(2), {.code = 0, .signal = 9}, bench.now);
+  bench.run_for(seconds(1));
+  EXPECT_EQ(bench.sut->silent(), std::vector{RobotId(1)});
+
+  bench.sut->on_cleared(RobotId(1));
+
+  EXPECT_TRUE(bench.sut->silent().empty());
+}
+
 TEST(SupervisorBodies, AreNoneOfProcessesThatEndWithTheMission) {
   RunningBench bench(3);
   bench.start();
