@@ -13,7 +13,7 @@ import puppeteer from 'puppeteer-core';
 const URL_OF_VIEW = process.env.SWARM_VIEW_URL;
 assert.ok(URL_OF_VIEW, 'SWARM_VIEW_URL: where the view is served');
 const SHOTS = process.env.SWARM_SHOTS;
-const TIMEOUT_MS = 60000;  // against hanging for ever; nothing is measured by it
+const TIMEOUT_MS = 180000;  // against hanging for ever; nothing is measured by it
 
 let browser, page, live;
 const complaints = [];
