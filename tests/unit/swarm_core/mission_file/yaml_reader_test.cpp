@@ -38,14 +38,16 @@ std::string refusal(const Node& node, const Range& range = between(0, 10)) {
 
 TEST(MapReader, ReadsAKeyUnderItsFormerName) {
   Violations violations;
-  MapReader former(parsed("hear_radius_m: 4"), "link", violations);
+  const Node old_key = parsed("hear_radius_m: 4");
+  MapReader former(old_key, "link", violations);
   const Node* const value = former.take("communication_radius_m");
   ASSERT_NE(value, nullptr);
   EXPECT_EQ(value->text, "4");
   former.finish();
   EXPECT_TRUE(violations.empty());
 
-  MapReader both(parsed("{hear_radius_m: 4, communication_radius_m: 5}"), "link", violations);
+  const Node two_keys = parsed("{hear_radius_m: 4, communication_radius_m: 5}");
+  MapReader both(two_keys, "link", violations);
   EXPECT_EQ(both.take("communication_radius_m")->text, "5");
   both.finish();
   EXPECT_NE(message_of(violations).find("unknown key link.hear_radius_m"), std::string::npos);
