@@ -21,16 +21,19 @@ struct Position {
 
 struct Entry;
 
-/// A value: empty, a scalar, a sequence or a mapping.
-struct Node {
+/// A value: empty, a scalar, a sequence or a mapping. A template, so that its members may be of a
+/// type that contains it (clang 14 accepts no other form with default values).
+template <class MapEntry>
+struct NodeOf {
   enum class Kind { kNull, kScalar, kSequence, kMap };
   Kind kind = Kind::kNull;
   Position at;
-  std::string text{};            ///< of a scalar
-  bool plain = false;            ///< scalar without quotes: may be a number
-  std::vector<Node> items{};     ///< of a sequence
-  std::vector<Entry> entries{};  ///< of a map, in order of the file; keys may repeat
+  std::string text{};               ///< of a scalar
+  bool plain = false;               ///< scalar without quotes: may be a number
+  std::vector<NodeOf> items{};      ///< of a sequence
+  std::vector<MapEntry> entries{};  ///< of a map, in order of the file; keys may repeat
 };
+using Node = NodeOf<Entry>;
 
 /// A key of a mapping with its value.
 struct Entry {
