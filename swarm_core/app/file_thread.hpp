@@ -103,8 +103,8 @@ class FileThread {
   bool flush(Duration limit);
 
   /// Writes everything and the ends of the files, and ends the thread. Gives up after `limit`
-  /// without progress, or a quarter of it where the disk refuses rather than takes its time. What is
-  /// missing in which file; nothing is written afterwards.
+  /// without progress, or a quarter of it where the disk refuses rather than takes its time. What
+  /// is missing in which file; nothing is written afterwards.
   std::vector<FileLoss> finish(Duration limit = kFinish);
 
  private:

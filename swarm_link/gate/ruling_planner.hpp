@@ -11,7 +11,7 @@ namespace swarm::link {
 
 /// Which of several planners a receiver follows: the one whose heartbeats it receives. Another one,
 /// whatever its epoch, is followed only once the ruling one has been silent for the takeover time.
-/// So a forged or foreign heartbeat changes nothing while the planner lives, and a planner that was
+/// So a forged or foreign heartbeat changes nothing while the planner beats, and a planner that was
 /// followed by mistake is left when it falls silent. Of a recording, which may be played faster
 /// than it was made, the newest planner leads at once. Pure; times are of the receiver's clock.
 class RulingPlanner {
@@ -27,7 +27,7 @@ class RulingPlanner {
   bool admits_plan(std::uint64_t epoch, UtcTime now) const {
     return epoch == epoch_ || (epoch > epoch_ && (!takeover_ || !is_alive(now)));
   }
-  /// A plan has passed. By itself it does not show that its planner lives.
+  /// A plan has passed. By itself it does not show that its planner is alive.
   void on_plan(std::uint64_t epoch) {
     if (epoch == epoch_) return;
     epoch_ = epoch;

@@ -21,7 +21,7 @@
 namespace swarm::test {
 namespace {
 
-/// The wall clock of all programs started while it lives, as the shim has it.
+/// The wall clock of all programs started while it exists, as the shim has it.
 class SteppedClock {
  public:
   SteppedClock() {

@@ -28,7 +28,7 @@ namespace {
 
 bool execute(const std::string& command) { return std::system(command.c_str()) == 0; }
 
-/// A file system in a folder of its own, for as long as this lives.
+/// A file system in a folder of its own, for as long as this object exists.
 class OwnDisk {
  public:
   enum class Kind : std::uint8_t { kMemory, kExt4 };

@@ -19,7 +19,7 @@ struct RunClockTest : testing::Test {
 
 TEST_F(RunClockTest, IsTheWallClockAtFirst) {
   const Duration off = utc_now() - wall_clock_now();
-  EXPECT_LT(std::chrono::abs(off), std::chrono::seconds(60)) << "unless somebody sets the clock";
+  EXPECT_LT(std::chrono::abs(off), std::chrono::seconds(60)) << "unless the clock is set";
   EXPECT_FALSE(before.boot_id.empty());
 }
 

@@ -118,7 +118,7 @@ TEST_F(GateTest, OfARecordingFollowsTheNewestPlannerAtOnce) {
   EXPECT_FALSE(recorded.heartbeat(heartbeat(first, 501), kNow + 2 * kTakeover));
 }
 
-// A plan shows a planner's epoch; only heartbeats show that it lives.
+// A plan shows a planner's epoch; only heartbeats show that it is alive.
 TEST_F(GateTest, FollowsTheHeartbeatsOfAnyPlannerAfterAPlanAlone) {
   EXPECT_TRUE(sut.plan(plan(id(kNow), 1), kNow));
   EXPECT_TRUE(sut.heartbeat(heartbeat(id(s_later(-100)), 300), kNow));
