@@ -94,8 +94,7 @@ void ProcessLoop::find_silent(SteadyTime now) {
   for (const ReceivedState& state : inbox_.states()) {
     silent_.on_state({.robot = state.report.robot,
                       .as_of = state.report.as_of,
-                      .position_m = state.report.position_m,
-                      .velocity_mps = state.report.velocity_mps});
+                      .position_m = state.report.position_m});
   }
   silent_.update(now, whereabouts_);
 }
