@@ -113,7 +113,8 @@ def stop_in(case, folder, options):
             flight.dir.rename(kept)
         elif case == "clocks":
             for step in (3600, -3600):
-                offset.write_bytes(struct.pack("q", step))
+                with offset.open("r+b") as mapped:  # in place, since the programs have it mapped
+                    mapped.write(struct.pack("q", step))
                 time.sleep(1)
         said = flight.stop()
         time.sleep(3)
@@ -122,8 +123,8 @@ def stop_in(case, folder, options):
         if case == "disk":
             subprocess.run(["fsfreeze", "-u", place], check=True)
         flight.launcher.wait(timeout=60)
-        if case == "removed" and not flight.dir.exists():
-            flight.dir = folder / "kept"
+        if case == "removed":
+            flight.dir = kept  # where the logs that were open go on
         if case == "disk":
             shutil.copytree(flight.dir, folder / "copy")
             flight.dir = folder / "copy"
@@ -145,6 +146,7 @@ def main():
         with tempfile.TemporaryDirectory() as folder:
             run, said = stop_in(case, pathlib.Path(folder), options)
             audit = subprocess.run([BIN / "swarm_monitor", "audit", run, "--json"], capture_output=True, text=True)
+            print(audit.stderr, end="", file=sys.stderr)
             try:
                 judged = json.loads(audit.stdout)
             except ValueError:
