@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
 // A driver of one's own: a base that reaches a commanded velocity with a first-order lag. Real
-// hardware takes the place of `advance`; what a driver has to keep is the contract in driver.hpp.
+// hardware takes the place of `advance`; its driver measures where it starts and leaves
+// `true_position_m` empty. What a driver has to keep is the contract in driver.hpp.
 #include <algorithm>
 #include <cmath>
 

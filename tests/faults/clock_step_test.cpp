@@ -6,10 +6,12 @@
 #include <chrono>
 #include <csignal>
 #include <cstdint>
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <thread>
 #include <variant>
@@ -50,9 +52,9 @@ class SteppedClock {
   bool is_made_ = false;
 };
 
-/// How often a robot began to hold, and the longest time from one of its log's steps to the next.
+/// When a robot began to hold, and the longest time from one of its log's steps to the next.
 struct Flown {
-  int holds = 0;
+  std::vector<UtcTime> holds;
   Duration longest_gap{};
   bool is_in_order = true;
 };
@@ -62,7 +64,7 @@ Flown read_log(const std::filesystem::path& run_dir, std::uint32_t robot) {
   const auto read = robot_log::read_records(
       robot_log::file_of(run_dir, RobotId(robot)), [&](const robot_log::Record& record) {
         if (const auto* note = std::get_if<robot_log::Note>(&record)) {
-          if (note->code == "mode" && note->text == "holding") ++flown.holds;
+          if (note->code == "mode" && note->text == "holding") flown.holds.push_back(note->stamp);
         } else if (const auto* step = std::get_if<robot_log::Step>(&record)) {
           if (last) flown.longest_gap = std::max(flown.longest_gap, step->stamp - *last);
           if (last && step->stamp < *last) flown.is_in_order = false;
@@ -71,6 +73,26 @@ Flown read_log(const std::filesystem::path& run_dir, std::uint32_t robot) {
       });
   EXPECT_TRUE(read) << read.error().message;
   return flown;
+}
+
+/// When the launcher published each pause.
+std::vector<UtcTime> pauses_of(const std::filesystem::path& run_dir) {
+  std::vector<UtcTime> pauses;
+  std::istringstream events(read_text(run_dir / "events.jsonl"));
+  for (std::string line; std::getline(events, line);) {
+    const auto event = nlohmann::json::parse(line);
+    if (event["code"] != "command" || event["text"] != "pause") continue;
+    pauses.emplace_back(Duration(event["utc_ns"].get<std::int64_t>()));
+  }
+  return pauses;
+}
+
+/// From a pause to the robot's first hold after it; empty if there is none.
+std::optional<Duration> time_to_hold(const Flown& flown, UtcTime pause) {
+  const auto hold = std::find_if(flown.holds.begin(), flown.holds.end(),
+                                 [&](UtcTime stamp) { return stamp >= pause; });
+  if (hold == flown.holds.end()) return std::nullopt;
+  return *hold - pause;
 }
 
 class ClockStep : public testing::TestWithParam<const char*> {};
@@ -107,12 +129,20 @@ TEST_P(ClockStep, ChangesNothingInFlight) {
   EXPECT_EQ(summary["collisions_robot"], 0);
   EXPECT_EQ(summary["collisions_obstacle"], 0);
   EXPECT_LT(summary["mission_s"].get<double>(), 300.0) << "not by the wall clock";
+  const std::vector<UtcTime> pauses = pauses_of(run.dir());
+  ASSERT_EQ(pauses.size(), kSteps_s.size());
+  Duration longest{};
   for (std::uint32_t robot = 0; robot < 12; ++robot) {
     const Flown flown = read_log(run.dir(), robot);
-    EXPECT_GE(flown.holds, static_cast<int>(kSteps_s.size())) << robot;
+    for (const UtcTime pause : pauses) {
+      const auto taken = time_to_hold(flown, pause);
+      EXPECT_TRUE(taken) << robot;
+      longest = std::max(longest, taken.value_or(Duration{}));
+    }
     EXPECT_TRUE(flown.is_in_order) << robot;
     EXPECT_LT(flown.longest_gap, std::chrono::seconds(40)) << robot << ": not by the wall clock";
   }
+  std::printf("from a pause to the last robot's hold: at most %.3f s\n", to_seconds(longest));
 }
 
 INSTANTIATE_TEST_SUITE_P(Channels, ClockStep, testing::Values("topics", "groups"));

@@ -82,8 +82,8 @@ class Driver {
   /// Called after shutdown().
   virtual ~Driver() = default;
 
-  /// Connects to the robot; the only call that may take time, in which the launcher waits for the
-  /// robot. By default nothing.
+  /// Connects to the robot; the only call that may take time: the launcher waits for the robot, up to
+  /// `launcher.quorum_timeout_s`. By default nothing.
   /// \return an error to end the robot's process with its message
   virtual Result<void> start() { return {}; }
 

@@ -39,7 +39,7 @@ inline const OptionTable<SwarmPrmKeys>& swarmprm_keys() {
                   "largest standard deviation per axis that the sampler draws")
           .number("rho_max", &Keys::rho_max, between(0, 0.99), "largest |correlation|")
           .number("bridge_share", &Keys::bridge_share, between(0, 1),
-                  "share of samples drawn by the Gaussian sampler of ref. [20]")
+                  "share of samples drawn by Boor's Gaussian sampler (1999)")
           .number("bridge_sigma_m", &Keys::bridge_sigma_m, positive(kLongest_m),
                   "standard deviation of the distance within the pairs of that sampler")
           .count("shortcuts", &Keys::shortcuts, between(0, 1'000'000),

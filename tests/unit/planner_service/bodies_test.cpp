@@ -9,10 +9,10 @@
 namespace swarm::planner {
 namespace {
 
-using testing::has;
+using test::has;
 
 /// Robots in flight.
-struct Bench : testing::KeeperBench {
+struct Bench : test::KeeperBench {
   Bench() {
     step_after(std::chrono::milliseconds(50));
     keeper.set_phase(MissionPhase::kRunning);

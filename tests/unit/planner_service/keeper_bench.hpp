@@ -17,7 +17,7 @@
 #include "swarmflow/mission/mission_file.hpp"
 #include "tests/unit/planner_service/planners.hpp"
 
-namespace swarm::testing {
+namespace swarm::test {
 
 inline bool has(const std::vector<planner::PlanKeeper::Notice>& notices, const std::string& code) {
   return std::any_of(notices.begin(), notices.end(),
@@ -96,4 +96,4 @@ class KeeperBench {
   int published = 0;
 };
 
-}  // namespace swarm::testing
+}  // namespace swarm::test

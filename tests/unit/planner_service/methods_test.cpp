@@ -14,8 +14,8 @@
 namespace swarm::planner {
 namespace {
 
-const testing::StandinScene& scene() {
-  static const testing::StandinScene s = testing::standin_scene();
+const test::StandinScene& scene() {
+  static const test::StandinScene s = test::standin_scene();
   return s;
 }
 
@@ -36,7 +36,7 @@ INSTANTIATE_TEST_SUITE_P(All, Methods, ::testing::Values("swarmprm", "rover", "c
 
 TEST_P(Methods, EndInAFlowBetweenTheMixturesOfTheMission) {
   Rng rng(1);
-  const auto planned = testing::plan_mission(mission_of(GetParam()), rng);
+  const auto planned = test::plan_mission(mission_of(GetParam()), rng);
 
   ASSERT_TRUE(planned.has_value()) << planned.error().message;
   const FlowPlan& flow = planned->plan;
@@ -52,7 +52,7 @@ TEST_P(Methods, EndInAFlowBetweenTheMixturesOfTheMission) {
     EXPECT_EQ(node.gaussian.mean_m(), scene().goal.components()[j].gaussian.mean_m());
     EXPECT_NEAR(node.mass, scene().goal.components()[j].weight, 1e-6);
   }
-  EXPECT_GT(planned->stats.planned_mean_path_m, testing::kStandinMeanBound_m);
+  EXPECT_GT(planned->stats.planned_mean_path_m, test::kStandinMeanBound_m);
   // Means do not pass through obstacles, whatever the method promises about their spread.
   for (const PlanLeg& leg : flow.legs()) {
     EXPECT_TRUE(scene().world.segment_is_free(flow.nodes()[leg.from].gaussian.mean_m(),
@@ -63,7 +63,7 @@ TEST_P(Methods, EndInAFlowBetweenTheMixturesOfTheMission) {
 TEST(Methods, KeepWhatTheyPromiseAboutRisk) {
   const auto flow_of = [](const char* method) {
     Rng rng(2);
-    return testing::plan_mission(mission_of(method), rng).value().plan;
+    return test::plan_mission(mission_of(method), rng).value().plan;
   };
   EXPECT_LE(planned_max_cvar_m(flow_of("swarmprm"), scene().world, 0.05), -0.2 + 1e-3);
   EXPECT_LE(planned_max_cvar_m(flow_of("crops"), scene().world, 0.05), -0.2 + 1e-3);
@@ -80,9 +80,9 @@ TEST(Planner, KeepsToTheDensityCapInTime) {
   mission.planner.density_cap_per_m2 = 1.5;
   Rng rng(1);
 
-  const auto timed = testing::plan_mission(mission, rng);
+  const auto timed = test::plan_mission(mission, rng);
   mission.planner.options.set("density_cap", "static");
-  const auto by_node = testing::plan_mission(mission, rng);
+  const auto by_node = test::plan_mission(mission, rng);
 
   ASSERT_TRUE(timed.has_value()) << timed.error().message;
   EXPECT_LE(max_density(timed->plan, 500.0, 0.5).per_m2, 1.5 + 1e-9);
@@ -96,10 +96,10 @@ INSTANTIATE_TEST_SUITE_P(All, KeptPlanners, ::testing::Values("swarmprm", "rover
                          [](const auto& method) { return std::string(method.param); });
 
 TEST_P(KeptPlanners, FollowTheMapTheGoalAndTheRisk) {
-  Planner planner = testing::planner_of(mission_of(GetParam()));
+  Planner planner = test::planner_of(mission_of(GetParam()));
   Rng rng(1);
   const auto plan_in = [&](const World& world, const Mixture& goal) {
-    const auto planned = planner.plan({world, scene().start, goal}, {rng, &testing::no_time});
+    const auto planned = planner.plan({world, scene().start, goal}, {rng, &test::no_time});
     EXPECT_TRUE(planned.has_value()) << planned.error().message;
     return planned.has_value() ? planned->plan : FlowPlan{};
   };
@@ -127,10 +127,10 @@ TEST_P(KeptPlanners, FollowTheMapTheGoalAndTheRisk) {
 }
 
 TEST_P(KeptPlanners, PlanAnewFromTheRobotPositions) {
-  Planner planner = testing::planner_of(mission_of(GetParam()));
+  Planner planner = test::planner_of(mission_of(GetParam()));
   Rng rng(1);
   const auto first =
-      planner.plan({scene().world, scene().start, scene().goal}, {rng, &testing::no_time});
+      planner.plan({scene().world, scene().start, scene().goal}, {rng, &test::no_time});
   ASSERT_TRUE(first.has_value()) << first.error().message;
   const Mixture half_way = first->plan.mixture_at(0.4 * first->plan.duration());
   std::vector<ReportedRobot> robots;
@@ -144,7 +144,7 @@ TEST_P(KeptPlanners, PlanAnewFromTheRobotPositions) {
   }
 
   const auto anew =
-      replan(planner, {scene().world, scene().goal, robots}, 60, {rng, &testing::no_time});
+      replan(planner, {scene().world, scene().goal, robots}, 60, {rng, &test::no_time});
 
   ASSERT_TRUE(anew.has_value()) << anew.error().message;
   for (const PlanEntry& entry : anew->entries) {

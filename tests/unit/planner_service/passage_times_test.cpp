@@ -107,14 +107,14 @@ TEST(PassageTimes, OfAGroupThatPassesNothingAreNotGiven) {
 }
 
 double speed_mps(const Mission& mission) {
-  return testing::planner_of(mission).method().traits().speed_mps;
+  return test::planner_of(mission).method().traits().speed_mps;
 }
 
 // When half of the second group passes without a density cap.
 MissionTime free_half(Mission mission, std::uint64_t seed) {
   mission.planner.density_cap_per_m2 = 0.0;
   Rng rng(seed);
-  const FlowPlan flow = testing::plan_mission(mission, rng).value().plan;
+  const FlowPlan flow = test::plan_mission(mission, rng).value().plan;
   return group_times(flow, narrowest_passage(flow, mission.world), speed_mps(mission))
       .at(1)
       .passes.value()
@@ -127,7 +127,7 @@ TEST(PassageTimes, ShowThatTheSecondGroupWaitsAtTheDoor) {
   ASSERT_TRUE(mission.has_value()) << mission.error().message;
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     Rng rng(seed);
-    const auto result = testing::plan_mission(*mission, rng);
+    const auto result = test::plan_mission(*mission, rng);
     ASSERT_TRUE(result.has_value()) << result.error().message;
 
     const auto passage = narrowest_passage(result->plan, mission->world);

@@ -10,8 +10,8 @@
 namespace swarm::planner {
 namespace {
 
-using testing::has;
-using Bench = testing::KeeperBench;
+using test::has;
+using Bench = test::KeeperBench;
 
 TEST(PlanKeeperClock, RunsWithTheMissionAndStopsInAPause) {
   Bench bench;

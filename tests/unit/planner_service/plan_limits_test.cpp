@@ -17,7 +17,7 @@ namespace swarm::planner {
 namespace {
 
 Mission standin(std::uint32_t robots) {
-  testing::StandinScene scene = testing::standin_scene();
+  test::StandinScene scene = test::standin_scene();
   Mission mission;
   mission.world = std::move(scene.world);
   mission.start = std::move(scene.start);
@@ -28,7 +28,7 @@ Mission standin(std::uint32_t robots) {
 
 Result<PlanResult> plan_of(const Mission& mission, std::uint64_t seed = 1) {
   Rng rng(seed);
-  return testing::plan_mission(mission, rng);
+  return test::plan_mission(mission, rng);
 }
 
 const PlanWarning* warning_of(const PlanResult& result, const std::string& code) {
@@ -132,15 +132,15 @@ TEST(PlanLimits, RaiseTheCapToTheDensityOfStartAndGoal) {
 TEST(PlanLimits, KeepTheUncappedPlanWhereNoneIsFoundUnderACap) {
   Mission mission = standin(5000);
   mission.planner.options.set("samples", 200);
-  SwarmPrmOptions options = testing::swarmprm_options_of(mission);
+  SwarmPrmOptions options = test::swarmprm_options_of(mission);
   options.limits.cap_per_m2 = 0.01;  // every component is denser by itself, and routes far denser
   Rng rng(1);
   const PlanRequest request{mission.world, mission.start, mission.goal};
 
-  const auto result = testing::plan_once(request, options, rng);
+  const auto result = test::plan_once(request, options, rng);
   Rng again(1);
   options.cap_is_automatic = false;
-  const auto uncapped = testing::plan_once(request, options, again);
+  const auto uncapped = test::plan_once(request, options, again);
 
   ASSERT_TRUE(result.has_value() && uncapped.has_value());
   EXPECT_EQ(result->plan.digest(), uncapped->plan.digest());

@@ -10,7 +10,7 @@
 #include "planner_service/planner.hpp"
 #include "swarmflow/mission/mission.hpp"
 
-namespace swarm::testing {
+namespace swarm::test {
 
 inline SteadyTime no_time() { return {}; }
 
@@ -49,4 +49,4 @@ inline planner::SwarmPrmOptions swarmprm_options_of(const Mission& mission) {
        .limits = swarm_limits(mission.robots, mission.safety, mission.control)});
 }
 
-}  // namespace swarm::testing
+}  // namespace swarm::test

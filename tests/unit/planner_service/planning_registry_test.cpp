@@ -74,14 +74,14 @@ TEST(PlanningRegistry, MakesTheMethodThatTheMissionNames) {
         EXPECT_GT(context.limits.packing_per_m2, 0.0);
         return std::make_unique<StraightMethod>(calls);
       }});
-  Mission mission = testing::KeeperBench::small_mission();
+  Mission mission = test::KeeperBench::small_mission();
   mission.planner.method = "straight";
 
   auto planner = Planner::make(registry, mission);
 
   ASSERT_TRUE(planner.has_value()) << planner.error().message;
   Rng rng(1);
-  EXPECT_TRUE(planner->plan({mission.world, mission.start, mission.goal}, {rng, &testing::no_time})
+  EXPECT_TRUE(planner->plan({mission.world, mission.start, mission.goal}, {rng, &test::no_time})
                   .has_value());
   EXPECT_EQ(calls.plans, 1);
 }
@@ -90,7 +90,7 @@ TEST(PlanningRegistry, MakesTheMethodThatTheMissionNames) {
 TEST(PlanningRegistry, BuiltInMethodsPromiseWhatTheyKeep) {
   PlanningRegistry registry;
   register_builtin_methods(registry);
-  Mission mission = testing::KeeperBench::small_mission();
+  Mission mission = test::KeeperBench::small_mission();
   const auto traits = [&](const char* method) -> PlanningTraits {
     mission.planner.method = method;
     auto planner = Planner::make(registry, mission);
@@ -107,7 +107,7 @@ TEST(PlanningRegistry, BuiltInMethodsPromiseWhatTheyKeep) {
 TEST(PlanningRegistry, NamesItsMethodsWhereTheMissionNamesAnother) {
   PlanningRegistry registry;
   register_builtin_methods(registry);
-  Mission mission = testing::KeeperBench::small_mission();
+  Mission mission = test::KeeperBench::small_mission();
   mission.planner.method = "teleport";
 
   const auto planner = Planner::make(registry, mission);
@@ -122,10 +122,10 @@ TEST(PlanningRegistry, NamesItsMethodsWhereTheMissionNamesAnother) {
   }
 }
 
-testing::KeeperBench bench_with(Calls& calls, std::optional<Duration> period) {
+test::KeeperBench bench_with(Calls& calls, std::optional<Duration> period) {
   auto method = std::make_unique<StraightMethod>(calls);
   method->period = period;
-  Mission mission = testing::KeeperBench::small_mission();
+  Mission mission = test::KeeperBench::small_mission();
   const auto robots = static_cast<double>(mission.robots.count);
   return {std::move(mission), Planner(std::move(method), {}, robots)};
 }
@@ -180,13 +180,13 @@ TEST(Planner, RefusesAPlanWithOtherSourcesThanTheRequest) {
    private:
     RiskLimit risk_;
   };
-  const Mission mission = testing::KeeperBench::small_mission();
+  const Mission mission = test::KeeperBench::small_mission();
   const Gaussian& g = mission.start.components()[0].gaussian;
   const Mixture two = Mixture::make({{0.5, g}, {0.5, g}}).value();
   Planner planner(std::make_unique<OneSource>(), {}, 12.0);
   Rng rng(1);
 
-  const auto planned = planner.plan({mission.world, two, mission.goal}, {rng, &testing::no_time});
+  const auto planned = planner.plan({mission.world, two, mission.goal}, {rng, &test::no_time});
 
   ASSERT_FALSE(planned.has_value());
   EXPECT_NE(planned.error().message.find("1 sources"), std::string::npos)

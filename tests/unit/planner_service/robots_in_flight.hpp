@@ -11,7 +11,7 @@
 #include "tests/unit/planner_service/planners.hpp"
 #include "tests/unit/planner_service/standin_scene.hpp"
 
-namespace swarm::testing {
+namespace swarm::test {
 
 /// Robots spread along a plan of the stand-in scene that is half done, as far from obstacles as
 /// robots are.
@@ -36,4 +36,4 @@ inline std::vector<planner::ReportedRobot> robots_in_flight(std::uint32_t count)
   return robots;
 }
 
-}  // namespace swarm::testing
+}  // namespace swarm::test

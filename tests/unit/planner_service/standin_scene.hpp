@@ -7,7 +7,7 @@
 #include "swarmflow/core/mixture.hpp"
 #include "swarmflow/core/world.hpp"
 
-namespace swarm::testing {
+namespace swarm::test {
 
 /// Shortest path from start to goal means on the stand-in scene, obstacles grown by 0.2 m, means
 /// assigned as the transport problem does [m].
@@ -44,4 +44,4 @@ inline StandinScene standin_scene() {
           .value()};
 }
 
-}  // namespace swarm::testing
+}  // namespace swarm::test

@@ -36,9 +36,11 @@ inline constexpr auto kLauncherKeys = std::to_array<SectionKey<LauncherSpec>>({
     {"time_limit_s", &LauncherSpec::time_limit_s, positive(1e6),
      "longest mission time; then the run fails"},
     {"respawn_planner_max", &LauncherSpec::respawn_planner_max, between(0, 1000),
-     "how often a planner that ended is restarted"},
+     "deaths in a row after which a planner ends the run before the start; in flight it is "
+     "restarted all the same"},
     {"respawn_agent_max", &LauncherSpec::respawn_agent_max, between(0, 1000),
-     "how often a robot's process that ended is restarted"},
+     "deaths in a row, each within 20 s of life, after which a robot's process stays dead; 0: it is "
+     "never restarted"},
     {"on_launcher_loss", &LauncherSpec::on_launcher_loss, between(0, 1),
      "what robots do when the launcher's beats stop for timing.launcher_silence_s"},
 });

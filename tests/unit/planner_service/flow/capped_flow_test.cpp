@@ -14,13 +14,13 @@
 namespace swarm::planner {
 namespace {
 
-using testing::flow_scene;
-using testing::FlowScene;
+using test::flow_scene;
+using test::FlowScene;
 
 // Straight from the definition: a variable for every arc, what enters a node (or starts there) is
 // below its capacity.
 std::optional<double> optimum(const FlowScene& scene, const DensityCap& cap) {
-  testing::LinearProgram lp;
+  test::LinearProgram lp;
   std::vector<int> conserved;
   std::vector<int> entering;
   for (std::size_t v = 0; v < scene.roadmap.nodes.size(); ++v) {
@@ -29,7 +29,7 @@ std::optional<double> optimum(const FlowScene& scene, const DensityCap& cap) {
     const double capacity = 2.0 * std::numbers::pi * cap.max_per_m2 *
                             std::sqrt(scene.roadmap.nodes[v].determinant()) / cap.robots;
     conserved.push_back(lp.add_row(starts - ends, starts - ends));
-    entering.push_back(lp.add_row(-testing::LinearProgram::kInfinity, capacity - starts));
+    entering.push_back(lp.add_row(-test::LinearProgram::kInfinity, capacity - starts));
   }
   for (std::uint32_t v = 0; v < scene.roadmap.nodes.size(); ++v) {
     for (const Roadmap::Arc& arc : scene.roadmap.arcs_of(v)) {

@@ -60,7 +60,7 @@ double least_cost(const std::vector<double>& costs, const std::vector<double>& s
 TEST(TransportOnPaths, TakesTheCheapestPathsAndTheCheapestTransport) {
   int feasible = 0;
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
-    const auto scene = testing::flow_scene(seed, 14);
+    const auto scene = test::flow_scene(seed, 14);
     const auto length = all_lengths(scene.roadmap);
 
     const PathTransport transport =

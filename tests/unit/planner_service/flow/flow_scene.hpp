@@ -10,7 +10,7 @@
 #include "swarmflow/core/random.hpp"
 #include "swarmflow/core/world.hpp"
 
-namespace swarm::testing {
+namespace swarm::test {
 
 /// An open field with two wide start components on the left, two goal components on the right and
 /// `samples` narrow nodes between them that carry little.
@@ -42,4 +42,4 @@ inline FlowScene flow_scene(std::uint64_t seed, std::size_t samples, double radi
   return scene;
 }
 
-}  // namespace swarm::testing
+}  // namespace swarm::test

@@ -6,7 +6,7 @@
 
 #include <coin/ClpSimplex.hpp>
 
-namespace swarm::testing {
+namespace swarm::test {
 
 int LinearProgram::add_row(double low, double high) {
   row_low_.push_back(low);
@@ -51,4 +51,4 @@ std::optional<double> LinearProgram::minimum() const {
   return clp.objectiveValue();
 }
 
-}  // namespace swarm::testing
+}  // namespace swarm::test

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-namespace swarm::testing {
+namespace swarm::test {
 
 /// min cᵀx s.t. row_low ≤ Ax ≤ row_high, 0 ≤ x ≤ upper: the oracle of the network solvers. It knows
 /// nothing of networks.
@@ -29,4 +29,4 @@ class LinearProgram {
   std::vector<std::vector<std::pair<int, double>>> columns_;
 };
 
-}  // namespace swarm::testing
+}  // namespace swarm::test

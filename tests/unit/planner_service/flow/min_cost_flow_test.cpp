@@ -40,7 +40,7 @@ Network random_network(Rng& rng) {
 }
 
 std::optional<double> optimum(const Network& net) {
-  testing::LinearProgram lp;
+  test::LinearProgram lp;
   for (const double balance : net.balance) lp.add_row(balance, balance);
   for (const FlowArc& arc : net.arcs) {
     lp.add_column(arc.cost, {{static_cast<int>(arc.from), 1.0}, {static_cast<int>(arc.to), -1.0}},

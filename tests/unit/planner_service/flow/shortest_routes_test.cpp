@@ -16,7 +16,7 @@ namespace swarm::planner {
 namespace {
 
 TEST(ShortestRoutes, AreAsShortAsFloydAndWarshallFindThem) {
-  const auto scene = testing::standin_scene();
+  const auto scene = test::standin_scene();
   EdgeChecker checker(scene.world, {});
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     Rng rng(seed);
@@ -65,7 +65,7 @@ TEST(ShortestRoutes, AreAsShortAsFloydAndWarshallFindThem) {
 }
 
 TEST(RouteTable, IsTheSameFromWhicheverSideItSearches) {
-  const auto scene = testing::standin_scene();
+  const auto scene = test::standin_scene();
   EdgeChecker checker(scene.world, {});
   Rng rng(3);
   const Roadmap roadmap = connect(sample_free(scene.world, {}, {}, 200, rng), 18.0, checker);

@@ -114,12 +114,12 @@ class StraightenedStandin : public ::testing::TestWithParam<std::uint64_t> {
     Rng rng(GetParam());
     mission.start = scene_.start;
     mission.goal = scene_.goal;
-    options_ = testing::swarmprm_options_of(mission);
-    return testing::plan_mission(mission, rng).value().plan;
+    options_ = test::swarmprm_options_of(mission);
+    return test::plan_mission(mission, rng).value().plan;
   }
 
   static constexpr double kCap_per_m2 = 2.0;
-  testing::StandinScene scene_ = testing::standin_scene();
+  test::StandinScene scene_ = test::standin_scene();
   mutable SwarmPrmOptions options_;
 };
 
@@ -129,8 +129,8 @@ TEST_P(StraightenedStandin, IsShorterAndKeepsAllElse) {
   const FlowPlan raw = plan_of(0);
   const FlowPlan plan = plan_of(200);
 
-  EXPECT_LT(mean_path_m(plan), mean_path_m(raw) - 0.025 * testing::kStandinMeanBound_m);
-  EXPECT_LT(mean_path_m(plan), 1.09 * testing::kStandinMeanBound_m);
+  EXPECT_LT(mean_path_m(plan), mean_path_m(raw) - 0.025 * test::kStandinMeanBound_m);
+  EXPECT_LT(mean_path_m(plan), 1.09 * test::kStandinMeanBound_m);
   // Nodes with their times and masses, in their order; new ones only behind them.
   ASSERT_GE(plan.nodes().size(), raw.nodes().size());
   for (std::size_t i = 0; i < raw.nodes().size(); ++i) {

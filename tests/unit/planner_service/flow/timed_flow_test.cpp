@@ -17,8 +17,8 @@
 namespace swarm::planner {
 namespace {
 
-using testing::flow_scene;
-using testing::FlowScene;
+using test::flow_scene;
+using test::FlowScene;
 
 // Evaluates the mixture alone, on a grid and at the means, between the times the planner sampled.
 double sampled_density_per_m2(const FlowPlan& plan, double robots, double step_s) {
@@ -92,12 +92,12 @@ TEST(TimedFlow, MovesNoFasterThanItMay) {
 }
 
 TEST(TimedFlow, PassesFiveHundredRobotsWhereTheStaticCapHasNoFlow) {
-  const testing::StandinScene scene = testing::standin_scene();
+  const test::StandinScene scene = test::standin_scene();
   SwarmPrmOptions options;
   options.samples = 300;
   options.shortcuts = 0;
   Rng rng(1);
-  auto planned = testing::plan_once({scene.world, scene.start, scene.goal}, options, rng);
+  auto planned = test::plan_once({scene.world, scene.start, scene.goal}, options, rng);
   ASSERT_TRUE(planned.has_value());
   const std::vector<double> supplies{0.25, 0.375, 0.1875, 0.1875};
   const std::vector<double> demands{0.25, 0.375, 0.375};

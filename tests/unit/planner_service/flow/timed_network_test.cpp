@@ -15,8 +15,8 @@
 namespace swarm::planner {
 namespace {
 
-using testing::flow_scene;
-using testing::FlowScene;
+using test::flow_scene;
+using test::FlowScene;
 
 constexpr double kSpeed_mps = 2.0;
 constexpr double kStep_s = 3.0;
@@ -48,7 +48,7 @@ std::vector<double> capacities_of(const FlowScene& scene, double robots) {
 std::optional<double> optimum(const FlowScene& scene, const std::vector<double>& capacities,
                               int horizon) {
   const Roadmap& roadmap = scene.roadmap;
-  testing::LinearProgram lp;
+  test::LinearProgram lp;
   std::map<std::pair<std::size_t, int>, int> conserved;
   std::map<std::pair<std::size_t, int>, int> present;
   for (std::size_t v = 0; v < roadmap.nodes.size(); ++v) {
@@ -56,7 +56,7 @@ std::optional<double> optimum(const FlowScene& scene, const std::vector<double>&
       const double starts = v < 2 && t == 0 ? scene.supplies[v] : 0.0;
       const double ends = v >= 2 && v < 4 && t == horizon ? scene.demands[v - 2] : 0.0;
       conserved[{v, t}] = lp.add_row(starts - ends, starts - ends);
-      present[{v, t}] = lp.add_row(-testing::LinearProgram::kInfinity, capacities[v] - starts);
+      present[{v, t}] = lp.add_row(-test::LinearProgram::kInfinity, capacities[v] - starts);
     }
   }
   const auto add = [&](std::size_t v, int t, std::size_t w, int then, double cost) {

@@ -102,7 +102,7 @@ TEST(TransportLp, EqualsALinearProgramOnWeightsOfAnyKind) {
     }
     std::vector<double> costs(supply.size() * demand.size());
     for (double& cost : costs) cost = uniform01(rng) < 0.1 ? kInfinity : uniform(rng, 1.0, 300.0);
-    testing::LinearProgram lp;
+    test::LinearProgram lp;
     for (const double mass : supply) lp.add_row(mass, mass);
     for (const double mass : demand) lp.add_row(mass, mass);
     for (std::size_t cell = 0; cell < costs.size(); ++cell) {

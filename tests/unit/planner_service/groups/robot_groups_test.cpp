@@ -12,13 +12,13 @@
 namespace swarm::planner {
 namespace {
 
-const testing::StandinScene& scene() {
-  static const testing::StandinScene s = testing::standin_scene();
+const test::StandinScene& scene() {
+  static const test::StandinScene s = test::standin_scene();
   return s;
 }
 
 TEST(RobotGroups, HoldEveryRobotOnceAndKeepTheRiskLimit) {
-  const auto robots = testing::robots_in_flight(200);
+  const auto robots = test::robots_in_flight(200);
   const RiskLimit risk;
   const auto groups = group_robots({scene().world, scene().goal, robots}, risk, {});
   ASSERT_TRUE(groups.has_value()) << groups.error().message;

@@ -11,7 +11,7 @@ namespace {
 
 using std::chrono::milliseconds;
 using std::chrono::seconds;
-using testing::KeeperBench;
+using test::KeeperBench;
 
 Scene version(const KeeperBench& bench, std::uint64_t number) {
   Scene scene = bench.scene;
@@ -43,7 +43,7 @@ TEST(PlanKeeperScene, PublishesTheFirstPlanOnceForTheSceneOfTheMission) {
 
 TEST(PlanKeeperScene, WaitsThreeSecondsForASceneThatDoesNotCome) {
   const Mission mission = KeeperBench::small_mission();
-  PlanKeeper keeper(mission, testing::planner_of(mission), 1, &testing::no_time);
+  PlanKeeper keeper(mission, test::planner_of(mission), 1, &test::no_time);
   ASSERT_TRUE(keeper.plan_first().has_value());
   const SteadyTime begin{seconds(50)};
   const UtcTime utc{seconds(50)};

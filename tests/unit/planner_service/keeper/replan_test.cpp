@@ -16,17 +16,17 @@
 namespace swarm::planner {
 namespace {
 
-const testing::StandinScene& scene() {
-  static const testing::StandinScene s = testing::standin_scene();
+const test::StandinScene& scene() {
+  static const test::StandinScene s = test::standin_scene();
   return s;
 }
 
 TEST(Replan, GivesEveryRobotAnEntryThatMakesTheCountsComeOutRight) {
-  const auto robots = testing::robots_in_flight(200);
+  const auto robots = test::robots_in_flight(200);
   Rng rng(3);
-  Planner planner = testing::swarmprm_planner();
+  Planner planner = test::swarmprm_planner();
   const auto anew =
-      replan(planner, {scene().world, scene().goal, robots}, 200, {rng, &testing::no_time});
+      replan(planner, {scene().world, scene().goal, robots}, 200, {rng, &test::no_time});
   ASSERT_TRUE(anew.has_value()) << anew.error().message;
   const FlowPlan& flow = anew->planned.plan;
   ASSERT_EQ(anew->entries.size(), 200U);
@@ -60,28 +60,28 @@ TEST(Replan, GivesEveryRobotAnEntryThatMakesTheCountsComeOutRight) {
 }
 
 TEST(Replan, FindsAPathAroundAnObstacleThatWasDropped) {
-  const auto robots = testing::robots_in_flight(100);
+  const auto robots = test::robots_in_flight(100);
   std::vector<Obstacle> obstacles = scene().world.obstacles();
   obstacles.push_back(Circle{{100, 50}, 5.0});
   const World world = World::make(scene().world.bounds_m(), obstacles).value();
   Rng rng(4);
 
-  Planner planner = testing::swarmprm_planner();
-  const auto anew = replan(planner, {world, scene().goal, robots}, 100, {rng, &testing::no_time});
+  Planner planner = test::swarmprm_planner();
+  const auto anew = replan(planner, {world, scene().goal, robots}, 100, {rng, &test::no_time});
 
   ASSERT_TRUE(anew.has_value()) << anew.error().message;
   EXPECT_LE(planned_max_cvar_m(anew->planned.plan, world, 0.05), -0.2 + 1e-3);
 }
 
 TEST(Replan, RefusesAGoalThatWasBuriedAndNamesIt) {
-  const auto robots = testing::robots_in_flight(20);
+  const auto robots = test::robots_in_flight(20);
   std::vector<Obstacle> obstacles = scene().world.obstacles();
   obstacles.push_back(Circle{{175, 60}, 5.0});
   const World world = World::make(scene().world.bounds_m(), obstacles).value();
   Rng rng(4);
 
-  Planner planner = testing::swarmprm_planner();
-  const auto anew = replan(planner, {world, scene().goal, robots}, 20, {rng, &testing::no_time});
+  Planner planner = test::swarmprm_planner();
+  const auto anew = replan(planner, {world, scene().goal, robots}, 20, {rng, &test::no_time});
 
   ASSERT_FALSE(anew.has_value());
   EXPECT_EQ(anew.error().code, ErrorCode::kInfeasible);

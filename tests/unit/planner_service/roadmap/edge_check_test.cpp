@@ -24,7 +24,7 @@ double dense_max_cvar_m(const Gaussian& a, const Gaussian& b, const World& world
 }
 
 TEST(EdgeChecker, AgreesWithADenseGridUpToItsTolerance) {
-  const auto scene = testing::standin_scene();
+  const auto scene = test::standin_scene();
   const RiskLimit risk;
   const double k = cvar_coefficient(risk.alpha);
   EdgeChecker checker(scene.world, risk);

@@ -14,14 +14,14 @@ bool mentions(const std::string& text, const std::string& part) {
 }
 
 TEST(Endpoints, HaveNothingToReportWhenTheLimitHolds) {
-  const auto scene = testing::standin_scene();
+  const auto scene = test::standin_scene();
 
   EXPECT_EQ(describe_violations(scene.start, "start", scene.world, {}), "");
   EXPECT_EQ(describe_violations(scene.goal, "goal", scene.world, {}), "");
 }
 
 TEST(Endpoints, NameComponentObstacleAndRemedy) {
-  const auto scene = testing::standin_scene();
+  const auto scene = test::standin_scene();
   const RiskLimit strict{.alpha = 0.01, .delta_m = -0.2};
 
   const std::string text = describe_violations(scene.start, "start", scene.world, strict);

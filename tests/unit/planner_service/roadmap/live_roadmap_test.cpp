@@ -24,7 +24,7 @@ Edges edges_of(const Roadmap& roadmap) {
   return edges;
 }
 
-std::vector<Gaussian> terminals_of(const testing::StandinScene& scene) {
+std::vector<Gaussian> terminals_of(const test::StandinScene& scene) {
   std::vector<Gaussian> terminals;
   for (const Mixture* mixture : {&scene.start, &scene.goal}) {
     for (const auto& component : mixture->components()) terminals.push_back(component.gaussian);
@@ -58,7 +58,7 @@ Obstacle random_obstacle(Rng& rng) {
 }
 
 TEST(LiveRoadmap, IsAsFromScratchAfterAnyChanges) {
-  const auto scene = testing::standin_scene();
+  const auto scene = test::standin_scene();
   for (const SamplerKind kind : {SamplerKind::kFit, SamplerKind::kUniform}) {
     LiveRoadmapOptions options;
     options.samples = 250;
@@ -119,7 +119,7 @@ TEST(LiveRoadmap, IsAsFromScratchAfterAnyChanges) {
 }
 
 TEST(LiveRoadmap, ChecksNothingWhenNothingHasChanged) {
-  const auto scene = testing::standin_scene();
+  const auto scene = test::standin_scene();
   Rng rng(1);
   LiveRoadmap live(scene.world, terminals_of(scene), {}, rng);
   EXPECT_GT(live.work().edges_checked, 3000U);
@@ -132,7 +132,7 @@ TEST(LiveRoadmap, ChecksNothingWhenNothingHasChanged) {
 }
 
 TEST(LiveRoadmap, ChecksOnlyEdgesThatAChangeCanAffect) {
-  const auto scene = testing::standin_scene();
+  const auto scene = test::standin_scene();
   LiveRoadmapOptions options;
   options.samples = 2000;
   options.connection_radius_m = 10.0;
@@ -157,7 +157,7 @@ TEST(LiveRoadmap, ChecksOnlyEdgesThatAChangeCanAffect) {
 }
 
 TEST(LiveRoadmap, ChecksANewGoalAlone) {
-  const auto scene = testing::standin_scene();
+  const auto scene = test::standin_scene();
   Rng rng(3);
   std::vector<Gaussian> terminals = terminals_of(scene);
   LiveRoadmap live(scene.world, terminals, {}, rng);
@@ -175,7 +175,7 @@ TEST(LiveRoadmap, ChecksANewGoalAlone) {
 }
 
 TEST(LiveRoadmap, KeepsItsDensityWhereAnObstacleWandersAndIsGone) {
-  const auto scene = testing::standin_scene();
+  const auto scene = test::standin_scene();
   LiveRoadmapOptions options;
   Rng rng(4);
   LiveRoadmap live(scene.world, terminals_of(scene), options, rng);
@@ -225,7 +225,7 @@ TEST(LiveRoadmap, FillsAWorldThatOpensUp) {
 }
 
 TEST(LiveRoadmap, RepeatsItself) {
-  const auto scene = testing::standin_scene();
+  const auto scene = test::standin_scene();
   const auto run = [&] {
     Rng rng(6);
     LiveRoadmap live(scene.world, terminals_of(scene), {}, rng);

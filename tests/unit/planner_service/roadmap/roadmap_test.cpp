@@ -14,7 +14,7 @@ namespace swarm::planner {
 namespace {
 
 TEST(Neighbours, AreAllPairsWithinTheRadius) {
-  const auto scene = testing::standin_scene();
+  const auto scene = test::standin_scene();
   Rng rng(1);
   const auto nodes = sample_free(scene.world, {}, {.sigma_max_m = 6.0}, 300, rng);
 
@@ -55,7 +55,7 @@ TEST(Neighbours, CountTheRadiusItself) {
 }
 
 TEST(Roadmap, HasExactlyTheFreeNeighboursInBothDirections) {
-  const auto scene = testing::standin_scene();
+  const auto scene = test::standin_scene();
   Rng rng(2);
   EdgeChecker checker(scene.world, {});
   const auto nodes = sample_free(scene.world, {}, {}, 200, rng);

@@ -14,7 +14,7 @@ namespace {
 class Samplers : public ::testing::TestWithParam<SamplerKind> {};
 
 TEST_P(Samplers, DrawTheRequestedNumberInFreeSpaceAndInRange) {
-  const auto scene = testing::standin_scene();
+  const auto scene = test::standin_scene();
   const RiskLimit risk;
   const SamplerOptions options{.kind = GetParam()};
   Rng rng(1);
@@ -34,7 +34,7 @@ TEST_P(Samplers, DrawTheRequestedNumberInFreeSpaceAndInRange) {
 }
 
 TEST_P(Samplers, RepeatThemselvesForTheSameSeed) {
-  const auto scene = testing::standin_scene();
+  const auto scene = test::standin_scene();
   Rng a(7);
   Rng b(7);
 

@@ -52,7 +52,7 @@ TEST(Squeeze, GivesUpWhereThereIsNoRoom) {
 }
 
 TEST(Squeeze, AnswersKeepTheLimitAndTheLeastSigma) {
-  const auto scene = testing::standin_scene();
+  const auto scene = test::standin_scene();
   const double k = cvar_coefficient(0.05);
   Rng rng(5);
   int changed = 0;

@@ -60,7 +60,7 @@ TEST(Gaussian, NamesTheOffendingCovariance) {
 TEST(Gaussian, AgreesWithGeneralLinearAlgebra) {
   Rng rng(1);
   for (int i = 0; i < 200; ++i) {
-    const Gaussian g = testing::random_gaussian(rng);
+    const Gaussian g = test::random_gaussian(rng);
     const Mat2& s = g.covariance_m2();
     const Eigen::SelfAdjointEigenSolver<Mat2> eigen(s);
     const Vec2 p(uniform(rng, -120.0, 120.0), uniform(rng, -120.0, 120.0));

@@ -5,7 +5,7 @@
 #include "swarmflow/core/gaussian.hpp"
 #include "swarmflow/core/random.hpp"
 
-namespace swarm::testing {
+namespace swarm::test {
 
 /// Means within 100 m of the origin, standard deviations 0.5–20 m, |ρ| ≤ 0.95.
 inline Gaussian random_gaussian(Rng& rng) {
@@ -15,4 +15,4 @@ inline Gaussian random_gaussian(Rng& rng) {
   return Gaussian::from_parameters(mean, sigma1, sigma2, uniform(rng, -0.95, 0.95));
 }
 
-}  // namespace swarm::testing
+}  // namespace swarm::test

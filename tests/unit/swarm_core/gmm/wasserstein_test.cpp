@@ -41,8 +41,8 @@ constexpr double kTolerance = 1e-8;
 TEST(Wasserstein, MatchesTheMatrixRootsOfThePaper) {
   Rng rng(3);
   for (int i = 0; i < 500; ++i) {
-    const Gaussian a = testing::random_gaussian(rng);
-    const Gaussian b = testing::random_gaussian(rng);
+    const Gaussian a = test::random_gaussian(rng);
+    const Gaussian b = test::random_gaussian(rng);
 
     EXPECT_NEAR(wasserstein2_squared(a, b), printed_w2_squared(a, b), kTolerance);
     EXPECT_DOUBLE_EQ(wasserstein2(a, b), std::sqrt(wasserstein2_squared(a, b)));
@@ -52,9 +52,9 @@ TEST(Wasserstein, MatchesTheMatrixRootsOfThePaper) {
 TEST(Wasserstein, IsAMetric) {
   Rng rng(4);
   for (int i = 0; i < 500; ++i) {
-    const Gaussian a = testing::random_gaussian(rng);
-    const Gaussian b = testing::random_gaussian(rng);
-    const Gaussian c = testing::random_gaussian(rng);
+    const Gaussian a = test::random_gaussian(rng);
+    const Gaussian b = test::random_gaussian(rng);
+    const Gaussian c = test::random_gaussian(rng);
 
     EXPECT_DOUBLE_EQ(wasserstein2(a, b), wasserstein2(b, a));
     EXPECT_LE(wasserstein2(a, c), wasserstein2(a, b) + wasserstein2(b, c) + kTolerance);
@@ -73,8 +73,8 @@ TEST(Wasserstein, IsTheDistanceOfTheMeansForEqualShapes) {
 TEST(TransportMap, IsSymmetricAndCarriesOneCovarianceIntoTheOther) {
   Rng rng(5);
   for (int i = 0; i < 500; ++i) {
-    const Gaussian a = testing::random_gaussian(rng);
-    const Gaussian b = testing::random_gaussian(rng);
+    const Gaussian a = test::random_gaussian(rng);
+    const Gaussian b = test::random_gaussian(rng);
 
     const Mat2 map = transport_map(a, b);
 
@@ -88,8 +88,8 @@ TEST(TransportMap, IsSymmetricAndCarriesOneCovarianceIntoTheOther) {
 TEST(TransportMap, CostsExactlyTheDistance) {
   Rng rng(6);
   for (int i = 0; i < 200; ++i) {
-    const Gaussian a = testing::random_gaussian(rng);
-    const Gaussian b = testing::random_gaussian(rng);
+    const Gaussian a = test::random_gaussian(rng);
+    const Gaussian b = test::random_gaussian(rng);
     const Mat2 move = transport_map(a, b) - Mat2::Identity();
 
     // E‖T(x−μ) − (x−μ)‖² = tr((T−I)Σ(T−I)): the mean squared path of the robots.
@@ -103,8 +103,8 @@ TEST(TransportMap, CostsExactlyTheDistance) {
 TEST(Geodesic, MatchesTheMatrixRootsOfThePaper) {
   Rng rng(7);
   for (int i = 0; i < 200; ++i) {
-    const Gaussian a = testing::random_gaussian(rng);
-    const Gaussian b = testing::random_gaussian(rng);
+    const Gaussian a = test::random_gaussian(rng);
+    const Gaussian b = test::random_gaussian(rng);
     const Geodesic geodesic(a, b);
     for (const double t : {0.0, 0.1, 0.5, 0.77, 1.0}) {
       const Gaussian g = geodesic.at(t);
@@ -118,8 +118,8 @@ TEST(Geodesic, MatchesTheMatrixRootsOfThePaper) {
 TEST(Geodesic, RunsAtConstantSpeed) {
   Rng rng(8);
   for (int i = 0; i < 100; ++i) {
-    const Gaussian a = testing::random_gaussian(rng);
-    const Gaussian b = testing::random_gaussian(rng);
+    const Gaussian a = test::random_gaussian(rng);
+    const Gaussian b = test::random_gaussian(rng);
     const Geodesic geodesic(a, b);
 
     const double whole = wasserstein2(a, b);

@@ -53,15 +53,15 @@ void expect_partition(const std::vector<Vec2>& vertices, Rng& rng) {
   for (int i = 0; i < 200; ++i) {
     const Vec2 p(uniform(rng, low.x(), high.x()), uniform(rng, low.y(), high.y()));
     int holders = 0;
-    for (const auto& part : parts) holders += testing::winds_around(part, p) ? 1 : 0;
-    EXPECT_EQ(holders, testing::winds_around(vertices, p) ? 1 : 0);
+    for (const auto& part : parts) holders += test::winds_around(part, p) ? 1 : 0;
+    EXPECT_EQ(holders, test::winds_around(vertices, p) ? 1 : 0);
   }
 }
 
 TEST(Decomposition, LeavesConvexPolygonsAlone) {
   Rng rng(31);
   for (int round = 0; round < 20; ++round) {
-    const auto polygon = Polygon::make(testing::random_convex(rng, {0, 0}, 3 + rng() % 10));
+    const auto polygon = Polygon::make(test::random_convex(rng, {0, 0}, 3 + rng() % 10));
     ASSERT_TRUE(polygon.has_value());
 
     const auto parts = decompose_convex(*polygon);
@@ -74,7 +74,7 @@ TEST(Decomposition, LeavesConvexPolygonsAlone) {
 TEST(Decomposition, PartitionsRandomStars) {
   Rng rng(32);
   for (int round = 0; round < 200; ++round) {
-    expect_partition(testing::random_star(rng, {40, 30}, 4 + rng() % 30), rng);
+    expect_partition(test::random_star(rng, {40, 30}, 4 + rng() % 30), rng);
   }
 }
 
@@ -115,11 +115,11 @@ TEST(Decomposition, CopesWithStairs) {
 
 TEST(Decomposition, PartitionsCombs) {
   Rng rng(35);
-  for (const std::size_t teeth : {2U, 3U, 10U, 100U}) expect_partition(testing::comb(teeth), rng);
+  for (const std::size_t teeth : {2U, 3U, 10U, 100U}) expect_partition(test::comb(teeth), rng);
 }
 
 TEST(Decomposition, HandlesTheLargestComb) {
-  const auto polygon = Polygon::make(testing::comb(Polygon::kMaxVertices / 4));
+  const auto polygon = Polygon::make(test::comb(Polygon::kMaxVertices / 4));
   ASSERT_TRUE(polygon.has_value());
 
   double twice_area = 0.0;

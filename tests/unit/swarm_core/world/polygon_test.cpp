@@ -87,13 +87,13 @@ TEST(Polygon, AgreesWithBruteForceOnRandomLoops) {
 TEST(Polygon, ContainsWhatItWindsAround) {
   Rng rng(22);
   for (int round = 0; round < 50; ++round) {
-    const auto vertices = testing::random_star(rng, {5, -3}, 3 + rng() % 12);
+    const auto vertices = test::random_star(rng, {5, -3}, 3 + rng() % 12);
     const auto polygon = Polygon::make(vertices);
     ASSERT_TRUE(polygon.has_value()) << polygon.error().message;
     for (int i = 0; i < 200; ++i) {
       const Vec2 p(uniform(rng, -6, 16), uniform(rng, -14, 8));
 
-      EXPECT_EQ(polygon->contains(p), testing::winds_around(vertices, p));
+      EXPECT_EQ(polygon->contains(p), test::winds_around(vertices, p));
     }
   }
 }

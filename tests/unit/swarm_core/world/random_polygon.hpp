@@ -10,7 +10,7 @@
 #include "swarmflow/core/polygon.hpp"
 #include "swarmflow/core/random.hpp"
 
-namespace swarm::testing {
+namespace swarm::test {
 
 /// A random polygon whose corners are all visible from `center_m`, so it is simple; almost never
 /// convex. Radii 1–10 m.
@@ -64,4 +64,4 @@ inline bool winds_around(const std::vector<Vec2>& vertices, const Vec2& p) {
   return std::abs(angle) > std::numbers::pi;
 }
 
-}  // namespace swarm::testing
+}  // namespace swarm::test

@@ -16,8 +16,8 @@ namespace {
 /// Two stars, one on top of a row of boxes.
 ShapeField shape() {
   Rng rng(3);
-  return *ShapeField::make({*Polygon::make(testing::random_star(rng, {0, 0}, 12)),
-                            *Polygon::make(testing::random_star(rng, {25, 5}, 9))},
+  return *ShapeField::make({*Polygon::make(test::random_star(rng, {0, 0}, 12)),
+                            *Polygon::make(test::random_star(rng, {25, 5}, 9))},
                            {{{20, 0}, {22, 1}}, {{22, 0}, {30, 0.5}}, {{-30, -9}, {-28, -2}}});
 }
 

@@ -45,7 +45,7 @@ bool holds(const Obstacle& obstacle, const Vec2& p) {
   if (const auto* circle = std::get_if<Circle>(&obstacle)) {
     return (p - circle->center_m).norm() < circle->radius_m;
   }
-  return testing::winds_around(std::get<Polygon>(obstacle).vertices_m(), p);
+  return test::winds_around(std::get<Polygon>(obstacle).vertices_m(), p);
 }
 
 double brute_distance(const Obstacle& obstacle, const std::vector<Vec2>& boundary, const Vec2& p) {
@@ -55,8 +55,8 @@ double brute_distance(const Obstacle& obstacle, const std::vector<Vec2>& boundar
 }
 
 std::vector<Obstacle> random_obstacles(Rng& rng) {
-  return {polygon_of(testing::random_star(rng, {-15, 0}, 4 + rng() % 10)),
-          polygon_of(testing::random_convex(rng, {15, 0}, 3 + rng() % 8)),
+  return {polygon_of(test::random_star(rng, {-15, 0}, 4 + rng() % 10)),
+          polygon_of(test::random_convex(rng, {15, 0}, 3 + rng() % 8)),
           Circle{{0, 15}, uniform(rng, 1.0, 4.0)}};
 }
 

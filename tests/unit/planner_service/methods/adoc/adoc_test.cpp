@@ -14,7 +14,7 @@ namespace swarm::planner {
 namespace {
 
 TEST(ObstacleGrid, IsTheShareOfSamplesInObstacles) {
-  const Mission mission = testing::rover_scene(2);
+  const Mission mission = test::rover_scene(2);
   const ObstacleGrid grid = ObstacleGrid::make(mission.world, 1.0).value();
   Rng rng(1);
   constexpr int kSamples = 100'000;
@@ -58,7 +58,7 @@ TEST(Adoc, TakesTheStraightPathWhenNothingIsInIt) {
 }
 
 TEST(Adoc, APenaltyBuysLessOverlapWithALongerPath) {
-  const Mission mission = testing::rover_scene(2);
+  const Mission mission = test::rover_scene(2);
   const ObstacleGrid grid = ObstacleGrid::make(mission.world, 1.0).value();
   double last_overlap = 1e9, last_length_m = 0.0;
   for (const double penalty : {0.0, 5.0, 100.0}) {
@@ -79,7 +79,7 @@ TEST(Adoc, APenaltyBuysLessOverlapWithALongerPath) {
 }
 
 TEST(Adoc, ItsRoutesAreAPlan) {
-  const Mission mission = testing::rover_scene(3);
+  const Mission mission = test::rover_scene(3);
   const auto routes = adoc_routes(mission.world, mission.start, mission.goal, {}).value();
 
   const auto plan = build_plan(routes, 4, 3, {1.25});

@@ -26,7 +26,7 @@ Gaussian disc(double x, double y, double sigma) {
 }
 
 struct Scene2 {
-  Mission mission = testing::rover_scene(2);
+  Mission mission = test::rover_scene(2);
   RiskGraph graph = RiskGraph::make(mission.world, mission.goal, {}).value();
 };
 

@@ -92,7 +92,7 @@ TEST(EstimateWeights, SurvivesARobotFarFromAll) {
 }
 
 TEST(MeasuredMixture, HasTheRobotsMeanAndNothingBehindWalls) {
-  const Mission mission = testing::rover_scene(2);
+  const Mission mission = test::rover_scene(2);
   const RiskGraph graph = RiskGraph::make(mission.world, mission.goal, {}).value();
   Rng rng(3);
   std::vector<Vec2> robots;

@@ -30,7 +30,7 @@ TEST(CollocationSet, RefusesGridsOfNothingAndOfTooMany) {
 }
 
 TEST(RiskGraph, ArcsStayWithinTheRadiusAndClearOfObstacles) {
-  const Mission mission = testing::rover_scene(2);
+  const Mission mission = test::rover_scene(2);
   const RiskGraph graph = RiskGraph::make(mission.world, mission.goal, {}).value();
   const double radius_m = graph.options().transport_radius_m;
 
@@ -49,7 +49,7 @@ TEST(RiskGraph, ArcsStayWithinTheRadiusAndClearOfObstacles) {
 }
 
 TEST(RiskGraph, CostsToTheGoalAreThoseOfBellmanAndFord) {
-  const Mission mission = testing::rover_scene(3);
+  const Mission mission = test::rover_scene(3);
   const RiskGraph graph = RiskGraph::make(mission.world, mission.goal, {}).value();
   for (std::size_t n = 0; n < graph.goals(); ++n) {
     std::vector<double> cost_m(graph.vertices().size(), std::numeric_limits<double>::infinity());
@@ -75,7 +75,7 @@ TEST(RiskGraph, CostsToTheGoalAreThoseOfBellmanAndFord) {
 }
 
 TEST(RiskGraph, ForgetsSourcesWithoutATrace) {
-  const Mission mission = testing::rover_scene(1);
+  const Mission mission = test::rover_scene(1);
   RiskGraph graph = RiskGraph::make(mission.world, mission.goal, {}).value();
   const auto sizes = [&] {
     std::vector<std::size_t> all{graph.vertices().size(), graph.arcs().size()};
@@ -101,7 +101,7 @@ TEST(RiskGraph, ForgetsSourcesWithoutATrace) {
 }
 
 TEST(RiskGraph, RefusesAGoalInAnObstacleAndBadOptions) {
-  const Mission mission = testing::rover_scene(1);
+  const Mission mission = test::rover_scene(1);
   const Mixture inside =
       Mixture::make({{1.0, Gaussian::from_parameters({100, 50}, 5.0, 5.0, 0.0)}}).value();
 

@@ -6,7 +6,7 @@
 
 #include "swarmflow/mission/mission_file.hpp"
 
-namespace swarm::testing {
+namespace swarm::test {
 
 /// ROVER's scenario 1, 2 or 3, as its mission file has it.
 inline Mission rover_scene(int scenario) {
@@ -15,4 +15,4 @@ inline Mission rover_scene(int scenario) {
       .value();
 }
 
-}  // namespace swarm::testing
+}  // namespace swarm::test

@@ -22,11 +22,11 @@ namespace {
 
 using std::chrono::milliseconds;
 
-using testing::has;
+using test::has;
 
 /// A keeper, and robots that follow its plans exactly.
 struct Bench {
-  Mission mission = testing::rover_scene(2);
+  Mission mission = test::rover_scene(2);
   std::optional<PlanKeeper> keeper;
   SteadyTime now{std::chrono::seconds(100)};
   UtcTime utc{std::chrono::seconds(100)};
@@ -41,7 +41,7 @@ struct Bench {
     start_planner();
   }
   void start_planner() {
-    keeper.emplace(mission, testing::planner_of(mission), 1, &testing::no_time);
+    keeper.emplace(mission, test::planner_of(mission), 1, &test::no_time);
     EXPECT_TRUE(keeper->plan_first().has_value());
     keeper->begin(now);
     keeper->take_scene(first_scene(mission.world.obstacles().size()));

@@ -35,7 +35,7 @@ double mean_path_m(const FlowPlan& plan) {
 class RoverMissions : public ::testing::TestWithParam<int> {};
 
 TEST_P(RoverMissions, KeepTheirRiskAtEveryStepAndHalfway) {
-  const Mission mission = testing::rover_scene(GetParam());
+  const Mission mission = test::rover_scene(GetParam());
   const RoverOptions options;
   const RiskLimit& risk = options.graph.risk;
 
@@ -63,7 +63,7 @@ TEST_P(RoverMissions, KeepTheirRiskAtEveryStepAndHalfway) {
 }
 
 TEST_P(RoverMissions, JoinTheStartWithTheGoalInOrder) {
-  const Mission mission = testing::rover_scene(GetParam());
+  const Mission mission = test::rover_scene(GetParam());
   const RoverOptions options;
 
   const FlowPlan plan = planned(mission, options).plan;
@@ -89,7 +89,7 @@ TEST_P(RoverMissions, JoinTheStartWithTheGoalInOrder) {
 }
 
 TEST_P(RoverMissions, EveryProgramIsSolvedToItsOptimum) {
-  const Mission mission = testing::rover_scene(GetParam());
+  const Mission mission = test::rover_scene(GetParam());
   RoverOptions options;
   options.mpc.keep_program = true;
 
@@ -109,14 +109,14 @@ INSTANTIATE_TEST_SUITE_P(Scenarios, RoverMissions, ::testing::Values(1, 2, 3));
 
 TEST(Rover, CostNeverRisesFromStepToStep) {
   // The plan of a step, then waiting, is a plan for the next: as good at least.
-  const RoverMission mission = planned(testing::rover_scene(2), {});
+  const RoverMission mission = planned(test::rover_scene(2), {});
   for (std::size_t k = 1; k < mission.steps.size(); ++k) {
     EXPECT_LT(mission.steps[k].horizon.cost_m2, mission.steps[k - 1].horizon.cost_m2) << k;
   }
 }
 
 TEST(Rover, MoreRiskIsAShorterPath) {
-  const Mission mission = testing::rover_scene(2);
+  const Mission mission = test::rover_scene(2);
   double last_m = 1e9;
   for (const double alpha : {0.05, 0.15, 0.3}) {
     RoverOptions options;
@@ -128,12 +128,12 @@ TEST(Rover, MoreRiskIsAShorterPath) {
 }
 
 TEST(Rover, RepeatsItself) {
-  const Mission mission = testing::rover_scene(3);
+  const Mission mission = test::rover_scene(3);
   EXPECT_EQ(planned(mission, {}).plan.digest(), planned(mission, {}).plan.digest());
 }
 
 TEST(Rover, KeepsTheDensityCap) {
-  const Mission mission = testing::rover_scene(2);
+  const Mission mission = test::rover_scene(2);
   RoverOptions options;
   options.mpc.robots = 100.0;
   const auto densest = [&](const FlowPlan& plan) {
@@ -156,7 +156,7 @@ TEST(Rover, KeepsTheDensityCap) {
 }
 
 TEST(Rover, ContinuesFromTheRobotPositions) {
-  const Mission mission = testing::rover_scene(1);
+  const Mission mission = test::rover_scene(1);
   RoverOptions options;
   options.mpc.soften = true;  // what is measured may break the limit
   Rover rover = Rover::make(mission.world, mission.goal, options).value();
@@ -246,7 +246,7 @@ TEST(Rover, AStepThatCannotKeepTheLimitReportsByHowMuch) {
 
 TEST(Rover, WithoutObstaclesThereIsNoRisk) {
   const World world = World::make({{0, 0}, {200, 160}}, {}).value();
-  const Mission scene = testing::rover_scene(1);
+  const Mission scene = test::rover_scene(1);
   Rover rover = Rover::make(world, scene.goal, {}).value();
 
   const auto mission = rover.plan(scene.start);
@@ -259,7 +259,7 @@ TEST(Rover, WithoutObstaclesThereIsNoRisk) {
 }
 
 TEST(Rover, RefusesBadOptions) {
-  const Mission mission = testing::rover_scene(1);
+  const Mission mission = test::rover_scene(1);
   RoverOptions options;
   options.mpc.costs.horizon = 0;
   EXPECT_EQ(Rover::make(mission.world, mission.goal, options).error().code, ErrorCode::kBadInput);

@@ -17,12 +17,12 @@
 namespace swarm::planner {
 namespace {
 
-using testing::standin_scene;
-using testing::StandinScene;
+using test::standin_scene;
+using test::StandinScene;
 
 Result<PlanResult> plan_scene(const StandinScene& scene, const SwarmPrmOptions& options = {}) {
   Rng rng(1);
-  return testing::plan_once({scene.world, scene.start, scene.goal}, options, rng);
+  return test::plan_once({scene.world, scene.start, scene.goal}, options, rng);
 }
 
 Gaussian round(double x, double y, double sigma_m) {
@@ -235,7 +235,7 @@ TEST(HardInputs, TenThousandObstacles) {
   const auto planned = plan_scene(scene, options);
 
   expect_safe(planned, scene.world, options);
-  EXPECT_LT(planned->stats.planned_mean_path_m, 1.2 * testing::kStandinMeanBound_m);
+  EXPECT_LT(planned->stats.planned_mean_path_m, 1.2 * test::kStandinMeanBound_m);
 }
 
 TEST(HardInputs, TenThousandObstaclesEverywhere) {

@@ -15,13 +15,13 @@
 namespace swarm::planner {
 namespace {
 
-using testing::standin_scene;
-using testing::StandinScene;
+using test::standin_scene;
+using test::StandinScene;
 
 Result<PlanResult> plan_scene(const StandinScene& scene, const SwarmPrmOptions& options,
                               std::uint64_t seed) {
   Rng rng(seed);
-  return testing::plan_once({scene.world, scene.start, scene.goal}, options, rng);
+  return test::plan_once({scene.world, scene.start, scene.goal}, options, rng);
 }
 
 bool mentions(const std::string& text, const std::string& part) {
@@ -38,7 +38,7 @@ TEST(Planner, FindsShortSafePlansOnThirtySeeds) {
       const auto planned = plan_scene(scene, options, seed);
 
       ASSERT_TRUE(planned.has_value()) << "seed " << seed << ": " << planned.error().message;
-      const double ratio = planned->stats.planned_mean_path_m / testing::kStandinMeanBound_m;
+      const double ratio = planned->stats.planned_mean_path_m / test::kStandinMeanBound_m;
       EXPECT_GT(ratio, 1.0);  // nothing beats the bound
       ratio_sum += ratio;
       EXPECT_LE(planned_max_cvar_m(planned->plan, scene.world, options.risk.alpha),
@@ -115,7 +115,7 @@ TEST(Planner, TakesTheTimeOfItsStagesFromTheClock) {
   int calls = 0;
   Rng rng(1);
 
-  const auto planned = testing::plan_once({scene.world, scene.start, scene.goal}, {}, rng, [&] {
+  const auto planned = test::plan_once({scene.world, scene.start, scene.goal}, {}, rng, [&] {
     return SteadyTime(std::chrono::milliseconds(10 * calls++));
   });
 
@@ -271,7 +271,7 @@ TEST(Planner, OptionsComeFromTheMission) {
   spec.options.set("shortcuts", 16);
   spec.speed_mps = 0.7;
 
-  const SwarmPrmOptions options = testing::swarmprm_options_of(mission);
+  const SwarmPrmOptions options = test::swarmprm_options_of(mission);
 
   EXPECT_EQ(options.samples, 7U);
   EXPECT_EQ(options.connection_radius_m, 8.0);
