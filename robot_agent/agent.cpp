@@ -98,6 +98,16 @@ RobotMode Agent::decide_mode(const AgentInput& input) const {
   return RobotMode::kMoving;
 }
 
+/// What the control method proposes, bounded by the safety filter. An arrived robot drives, too: it
+/// keeps its slot and makes room. Any other holds its position and lets itself be pushed.
+Vec2 Agent::filtered_velocity(const ControlView& view, const AgentOutput& out, Rng& rng) {
+  const bool drives = out.mode == RobotMode::kMoving || out.mode == RobotMode::kArrived;
+  const Vec2 desired = drives ? method_.desired_velocity(view, arrived_, rng) : method_.hold(view);
+  const bool gives_way =
+      out.mode == RobotMode::kMoving && out.remaining_m > options_->scale * kFinalApproach_m;
+  return filter_.filter(view.position_m, desired, view.close, gives_way);
+}
+
 /// Estimates the neighbours, has the control method propose a velocity, bounds it by the safety
 /// filter, and decides whether to publish the new state.
 AgentOutput Agent::tick(const AgentInput& input, Rng& rng) {
@@ -118,14 +128,8 @@ AgentOutput Agent::tick(const AgentInput& input, Rng& rng) {
   out.remaining_m = has_route_ ? method_.remaining_m() : 0.0;
 
   if (out.mode != RobotMode::kStopped && input.may_move) {
-    // An arrived robot drives, too: it keeps its slot and makes room. Any other holds its position
-    // and lets itself be pushed.
-    const bool drives = out.mode == RobotMode::kMoving || out.mode == RobotMode::kArrived;
-    const Vec2 desired =
-        drives ? method_.desired_velocity(view, arrived_, rng) : method_.hold(view);
-    const bool gives_way =
-        out.mode == RobotMode::kMoving && out.remaining_m > options_->scale * kFinalApproach_m;
-    out.velocity_mps = filter_.filter(input.position_m, desired, view.close, gives_way);
+    out.velocity_mps = neighbourhood.is_within_silent ? filter_.stand(input.position_m, view.close)
+                                                      : filtered_velocity(view, out, rng);
   }
   if (has_route_) out.tracking = method_.tracking();
   // With measurement noise a robot never stops entirely. It counts as settled if its commanded

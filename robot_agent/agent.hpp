@@ -116,6 +116,7 @@ class Agent {
  private:
   void keep_slot(Route& route, const Vec2& position_m) const;
   RobotMode decide_mode(const AgentInput& input) const;
+  Vec2 filtered_velocity(const ControlView& view, const AgentOutput& out, Rng& rng);
 
   const World* world_;
   Shared<AgentOptions> options_;

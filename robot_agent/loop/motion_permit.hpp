@@ -18,6 +18,7 @@ enum class StandReason : std::uint8_t {
   kCellsMissing,  ///< the states of a cell that they need cannot be received
   kWaking,        ///< the process slept longer than a command lasts: it receives before it moves
   kCutOff,        ///< planner and launcher are not received, or not for long enough yet
+  kIsObstacle,    ///< not received by the launcher, which has made the body an obstacle
 };
 
 /// As an event has it.
@@ -31,13 +32,16 @@ constexpr std::string_view to_string(StandReason reason) {
       return "slept longer than a command lasts: stands until it has received its neighbours";
     case StandReason::kCutOff:
       return "receives neither planner nor launcher: stands";
+    case StandReason::kIsObstacle:
+      return "is an obstacle of the scene: stands until the launcher receives it";
   }
   return "";
 }
 
 /// Decides whether the robots of a process may move: only where they would receive who is there.
 /// A robot that is cut off stands at the latest `cut_off_after` + 2 Δt + its lag after the last
-/// message of planner or launcher, so that others can bound where it may be (see NeighbourTable).
+/// message of planner or launcher, so that others can bound where it may be (see SilentRobots). One
+/// that receives, but is not received, learns so from the scene, and stands where others have it.
 /// Pure; the time is passed in.
 class MotionPermit {
  public:
@@ -58,6 +62,7 @@ class MotionPermit {
     std::optional<SteadyTime> planner{};   ///< of the last heartbeat
     std::optional<SteadyTime> launcher{};  ///< of the last beat
     bool all_cells = true;
+    bool is_obstacle = false;  ///< a body of the process, in the scene
   };
 
   /// Call it at each tick. The first reason that applies, in the order of the enumeration.
@@ -80,6 +85,7 @@ class MotionPermit {
     const bool is_stale = newest <= woke_at_.value_or(kNever);
     if (is_cut_off_ || is_stale || is_within(options_.rejoin_interval, back_at_, now))
       return StandReason::kCutOff;
+    if (reception.is_obstacle) return StandReason::kIsObstacle;
     has_moved_ = true;
     return StandReason::kNone;
   }

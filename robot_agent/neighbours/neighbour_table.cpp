@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "robot_agent/neighbours/silent_neighbours.hpp"
+
 namespace swarm::agent {
 namespace {
 
@@ -24,15 +26,6 @@ std::int32_t to_us(Duration d) {
   constexpr std::int64_t kMost = kLongest_us;
   return static_cast<std::int32_t>(
       std::clamp<std::int64_t>(d / std::chrono::microseconds(1), -kMost, kMost));
-}
-
-/// The point of a segment that is nearest to a position.
-Vec2 nearest_of(const SilentRobot& segment, const Vec2& position_m) {
-  const Vec2 along_m = segment.to_m - segment.from_m;
-  const double length = along_m.squaredNorm();
-  if (length <= 0.0) return segment.from_m;
-  const double share = (position_m - segment.from_m).dot(along_m) / length;
-  return segment.from_m + std::clamp(share, 0.0, 1.0) * along_m;
 }
 
 constexpr double in_s(std::int64_t us) { return 1e-6 * static_cast<double>(us); }
@@ -55,11 +48,6 @@ struct NeighbourTable::FilterPass {
   std::size_t close_found = 0;
   std::size_t far_found = 0;
   std::vector<Neighbour> neighbours;
-};
-
-/// Silent robots within reach; a buffer that the robots of a thread share, like FilterPass.
-struct NeighbourTable::Silent {
-  std::vector<Neighbour> close, far;
 };
 
 NeighbourTable::NeighbourTable(Shared<NeighbourOptions> options)
@@ -307,30 +295,10 @@ void NeighbourTable::estimate(std::size_t known, const Vec2& own_position_m, con
   // A body stops two periods after its last command, and its process may have died right after this
   // state.
   n.possible_stop_age_s = in_s(std::max(0, filtered.age_us[lane] - 2 * period_us_));
+  n.is_silent = false;
 }
 
-/// A silent robot counts as at the nearest point of its segment, with the radius of its set, and
-/// its information does not age. While the set grows, its surface approaches.
-void NeighbourTable::find_silent(const SilentRobots& robots, const Vec2& own_position_m,
-                                 Silent& found) const {
-  for (const SilentRobot& silent : robots.all()) {
-    const Vec2 nearest_m = nearest_of(silent, own_position_m);
-    const Vec2 offset_m = own_position_m - nearest_m;
-    const double distance_m = offset_m.norm();
-    const double grown_m = silent.radius_m - options_->fleet.of(silent.robot).radius_m;
-    if (distance_m - grown_m > options_->reach_m) continue;
-    // On the segment any direction will do.
-    const Vec2 towards = distance_m > 1e-9 ? Vec2(offset_m / distance_m) : Vec2(-1.0, 0.0);
-    (distance_m - grown_m <= options_->close_m ? found.close : found.far)
-        .push_back({.robot = silent.robot,
-                    .position_m = nearest_m,
-                    .velocity_mps = silent.growth_mps * towards,
-                    .radius_m = silent.radius_m,
-                    .information_age_s = period_s_});
-  }
-}
-
-/// Whether the set of a silent robot stands for what the filter pass has extrapolated.
+/// Whether the disc of a silent robot replaces what the filter pass has extrapolated.
 bool NeighbourTable::is_silent(std::size_t known, const FilterPass& pass,
                                const SilentRobots* silent) const {
   if (silent == nullptr) return false;
@@ -373,10 +341,8 @@ Neighbourhood NeighbourTable::at(SteadyTime now, const Vec2& own_position_m,
   keep_frame(now, own_position_m);
   static thread_local FilterPass pass;
   filter(since_then_us(now), own_position_m, pass);
-  static thread_local Silent of_silent;
-  of_silent.close.clear();
-  of_silent.far.clear();
-  if (silent != nullptr) find_silent(*silent, own_position_m, of_silent);
+  static thread_local SilentNeighbours of_silent;
+  find_silent_neighbours(silent, *options_, own_position_m, of_silent);
   const std::size_t room =
       pass.close_found + pass.far_found + of_silent.close.size() + of_silent.far.size();
   if (pass.neighbours.size() < room) pass.neighbours.resize(2 * room);
@@ -395,7 +361,7 @@ Neighbourhood NeighbourTable::at(SteadyTime now, const Vec2& own_position_m,
   // Last: sweeping renumbers the robots that the filter pass has listed.
   if (gone_ >= kSweepAt) sweep();
   const std::span<const Neighbour> all(pass.neighbours.data(), next);
-  return {.all = all, .close = {all.data(), end_of_close}};
+  return {.all = all, .close = {all.data(), end_of_close}, .is_within_silent = of_silent.is_within};
 }
 
 }  // namespace swarm::agent

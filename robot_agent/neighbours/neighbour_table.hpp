@@ -32,6 +32,7 @@ struct NeighbourReport {
 struct Neighbourhood {
   std::span<const Neighbour> all;
   std::span<const Neighbour> close;  ///< the first of `all`: may touch us or bound our speed
+  bool is_within_silent = false;     ///< of a silent robot's disc: stand (see SilentRobots)
 };
 
 /// How well messages of other robots reach this one; its own are assumed to reach them as well.
@@ -122,8 +123,6 @@ class NeighbourTable {
   void filter(std::int32_t now_us, const Vec2& own_position_m, FilterPass& pass);
   void estimate(std::size_t known, const Vec2& own_position_m, const FilterPass& pass,
                 Neighbour& n) const;
-  struct Silent;
-  void find_silent(const SilentRobots& robots, const Vec2& own_position_m, Silent& found) const;
   bool is_silent(std::size_t known, const FilterPass& pass, const SilentRobots* silent) const;
   void sweep();
 

@@ -61,29 +61,24 @@ void SilentRobots::update(SteadyTime now, const Whereabouts& whereabouts) {
 
 SilentRobot SilentRobots::possible_positions(const State& state, Duration age) const {
   const Fleet::Body& body = options_.fleet.of(state.robot);
-  const Duration silence = options_.expected_silence;
-  const Duration standing = silence + options_.dead_man;
-  const bool is_recent = age < std::min(2 * silence, standing);
-  const Duration moved = is_recent ? 2 * (age - silence) : std::min(age, standing);
-  const double speed_mps = age < standing ? (is_recent ? 2.0 : 1.0) * body.speed_max_mps : 0.0;
-  const double course_s = is_recent ? to_seconds(silence) : 0.0;
+  const Duration stands_after = options_.expected_silence + options_.dead_man;
   return {.robot = state.robot,
-          .from_m = state.position_m,
-          .to_m = state.position_m + course_s * state.velocity_mps,
-          .radius_m = body.radius_m + body.speed_max_mps * to_seconds(moved),
-          .growth_mps = speed_mps};
+          .centre_m = state.position_m,
+          .radius_m = body.radius_m + body.speed_max_mps * to_seconds(std::min(age, stands_after)),
+          .growth_mps = age < stands_after ? body.speed_max_mps : 0.0};
 }
 
 SilenceOptions silence_options(const Mission& mission, RobotId first, std::uint32_t count) {
   const Duration period = from_seconds(1.0 / mission.control.rate_hz);
+  const Duration silence = from_seconds(mission.link.send_interval_max_s) + 2 * period;
   return {
       .fleet = Fleet(mission.robots),
       .robots = mission.robots.count,
       .first_own = first.value(),
       .own = count,
-      .expected_silence = from_seconds(mission.link.send_interval_max_s) + 2 * period,
+      .expected_silence = silence,
       .dead_man = from_seconds(mission.timing.planner_silence_s + largest_lag_s(mission.robots)) +
-                  2 * period};
+                  silence + 2 * period};
 }
 
 }  // namespace swarm::agent

@@ -26,13 +26,12 @@ struct SilenceOptions {
   Duration dead_man{};          ///< D: a robot that is cut off stands at the latest after this time
 };
 
-/// A robot that may be anywhere near a segment: its body is within `radius_m` of a point of it.
+/// A robot whose body is somewhere in a disc.
 struct SilentRobot {
   RobotId robot;
-  Vec2 from_m = Vec2::Zero();
-  Vec2 to_m = Vec2::Zero();
+  Vec2 centre_m = Vec2::Zero();
   double radius_m = 0.0;
-  double growth_mps = 0.0;  ///< of the radius; 0: it stands
+  double growth_mps = 0.0;  ///< of the radius; 0: the robot stands by now
 };
 
 /// The robots that were received once, by this process, and are not any more. Silence is never free
@@ -40,20 +39,35 @@ struct SilentRobot {
 /// wherever, or the launcher receives it elsewhere; while its body is an obstacle of the scene, it
 /// is there (see Whereabouts).
 ///
-/// A robot whose last state has position p and velocity v is, at age α, within
+/// A robot whose last state has position p is, at age α, within
 ///
-///   ‖x − p‖ ≤ v_max min(α, σ + D),   D = planner silence + 2 Δt + λ
+///   ‖x − p‖ ≤ v_max min(α, σ + D),   D = planner silence + σ + 2 Δt + λ
 ///
-/// v_max is its largest speed; σ the expected silence, at the end of which it has been cut off at
-/// the latest. After that nothing is known of what it does, but for how long it can do it: a
-/// process that ends or freezes commands nothing, and its body stands 2 Δt and its lag λ later; one
-/// that is cut off from planner and launcher stands after the silence (MotionPermit). Up to σ it
-/// counts as extrapolated, since it would have published had it left its course; from σ to 2σ the
-/// set grows at 2 v_max from p … p + σv to the circle above. Two limits: within σ of the moment at
-/// which a robot is cut off others cannot know that it has turned; and one that is not received
-/// but receives the others goes on, and keeps off them by itself (SafetyFilter, 3). A robot that
-/// froze before it was received for the first time is known to the launcher alone, which makes its
-/// body an obstacle.
+/// v_max is its largest speed; σ the expected silence, up to which it counts as extrapolated, and
+/// at the end of which it has been cut off at the latest. After that nothing is known of what it
+/// does, but for how long it can do it: a process that ends or freezes commands nothing, and its
+/// body stands 2 Δt and its lag λ later; one that is cut off from planner and launcher stands after
+/// the planner's silence (MotionPermit), or it is connected again before and publishes within σ.
+///
+/// Each robot keeps out of this disc while it is outside, and stands while it is within
+/// (SafetyFilter::stand):
+///
+/// 1. Outside. The disc grows no faster than v_max, so that a robot as fast as that can retreat
+///    from it in the open. Whatever the silent robot does, the two do not touch.
+/// 2. Within. The silent robot may be on any side: no motion leads away from it for certain, and
+///    any can be the one that hits it. Standing is right towards each robot that keeps this
+///    protocol. Frozen: it stands as well. Not received, but receiving: it keeps off by itself, and
+///    off a robot at rest most easily. Cut off: it does not receive us either, and is outside of
+///    our disc and stays there, or is within and stands.
+///
+/// So two robots that do not receive each other touch only if they are within each other's disc;
+/// then both stand, and did not come to touch. What remains: within σ of the moment at which a
+/// robot is cut off, neither can know that the other has turned; robots that cannot retreat, for
+/// walls or others, may be overtaken by the disc, and then stand; a silent robot that follows no
+/// protocol can reach those within. One whose states alone are lost drives on, as the launcher
+/// receives it: it keeps off those that it receives, but two of them can meet beyond their discs. A
+/// robot that froze before it was received for the first time is known to the launcher alone, which
+/// makes its body an obstacle.
 ///
 /// Shared by the robots of a process. Pure; the time is passed in. No allocation once made.
 class SilentRobots {
@@ -65,7 +79,6 @@ class SilentRobots {
     RobotId robot;
     SteadyTime as_of;
     Vec2 position_m = Vec2::Zero();
-    Vec2 velocity_mps = Vec2::Zero();
   };
   void on_state(const State& state);
 

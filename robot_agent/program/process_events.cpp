@@ -25,6 +25,8 @@ constexpr const char* code_of(StandReason reason) {
       return "woke-late";
     case StandReason::kCutOff:
       return "cut-off";
+    case StandReason::kIsObstacle:
+      return "is-obstacle";
   }
   return "";
 }

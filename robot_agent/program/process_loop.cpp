@@ -94,8 +94,7 @@ void ProcessLoop::find_silent(SteadyTime now) {
   for (const ReceivedState& state : inbox_.states()) {
     silent_.on_state({.robot = state.report.robot,
                       .as_of = state.report.as_of,
-                      .position_m = state.report.position_m,
-                      .velocity_mps = state.report.velocity_mps});
+                      .position_m = state.report.position_m});
   }
   silent_.update(now, whereabouts_);
 }
@@ -105,9 +104,17 @@ bool ProcessLoop::may_move(SteadyTime now, UtcTime utc_now) {
   const StandReason reason = permit_.update({.now = now,
                                              .planner = inbox_.mission().planner_received_at(),
                                              .launcher = whereabouts_.last_beat(),
-                                             .all_cells = bus_.states->receives_all()});
+                                             .all_cells = bus_.states->receives_all(),
+                                             .is_obstacle = is_obstacle()});
   events_.on_permit(now, utc_now, reason);
   return reason == StandReason::kNone;
+}
+
+/// Whether the launcher has made a robot of the process an obstacle, as it does not receive it.
+bool ProcessLoop::is_obstacle() const {
+  return std::ranges::any_of(local_.robots, [this](const LocalRobot& robot) {
+    return whereabouts_.is_obstacle(robot.loop.id());
+  });
 }
 
 /// Whether planner and launcher are there as the mission demands; otherwise robots hold.

@@ -65,6 +65,7 @@ class ProcessLoop {
   void receive(const Time& time);
   void find_silent(SteadyTime now);
   bool may_move(SteadyTime now, UtcTime utc_now);
+  bool is_obstacle() const;
   bool leads(SteadyTime now) const;
   void confirm_stop();
   void follow_scene(UtcTime utc_now);

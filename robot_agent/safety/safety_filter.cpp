@@ -32,6 +32,7 @@ constexpr double kLeastDesired_mps = 0.1;  // slower desired velocities are not 
 struct SafetyFilter::Lines {
   std::vector<HalfPlane> buffer;
   std::size_t obstacles = 0;  // the first of them belong to obstacles and bounds
+  std::size_t bodies = 0;     // the first of them, but for those of the discs of silent robots
   std::size_t count = 0;
   std::vector<HalfPlane> relaxed;
 
@@ -40,6 +41,12 @@ struct SafetyFilter::Lines {
     if (buffer.size() < count + more) buffer.resize(2 * (count + more));
   }
 };
+
+SafetyFilter::Lines& SafetyFilter::empty_lines() {
+  static thread_local Lines lines;
+  lines.count = 0;
+  return lines;
+}
 
 SafetyFilter::SafetyFilter(const World& world, Shared<SafetyOptions> options)
     : world_(world), options_(std::move(options)), fresh_(pace(0.0)) {}
@@ -129,6 +136,27 @@ void SafetyFilter::collect_neighbours(const Vec2& position_m, std::span<const Ne
   lines.count = static_cast<std::size_t>(next - lines.buffer.data());
 }
 
+/// The second lines, for a robot that stands. Only that of a neighbour that approaches asks for a
+/// retreat: one that keeps off by itself does not come near enough for it. A neighbour that is only
+/// extrapolated does not count as approaching: it may have turned since.
+void SafetyFilter::collect_approaching(const Vec2& position_m,
+                                       std::span<const Neighbour> neighbours, Lines& lines) const {
+  const double horizon_s = 2.0 * to_seconds(options_->period) + options_->lag_s;
+  const double v_max = options_->speed_max_mps;
+  lines.make_room(neighbours.size());
+  for (const Neighbour& n : neighbours) {
+    const Vec2 offset = n.position_m - position_m;
+    const double distance = offset.norm();
+    const Vec2 towards = distance > 1e-9 ? Vec2(offset / distance) : Vec2(1.0, 0.0);
+    const double gap = distance - options_->radius_m - n.radius_m;
+    const double coming_mps =
+        n.possible_stop_age_s > 0.0 ? 0.0 : positive_part(-towards.dot(n.velocity_mps));
+    const double bound = (gap - kEvade * options_->neighbour_margin_m) / horizon_s - coming_mps;
+    const double least_mps = coming_mps > 0.0 ? -v_max : 0.0;
+    if (bound < v_max) lines.buffer[lines.count++] = {towards, std::max(bound, least_mps)};
+  }
+}
+
 /// The third line: keeps off the neighbour in case it stopped unnoticed, at the worst point for us,
 /// which is the nearest point of the segment it has been extrapolated along since it may have
 /// stopped. A stopped robot does not approach, so not closing in is enough: the bound is never
@@ -172,27 +200,32 @@ Listeners SafetyFilter::listeners(const Vec2& position_m, const Vec2& velocity_m
   return found;
 }
 
-/// Where the half-planes have no common point: relaxes those of neighbours that ask to withdraw by
-/// the same speed, the least that leaves a common point, found by bisection. No bound is relaxed
-/// above 0, so no gap closes for it; obstacles are not relaxed.
-Vec2 SafetyFilter::least_violation(const Vec2& desired_mps, Lines& lines) const {
+/// Where the half-planes have no common point: relaxes some by the same speed, the least that
+/// leaves a common point, found by bisection. Nothing if there is no such speed. Of neighbours,
+/// those that ask to withdraw, and none above 0, so that no gap closes for it; of discs all,
+/// without a limit.
+std::optional<Vec2> SafetyFilter::least_violation(const Vec2& desired_mps, Relaxed which,
+                                                  Lines& lines) const {
   const std::span<const HalfPlane> all = lines.all();
+  const bool of_discs = which == Relaxed::kDiscs;
+  const std::size_t first = of_discs ? lines.bodies : lines.obstacles;
   lines.relaxed.assign(all.begin(), all.end());
   const auto relax = [&](double by_mps) {
-    for (std::size_t i = lines.obstacles; i < all.size(); ++i) {
+    for (std::size_t i = first; i < all.size(); ++i) {
       const double bound = all[i].bound_mps;
-      if (bound < 0.0) lines.relaxed[i].bound_mps = std::min(0.0, bound + by_mps);
+      lines.relaxed[i].bound_mps = of_discs      ? bound + by_mps
+                                   : bound < 0.0 ? std::min(0.0, bound + by_mps)
+                                                 : bound;
     }
     return nearest_velocity(desired_mps, lines.relaxed, options_->speed_max_mps);
   };
+  // Relaxed by 2 v_max, no disc bounds the velocity. Relaxed by `high`, all half-planes of
+  // neighbours contain u = 0; only an approaching obstacle can still leave no solution.
   double low = 0.0;
-  double high = 0.0;
-  for (const HalfPlane& line : all.subspan(lines.obstacles)) high = std::max(high, -line.bound_mps);
-  // Relaxed by `high`, all these half-planes contain u = 0; only an approaching obstacle can still
-  // leave no solution.
+  double high = of_discs ? 2.0 * options_->speed_max_mps : 0.0;
+  for (const HalfPlane& line : all.subspan(first)) high = std::max(high, -line.bound_mps);
   std::optional<Vec2> best = relax(high);
-  if (!best) return Vec2::Zero();
-  for (int i = 0; i < kBisections; ++i) {
+  for (int i = 0; best && i < kBisections; ++i) {
     const double middle = 0.5 * (low + high);
     if (auto u = relax(middle)) {
       best = u;
@@ -201,24 +234,39 @@ Vec2 SafetyFilter::least_violation(const Vec2& desired_mps, Lines& lines) const 
       low = middle;
     }
   }
-  return *best;
+  return best;
 }
 
 /// The velocity nearest to the desired one, by relaxed half-planes if there is none by the exact
-/// ones.
+/// ones. Discs give way first: a silent robot may be in them, a neighbour is where it is.
 Vec2 SafetyFilter::nearest(const Vec2& desired_mps, Lines& lines) const {
   if (auto u = nearest_velocity(desired_mps, lines.all(), options_->speed_max_mps)) return *u;
-  return least_violation(desired_mps, lines);
+  if (lines.bodies < lines.count) {
+    if (auto u = least_violation(desired_mps, Relaxed::kDiscs, lines)) return *u;
+    lines.count = lines.bodies;
+  }
+  return least_violation(desired_mps, Relaxed::kNeighbours, lines).value_or(Vec2::Zero());
+}
+
+Vec2 SafetyFilter::stand(const Vec2& position_m, std::span<const Neighbour> neighbours) const {
+  Lines& lines = empty_lines();
+  collect_obstacles(position_m, lines);
+  collect_approaching(position_m, neighbours, lines);
+  lines.bodies = lines.count;
+  return nearest(Vec2::Zero(), lines);
 }
 
 /// Solves for the desired velocity first. Where that leaves a robot blocked, it tries the desired
 /// velocity turned to the right by growing angles and takes the first that lets it move.
 Vec2 SafetyFilter::filter(const Vec2& position_m, const Vec2& desired_mps,
                           std::span<const Neighbour> neighbours, bool gives_way) const {
-  static thread_local Lines lines;
-  lines.count = 0;
+  Lines& lines = empty_lines();
+  std::size_t bodies = neighbours.size();
+  while (bodies > 0 && neighbours[bodies - 1].is_silent) --bodies;
   collect_obstacles(position_m, lines);
-  collect_neighbours(position_m, neighbours, lines);
+  collect_neighbours(position_m, neighbours.first(bodies), lines);
+  lines.bodies = lines.count;
+  collect_neighbours(position_m, neighbours.subspan(bodies), lines);
   const Vec2 u = nearest(desired_mps, lines);
   const double desired = desired_mps.norm();
   if (!gives_way || desired < options_->scale * kLeastDesired_mps) return u;

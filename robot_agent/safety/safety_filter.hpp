@@ -63,7 +63,8 @@ struct Listeners {
 ///    line demands a retreat as fast as the other approaches. This is possible while there is free
 ///    space to retreat to. A robot that stopped unnoticed is not touched: the third line keeps
 ///    clear of every place where it may have stopped.
-/// 4. No robot that may move freezes. If no velocity meets all lines, those that demand a widening
+/// 4. No robot that may move freezes. If no velocity meets all lines, those of the discs of silent
+///    robots are relaxed, and if that does not suffice left out; then those that demand a widening
 ///    gap are relaxed equally, as little as possible, at most to "do not close". u = 0 then always
 ///    qualifies. A robot whose desired velocity is blocked by robots that face it turns it to its
 ///    right, as all robots do, so that opposing streams part into lanes.
@@ -78,10 +79,17 @@ class SafetyFilter {
  public:
   SafetyFilter(const World& world, Shared<SafetyOptions> options);
 
+  /// Discs of silent robots are the last of `neighbours`.
   /// No allocation once warm. Cost: O(obstacles in reach + neighbours). `gives_way` allows the turn
   /// to the right: not where robots come to rest.
   Vec2 filter(const Vec2& position_m, const Vec2& desired_mps,
               std::span<const Neighbour> neighbours, bool gives_way = false) const;
+
+  /// For a robot that must not move of its own (SilentRobots): the velocity nearest to zero that
+  /// obstacles leave, and neighbours that approach by a state no older than a command lasts.
+  /// Towards robots that receive it and obey it is zero: they close at most at γ (gap − m) / (2T),
+  /// for which the second line leaves room. O(obstacles in reach + neighbours).
+  Vec2 stand(const Vec2& position_m, std::span<const Neighbour> neighbours) const;
 
   /// What a robot at `position_m` with `velocity_mps` means to `neighbours`. O(neighbours).
   Listeners listeners(const Vec2& position_m, const Vec2& velocity_mps,
@@ -95,13 +103,17 @@ class SafetyFilter {
   };
   Pace pace(double information_age_s) const;
   struct Lines;
+  static Lines& empty_lines();  // of the calling thread
   void collect_obstacles(const Vec2& position_m, Lines& lines) const;
   void collect_neighbours(const Vec2& position_m, std::span<const Neighbour> neighbours,
                           Lines& lines) const;
+  void collect_approaching(const Vec2& position_m, std::span<const Neighbour> neighbours,
+                           Lines& lines) const;
   std::optional<HalfPlane> off_possible_stop(const Vec2& position_m, const Neighbour& n,
                                              double sum_m) const;
   Vec2 nearest(const Vec2& desired_mps, Lines& lines) const;
-  Vec2 least_violation(const Vec2& desired_mps, Lines& lines) const;
+  enum class Relaxed { kNeighbours, kDiscs };
+  std::optional<Vec2> least_violation(const Vec2& desired_mps, Relaxed which, Lines& lines) const;
 
   const World& world_;
   Shared<SafetyOptions> options_;

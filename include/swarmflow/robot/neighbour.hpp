@@ -22,6 +22,8 @@ struct Neighbour {
   /// Possible-stop age [s]: how long it may have been at rest by now if its process stalled right
   /// after its last state update and its last command ran out. 0 for a recent state update.
   double possible_stop_age_s = 0.0;
+  /// It is not received any more: `position_m` and `radius_m` are of a disc that its body is in.
+  bool is_silent = false;
 };
 
 }  // namespace swarm::agent

@@ -84,5 +84,16 @@ TEST_F(MotionPermitTest, StandsWhileACellCannotBeReceived) {
   EXPECT_EQ(tick(1200, 1200, 1200), StandReason::kNone);
 }
 
+TEST_F(MotionPermitTest, StandsWhereTheSceneHasItsBodyUntilThatIsCleared) {
+  healthy(0, 1000);
+  const auto tick_as_obstacle = [&](int ms, bool is_obstacle) {
+    return sut_.update(
+        {.now = at(ms), .planner = at(ms), .launcher = at(ms), .is_obstacle = is_obstacle});
+  };
+  EXPECT_EQ(tick_as_obstacle(1100, true), StandReason::kIsObstacle) << "receives all the same";
+  EXPECT_EQ(tick_as_obstacle(1200, true), StandReason::kIsObstacle);
+  EXPECT_EQ(tick_as_obstacle(1300, false), StandReason::kNone);
+}
+
 }  // namespace
 }  // namespace swarm::agent

@@ -31,33 +31,31 @@ WhereaboutsOptions clears() {
           .healthy_after = seconds(6)};
 }
 
-SilentRobots::State state(std::uint32_t robot, int ms, Vec2 position_m,
-                          Vec2 velocity_mps = Vec2::Zero()) {
-  return {RobotId(robot), at(ms), position_m, velocity_mps};
+SilentRobots::State state(std::uint32_t robot, int ms, Vec2 position_m) {
+  return {RobotId(robot), at(ms), position_m};
 }
 
 TEST(SilentRobots, StandForEverWithinWhatTheirDeadManAllows) {
   SilentRobots sut(options());
   const Whereabouts nothing(clears());
-  sut.on_state(state(3, 0, {2, 0}, {1, 0}));
+  sut.on_state(state(3, 0, {2, 0}));
 
   sut.update(at(700), nothing);
   EXPECT_TRUE(sut.all().empty()) << "a healthy robot may be silent for this long";
   sut.update(at(1000), nothing);
   ASSERT_EQ(sut.all().size(), 1U);
   EXPECT_EQ(sut.all()[0].robot, RobotId(3));
-  EXPECT_NEAR(sut.all()[0].from_m.x(), 2.0, 1e-9);
-  EXPECT_NEAR(sut.all()[0].to_m.x(), 2.7, 1e-9) << "it may have followed its course for 0.7 s";
-  EXPECT_NEAR(sut.all()[0].radius_m, 0.2 + 2 * 1.5 * 0.3, 1e-9);
-  EXPECT_EQ(sut.all()[0].growth_mps, 3.0);
+  EXPECT_EQ(sut.all()[0].centre_m, Vec2(2.0, 0.0));
+  EXPECT_NEAR(sut.all()[0].radius_m, 0.2 + 1.5 * 1.0, 1e-9) << "it may have turned at once";
+  EXPECT_EQ(sut.all()[0].growth_mps, 1.5);
   sut.update(at(2000), nothing);
-  EXPECT_NEAR(sut.all()[0].radius_m, 0.2 + 1.5 * 2.0, 1e-9) << "or turned at once";
+  EXPECT_NEAR(sut.all()[0].radius_m, 0.2 + 1.5 * 2.0, 1e-9);
   EXPECT_EQ(sut.all()[0].growth_mps, 1.5);
   for (const int ms : {2900, 10'000, 100'000'000}) {
     sut.update(at(ms), nothing);
     ASSERT_EQ(sut.all().size(), 1U);
     EXPECT_NEAR(sut.all()[0].radius_m, 0.2 + 1.5 * 2.9, 1e-9) << ms;
-    EXPECT_EQ(sut.all()[0].to_m, Vec2(2.0, 0.0));
+    EXPECT_EQ(sut.all()[0].centre_m, Vec2(2.0, 0.0));
     EXPECT_EQ(sut.all()[0].growth_mps, 0.0);
   }
 }
@@ -114,16 +112,19 @@ TEST(SilentRobots, AreNeverThoseOfTheProcessNorUnknownOnes) {
 }
 
 // What a neighbour table makes of them.
-TEST(SilentRobots, AreNeighboursWhereTheyMayBeWithinReach) {
-  const auto table_options = [] {
-    return NeighbourOptions{.fleet = Fleet(Fleet::Body{0.2, 1.5}),
-                            .communication_radius_m = 6.0,
-                            .reach_m = 4.0,
-                            .close_m = 2.0,
-                            .period = milliseconds(100),
-                            .expected_silence = milliseconds(700),
-                            .forget_after = milliseconds(2000)};
-  };
+/// What a neighbour table makes of them.
+NeighbourOptions table_options() {
+  return {.radius_m = 0.2,
+          .fleet = Fleet(Fleet::Body{0.2, 1.5}),
+          .communication_radius_m = 12.0,
+          .reach_m = 4.0,
+          .close_m = 2.0,
+          .period = milliseconds(100),
+          .expected_silence = milliseconds(700),
+          .forget_after = milliseconds(2000)};
+}
+
+TEST(SilentRobots, AreNeighboursWhereTheirDiscsAreWithinReach) {
   NeighbourTable table(table_options());
   SilentRobots silent(options());
   const Whereabouts nothing(clears());
@@ -131,40 +132,54 @@ TEST(SilentRobots, AreNeighboursWhereTheyMayBeWithinReach) {
     table.take({RobotId(robot), 1, at(0), position_m, Vec2::Zero()}, Vec2::Zero());
     silent.on_state(state(robot, 0, position_m));
   };
-  publish(1, {0, 3.5});
-  publish(2, {0, 5.9});
+  publish(1, {0, 5.0});
+  publish(2, {0, 7.0});
   publish(3, {0, 9.0});
 
   silent.update(at(600), nothing);
-  EXPECT_EQ(table.at(at(600), Vec2::Zero(), &silent).all.size(), 1U) << "one is in reach";
+  EXPECT_TRUE(table.at(at(600), Vec2::Zero(), &silent).all.empty()) << "none is in reach";
   silent.update(at(5000), nothing);
   const Neighbourhood near = table.at(at(5000), Vec2::Zero(), &silent);
 
-  ASSERT_EQ(near.all.size(), 2U) << "robot 3 is at least 4.6 m away";
-  ASSERT_EQ(near.close.size(), 2U);
+  ASSERT_EQ(near.all.size(), 2U) << "robot 3 is at least 4.65 m away";
+  ASSERT_EQ(near.close.size(), 1U);
+  EXPECT_FALSE(near.is_within_silent);
   EXPECT_EQ(near.close[0].robot, RobotId(1));
   EXPECT_NEAR(near.close[0].radius_m, 4.55, 1e-9);
   EXPECT_EQ(near.close[0].velocity_mps, Vec2(Vec2::Zero()));
-  EXPECT_EQ(near.close[1].robot, RobotId(2));
+  EXPECT_EQ(near.all[1].robot, RobotId(2));
   EXPECT_TRUE(table.at(at(5000), Vec2::Zero()).all.empty()) << "without them they are forgotten";
 }
 
 TEST(SilentRobots, ReplaceWhatTheTableExtrapolatesAndApproachWhileTheyGrow) {
-  NeighbourTable table(NeighbourOptions{.fleet = Fleet(Fleet::Body{0.2, 1.5}),
-                                        .communication_radius_m = 6.0,
-                                        .period = milliseconds(100),
-                                        .expected_silence = milliseconds(700),
-                                        .forget_after = milliseconds(2000)});
+  NeighbourTable table(table_options());
   SilentRobots silent(options());
   table.take({RobotId(1), 1, at(0), {0, 2}, {0, -1}}, Vec2::Zero());
-  silent.on_state(state(1, 0, {0, 2}, {0, -1}));
+  silent.on_state(state(1, 0, {0, 2}));
   silent.update(at(1000), Whereabouts(clears()));
 
   const auto near = table.at(at(1000), Vec2::Zero(), &silent).all;
 
   ASSERT_EQ(near.size(), 1U) << "once";
-  EXPECT_NEAR(near[0].position_m.y(), 1.3, 1e-9) << "the nearest point of its course";
-  EXPECT_NEAR(near[0].velocity_mps.y(), -3.0, 1e-9);
+  EXPECT_EQ(near[0].position_m, Vec2(0.0, 2.0)) << "the centre of its disc";
+  EXPECT_NEAR(near[0].velocity_mps.y(), -1.5, 1e-9);
+}
+
+// The disc of robot 1, 1 s old, has a radius of 1.7 m: a body of 0.2 m touches it up to 1.9 m.
+TEST(SilentRobots, AreOnNoSideOfARobotThatIsWithinTheirDisc) {
+  NeighbourTable table(table_options());
+  SilentRobots silent(options());
+  silent.on_state(state(1, 0, {0, 0}));
+  silent.update(at(1000), Whereabouts(clears()));
+
+  for (const double x_m : {0.0, 0.5, 1.84}) {
+    const Neighbourhood near = table.at(at(1000), {x_m, 0}, &silent);
+    EXPECT_TRUE(near.is_within_silent) << x_m;
+    EXPECT_TRUE(near.all.empty()) << x_m;
+  }
+  const Neighbourhood near = table.at(at(1000), {1.86, 0}, &silent);
+  EXPECT_FALSE(near.is_within_silent) << "on the surface: it can outrun it";
+  EXPECT_EQ(near.close.size(), 1U);
 }
 
 }  // namespace

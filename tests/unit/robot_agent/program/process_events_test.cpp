@@ -82,6 +82,8 @@ TEST_F(ProcessEventsTest, AnnounceWhyRobotsStandAndWhenTheyMoveAgain) {
   EXPECT_EQ(permit(StandReason::kNone), Texts{"moves-again"});
   EXPECT_EQ(permit(StandReason::kCellsMissing), Texts{"cells-missing"});
   EXPECT_EQ(permit(StandReason::kNone), Texts{"moves-again"});
+  EXPECT_EQ(permit(StandReason::kIsObstacle), Texts{"is-obstacle"});
+  EXPECT_EQ(permit(StandReason::kNone), Texts{"moves-again"});
   EXPECT_EQ(permit(StandReason::kWaking), Texts{"woke-late"});
   EXPECT_EQ(permit(StandReason::kNone), Texts{"moves-again"});
   EXPECT_EQ(permit(StandReason::kWaking), Texts{}) << "once in ten seconds";

@@ -257,5 +257,29 @@ TEST(SafetyFilter, ComputesTheUpdateTimeoutOfFollowers) {
   EXPECT_LT(follower.filter(Vec2::Zero(), {1.0, 0.0}, {&ahead, 1}).x(), 0.8);
 }
 
+TEST(SafetyFilter, StandingRetreatsOnlyFromOneThatApproachesAndDoesNotKeepOff) {
+  const World world = empty_world();
+  const SafetyFilter sut(world, options());
+  // A neighbour to the right, with this gap and this velocity towards us.
+  const auto stand = [&](double gap_m, double coming_mps, double possible_stop_age_s = 0.0) {
+    const Neighbour n{.robot = RobotId(1),
+                      .position_m = {2 * kRadius_m + gap_m, 0.0},
+                      .velocity_mps = {-coming_mps, 0.0},
+                      .radius_m = kRadius_m,
+                      .information_age_s = kPeriod_s,
+                      .possible_stop_age_s = possible_stop_age_s};
+    return sut.stand(Vec2::Zero(), {&n, 1});
+  };
+
+  EXPECT_EQ(stand(0.01, 0.0), Vec2(Vec2::Zero())) << "inside the margin, but it stands";
+  for (const double gap_m : {0.25, 0.4, 0.8}) {
+    const double obeying_mps = 0.5 / (2.0 * kPeriod_s) * (gap_m - 0.25);
+    EXPECT_EQ(stand(gap_m, obeying_mps), Vec2(Vec2::Zero())) << gap_m;
+  }
+  // The second line: (0.2 - 0.25 / 3) / 0.2 - 1.5.
+  EXPECT_NEAR(stand(0.2, 1.5).x(), 1.0 - 1.25 / 3.0 - 1.5, 1e-9);
+  EXPECT_EQ(stand(0.2, 1.5, 0.1), Vec2(Vec2::Zero())) << "it may have turned since";
+}
+
 }  // namespace
 }  // namespace swarm::agent

@@ -17,6 +17,12 @@ constexpr int kPeriod_ms = 100;
 constexpr int kCommandLasts_ms = 2 * kPeriod_ms;
 constexpr int kStatusEvery_ms = 1000;
 constexpr int kBeatEvery_ms = 500;
+/// Of the mission's defaults: 0.5 s and two periods.
+constexpr Duration kExpectedSilence = milliseconds(500 + 2 * kPeriod_ms);
+/// Cut off within the expected silence, it drives for 2 s without planner and launcher, and may be
+/// connected again just then; it publishes within the expected silence, or its last command ends.
+constexpr Duration kStandsAfter = 2 * kExpectedSilence + milliseconds(2000 + kCommandLasts_ms);
+
 Mission mission_of(std::size_t robots) {
   Mission mission;
   mission.robots.count = static_cast<std::uint32_t>(robots);
@@ -87,26 +93,33 @@ struct SilentSwarm::Robot {
 };
 
 SilentSwarm::SilentSwarm(const Box& bounds_m, const std::vector<RobotPart>& parts, SilenceRule rule)
-    : bounds_m_(bounds_m), rule_(rule), scene_(first_scene(0)) {
+    : bounds_m_(bounds_m),
+      rule_(rule),
+      scene_(first_scene(0)),
+      oracle_({.robots = parts.size(),
+               .radius_m = kRadius_m,
+               .speed_mps = kSpeed_mps,
+               .expected_silence = kExpectedSilence,
+               .stands_after = kStandsAfter}) {
   const Mission mission = mission_of(parts.size());
   for (std::uint32_t i = 0; i < parts.size(); ++i) {
     robots_.push_back(std::make_unique<Robot>(RobotId(i), parts[i], mission, bounds_m));
+    if (parts[i].rams) oracle_.set_adversarial(i);
   }
 }
 
 SilentSwarm::~SilentSwarm() = default;
 
-const Vec2& SilentSwarm::position_m(std::size_t robot) const { return robots_[robot]->position_m; }
-
 SteadyTime SilentSwarm::time() const { return SteadyTime(milliseconds(100'000 + now_ms_)); }
 
 SilentSwarm::Approach SilentSwarm::fly_until(int end_ms) {
   Approach nearest;
-  for (; now_ms_ < end_ms; now_ms_ += kStep_ms) {
+  for (; now_ms_ < end_ms && nearest.gap_m > 0.0; now_ms_ += kStep_ms) {
     launch();
     for (const auto& robot : robots_) {
-      const bool is_due = now_ms_ % kPeriod_ms == robot->part.phase_ms;
-      if (is_due && !robot->part.frozen.covers(now_ms_)) tick(*robot);
+      const bool is_frozen = robot->part.frozen.covers(now_ms_);
+      oracle_.set_unable(robot->id.value(), is_frozen && now_ms_ >= robot->valid_until_ms);
+      if (now_ms_ % kPeriod_ms == robot->part.phase_ms && !is_frozen) tick(*robot);
     }
     move(nearest);
   }
@@ -128,8 +141,10 @@ void SilentSwarm::receive(Robot& robot) {
   for (const link::LauncherBeat& beat : robot.beats) robot.whereabouts.on_beat(beat, now);
   for (const NeighbourReport& report : robot.socket) {
     robot.table.take(report, robot.position_m, now - report.as_of);
-    robot.silent.on_state({report.robot, report.as_of, report.position_m, report.velocity_mps});
+    robot.silent.on_state({report.robot, report.as_of, report.position_m});
+    oracle_.on_received(robot.id.value(), report.robot.value(), report.as_of, report.position_m);
   }
+  oracle_.on_tick(robot.id.value(), now, robot.position_m);
   robot.beats.clear();
   robot.socket.clear();
   robot.silent.update(now, robot.whereabouts);
@@ -148,14 +163,19 @@ Vec2 SilentSwarm::desired_mps(const Robot& robot) const {
 void SilentSwarm::tick(Robot& robot) {
   receive(robot);
   const SteadyTime now = time();
-  const StandReason reason = robot.permission.update(
-      {.now = now, .planner = robot.planner_at, .launcher = robot.whereabouts.last_beat()});
+  const StandReason reason =
+      robot.permission.update({.now = now,
+                               .planner = robot.planner_at,
+                               .launcher = robot.whereabouts.last_beat(),
+                               .is_obstacle = robot.whereabouts.is_obstacle(robot.id)});
   const bool keeps = rule_ == SilenceRule::kKeep;
   const Neighbourhood near = robot.table.at(now, robot.position_m, keeps ? &robot.silent : nullptr);
-  const Vec2 desired = desired_mps(robot);
   const bool gives_way = (robot.part.goal_m - robot.position_m).norm() > 2.0;
-  Vec2 velocity_mps = robot.filter.filter(robot.position_m, desired, near.close, gives_way);
-  if (robot.part.rams) velocity_mps = desired;
+  Vec2 velocity_mps =
+      near.is_within_silent
+          ? robot.filter.stand(robot.position_m, near.close)
+          : robot.filter.filter(robot.position_m, desired_mps(robot), near.close, gives_way);
+  if (robot.part.rams) velocity_mps = desired_mps(robot);
   if (reason != StandReason::kNone) velocity_mps = Vec2::Zero();
   robot.velocity_mps = velocity_mps;
   robot.valid_until_ms = now_ms_ + kCommandLasts_ms;
@@ -169,18 +189,33 @@ void SilentSwarm::tick(Robot& robot) {
     robot.sends.record_sent(state);
     publish(robot, velocity_mps);
   }
-  if (!robot.part.cut_off.covers(now_ms_) && now_ms_ % kStatusEvery_ms == robot.part.phase_ms) {
+  if (!is_lost(robot) && now_ms_ % kStatusEvery_ms == robot.part.phase_ms) {
     robot.status_ms = now_ms_;
   }
 }
 
 void SilentSwarm::publish(Robot& robot, const Vec2& velocity_mps) {
   ++robot.sequence;
-  if (robot.part.cut_off.covers(now_ms_) || robot.part.mute.covers(now_ms_)) return;
   for (const auto& other : robots_) {
-    if (other->id == robot.id || other->part.cut_off.covers(now_ms_)) continue;
-    other->socket.push_back({robot.id, robot.sequence, time(), robot.position_m, velocity_mps});
+    if (other->id == robot.id) continue;
+    if (is_lost(robot) || other->part.cut_off.covers(now_ms_)) {
+      oracle_.on_lost(other->id.value(), robot.id.value());
+    } else {
+      other->socket.push_back({robot.id, robot.sequence, time(), robot.position_m, velocity_mps});
+    }
   }
+}
+
+/// Whether nothing that it sends reaches others.
+bool SilentSwarm::is_lost(const Robot& sender) const {
+  return sender.part.cut_off.covers(now_ms_) || sender.part.mute.covers(now_ms_);
+}
+
+/// A circle that covers a body until its last command has run out, as the launcher makes of a log.
+Circle SilentSwarm::fallen(const Robot& robot) const {
+  const bool drives = now_ms_ < robot.valid_until_ms;
+  const Vec2 half_m = drives ? Vec2(0.0005 * kCommandLasts_ms * robot.velocity_mps) : Vec2::Zero();
+  return {robot.position_m + half_m, kRadius_m + half_m.norm()};
 }
 
 /// The launcher: beats, and the bodies of silent robots, which it places by their logs.
@@ -191,9 +226,8 @@ void SilentSwarm::launch() {
     const bool is_silent = milliseconds(now_ms_ - robot->status_ms) > kStatusSilence;
     if (is_silent) silent.push_back(robot->id);
     if (is_silent == has_body(scene_, robot->id)) continue;
-    const SceneChange change =
-        is_silent ? SceneChange(AddBody{robot->id, Circle{robot->position_m, kRadius_m}})
-                  : SceneChange(ClearBody{robot->id});
+    const SceneChange change = is_silent ? SceneChange(AddBody{robot->id, fallen(*robot)})
+                                         : SceneChange(ClearBody{robot->id});
     const World empty = World::make(bounds_m_, {}).value();
     if (auto next = after(scene_, change, empty, UtcTime(milliseconds(1 + now_ms_)))) {
       scene_ = *std::move(next);
@@ -221,7 +255,8 @@ void SilentSwarm::move(Approach& nearest) {
       const double length = by_m.squaredNorm();
       const double share = length > 0.0 ? std::clamp(-apart_m.dot(by_m) / length, 0.0, 1.0) : 0.0;
       const double gap_m = (apart_m + share * by_m).norm() - 2 * kRadius_m;
-      if (gap_m < nearest.gap_m) nearest = {gap_m, j, i, now_ms_};
+      if (gap_m >= nearest.gap_m) continue;
+      nearest = {gap_m, j, i, now_ms_, gap_m <= 0.0 && oracle_.counts(i, j)};
     }
   }
   for (std::size_t i = 0; i < robots_.size(); ++i) robots_[i]->position_m += moved_m[i];

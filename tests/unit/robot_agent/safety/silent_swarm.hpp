@@ -20,6 +20,7 @@
 #include "swarmflow/core/linalg.hpp"
 #include "swarmflow/core/time.hpp"
 #include "swarmflow/mission/scene.hpp"
+#include "tests/unit/robot_agent/safety/contact_oracle.hpp"
 
 /// Robots with the parts that keep them apart, a bus between them and a launcher, all of which may
 /// fail: for tests of what robots do about silence. All are in one cell: each process receives all
@@ -40,7 +41,7 @@ struct RobotPart {
   int phase_ms = 0;     ///< of its ticks, a multiple of 10
   FaultSpan frozen{};   ///< its process does not run; its sockets keep what arrives
   FaultSpan cut_off{};  ///< nothing reaches it, nothing of it reaches others
-  FaultSpan mute{};     ///< its states are lost; it receives, and reports its status
+  FaultSpan mute{};     ///< nothing of it reaches others, launcher included; it receives
   std::optional<std::uint32_t> rams{};  ///< drives into this robot and avoids none
 };
 
@@ -62,21 +63,22 @@ class SilentSwarm {
     std::size_t first = 0;
     std::size_t second = 0;
     int at_ms = 0;
+    bool counts = false;  ///< a contact, and one that counts (ContactOracle)
   };
   /// The nearest approach of two robots up to this time, in continuous time: between two changes of
-  /// a velocity all robots move straight.
+  /// a velocity all robots move straight. Ends with the first contact.
   Approach fly_until(int end_ms);
-  const Vec2& position_m(std::size_t robot) const;
 
  private:
   struct Robot;
   SteadyTime time() const;
-  bool is_received(const Robot& sender) const;
   void tick(Robot& robot);
   void receive(Robot& robot);
   Vec2 desired_mps(const Robot& robot) const;
   void publish(Robot& robot, const Vec2& velocity_mps);
+  bool is_lost(const Robot& sender) const;
   void launch();
+  Circle fallen(const Robot& robot) const;
   void move(Approach& nearest);
 
   Box bounds_m_;
@@ -85,6 +87,7 @@ class SilentSwarm {
   std::vector<std::unique_ptr<Robot>> robots_;
   link::LauncherBeat beat_;
   Scene scene_;
+  ContactOracle oracle_;
 };
 
 }  // namespace swarm::agent
