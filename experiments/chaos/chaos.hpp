@@ -21,10 +21,11 @@ struct ChaosOptions {
 };
 
 /// `swarm_launcher chaos`: flies a mission again and again with one process a robot, while
-/// processes are killed and frozen, the network fails and commands come at random times; audits
-/// each flight. Every flight has a seed of its own, which its report names and which repeats its
-/// faults: `--seed` with `--minutes 0` flies that one alone. kCriteriaNotMet if a flight broke a
-/// promise.
+/// processes are killed and frozen, the network fails, the disk fills, the clock is set and
+/// commands come at random times; audits each flight. What this machine does not allow is left out
+/// and reported: without root, full disks and a second host. Every flight has a seed of its own,
+/// which its report names and which repeats its faults: `--seed` with `--minutes 0` flies that one
+/// alone. kCriteriaNotMet if a flight broke a promise. Call it from the main thread.
 Result<ExitCode> chaos(const ChaosOptions& options);
 
 }  // namespace swarm::launcher

@@ -4,10 +4,11 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <string>
 #include <vector>
 
+#include "experiments/chaos/chaos_means.hpp"
 #include "experiments/chaos/fault_schedule.hpp"
+#include "experiments/chaos/flight_setup.hpp"
 #include "swarmflow/core/box.hpp"
 #include "swarmflow/core/result.hpp"
 
@@ -19,14 +20,21 @@ struct ChaosFlightSpec {
   std::filesystem::path dir;  ///< run directory, which it makes
   std::uint32_t robots = 0;
   std::uint64_t seed = 1;
-  Box bounds_m;           ///< of the map, for obstacles
-  std::string network{};  ///< for `--fault`
+  Box bounds_m;  ///< of the map, for obstacles
+  FlightSetup setup{};
   std::vector<Fault> faults{};
 };
 
-/// Flies it with processes of its own, to its end or for ten minutes, after which it is killed.
-/// Returns the faults that were injected: one whose process had ended by then is left out. Logs
-/// them to chaos.jsonl in the run directory.
-Result<std::vector<Fault>> fly_disturbed(const ChaosFlightSpec& spec);
+/// What became of it.
+struct DisturbedFlight {
+  std::vector<Fault> injected{};  ///< without those whose target had ended by then
+  bool interrupted = false;       ///< by the user
+};
+
+/// Flies it with processes of its own, to its end or for ten minutes, after which it is killed. A
+/// stop signal ends it in order, a second one at once; none of its processes outlives this call.
+/// The faults are logged to `<dir>.chaos.jsonl`. \pre setup and faults need only what the means
+/// have, but for disks and clocks, which are left alone then
+Result<DisturbedFlight> fly_disturbed(const ChaosFlightSpec& spec, const ChaosMeans& means);
 
 }  // namespace swarm::launcher

@@ -7,8 +7,6 @@
 #include <cmath>
 #include <numeric>
 
-#include <fmt/format.h>
-
 namespace swarm::launcher {
 namespace {
 
@@ -18,13 +16,23 @@ struct Share {
   double weight;
   double least_s, most_s;
 };
-constexpr std::array<Share, 7> kShares = {{{FaultKind::kKillAgent, 2.0, 0.0, 0.0},
-                                           {FaultKind::kFreezeAgent, 4.0, 0.5, 8.0},
-                                           {FaultKind::kKillPlanner, 1.0, 0.0, 0.0},
-                                           {FaultKind::kFreezePlanner, 1.0, 0.5, 6.0},
-                                           {FaultKind::kFreezeLauncher, 1.0, 0.5, 6.0},
-                                           {FaultKind::kPause, 1.0, 0.5, 3.0},
-                                           {FaultKind::kAddObstacle, 1.0, 3.0, 8.0}}};
+constexpr std::array<Share, kFaultKinds> kShares = {{{FaultKind::kKillAgent, 2.0, 0.0, 0.0},
+                                                     {FaultKind::kFreezeAgent, 4.0, 0.5, 8.0},
+                                                     {FaultKind::kHangAgent, 0.5, 0.0, 0.0},
+                                                     {FaultKind::kKillPlanner, 1.0, 0.0, 0.0},
+                                                     {FaultKind::kFreezePlanner, 1.0, 0.5, 6.0},
+                                                     {FaultKind::kHangPlanner, 0.5, 0.0, 0.0},
+                                                     {FaultKind::kFreezeLauncher, 1.0, 0.5, 6.0},
+                                                     {FaultKind::kKillGateway, 1.0, 0.0, 0.0},
+                                                     {FaultKind::kFreezeGateway, 1.0, 0.5, 6.0},
+                                                     {FaultKind::kPause, 1.0, 0.5, 3.0},
+                                                     {FaultKind::kAddObstacle, 1.0, 0.0, 0.0},
+                                                     {FaultKind::kFillDisk, 1.0, 1.0, 8.0},
+                                                     {FaultKind::kStepClock, 1.0, 0.5, 8.0},
+                                                     {FaultKind::kCutHosts, 2.0, 0.5, 6.0}}};
+
+/// A second over the limits of what clocks and messages are compared with, a minute, an hour.
+constexpr std::array<std::int64_t, 6> kSteps_s = {-3600, -60, -8, 11, 60, 3600};
 
 const Share& draw_kind(Rng& rng) {
   double left = uniform(rng, 0.0,
@@ -37,11 +45,25 @@ const Share& draw_kind(Rng& rng) {
   return kShares.back();
 }
 
-bool hits_an_agent(FaultKind kind) {
-  return kind == FaultKind::kKillAgent || kind == FaultKind::kFreezeAgent;
+bool hits_an_agent(FaultKind kind) { return loses_robots(kind) || kind == FaultKind::kFreezeAgent; }
+
+bool has_target(FaultKind kind, const ChaosLimits& limits) {
+  switch (kind) {
+    case FaultKind::kKillGateway:
+    case FaultKind::kFreezeGateway:
+      return limits.gateway;
+    case FaultKind::kCutHosts:
+      return limits.two_hosts;
+    default:
+      return true;
+  }
 }
 
 }  // namespace
+
+bool loses_robots(FaultKind kind) {
+  return kind == FaultKind::kKillAgent || kind == FaultKind::kHangAgent;
+}
 
 std::string_view to_string(FaultKind kind) {
   switch (kind) {
@@ -49,16 +71,30 @@ std::string_view to_string(FaultKind kind) {
       return "kill-agent";
     case FaultKind::kFreezeAgent:
       return "freeze-agent";
+    case FaultKind::kHangAgent:
+      return "hang-agent";
     case FaultKind::kKillPlanner:
       return "kill-planner";
     case FaultKind::kFreezePlanner:
       return "freeze-planner";
+    case FaultKind::kHangPlanner:
+      return "hang-planner";
     case FaultKind::kFreezeLauncher:
       return "freeze-launcher";
+    case FaultKind::kKillGateway:
+      return "kill-gateway";
+    case FaultKind::kFreezeGateway:
+      return "freeze-gateway";
     case FaultKind::kPause:
       return "pause";
     case FaultKind::kAddObstacle:
       return "add-obstacle";
+    case FaultKind::kFillDisk:
+      return "fill-disk";
+    case FaultKind::kStepClock:
+      return "step-clock";
+    case FaultKind::kCutHosts:
+      return "cut-hosts";
   }
   return "unknown";
 }
@@ -77,29 +113,17 @@ std::vector<Fault> draw_faults(const ChaosLimits& limits, Rng& rng) {
                 .lasts = from_seconds(uniform(rng, share.least_s, share.most_s)),
                 .kind = share.kind,
                 .x_share = uniform01(rng),
-                .y_share = uniform01(rng)};
+                .y_share = uniform01(rng),
+                .step_s = kSteps_s[rng() % kSteps_s.size()]};
+    if (!has_target(fault.kind, limits)) continue;
     if (hits_an_agent(fault.kind)) {
-      if (untouched.empty() || (fault.kind == FaultKind::kKillAgent && kills_left == 0)) continue;
-      if (fault.kind == FaultKind::kKillAgent) --kills_left;
+      if (untouched.empty() || (loses_robots(fault.kind) && kills_left == 0)) continue;
+      if (loses_robots(fault.kind)) --kills_left;
       const std::size_t chosen = rng() % untouched.size();
       fault.agent = untouched[chosen];
       untouched.erase(untouched.begin() + static_cast<std::ptrdiff_t>(chosen));
     }
     faults.push_back(fault);
-  }
-}
-
-std::string draw_network(Rng& rng) {
-  const double loss = uniform(rng, 0.0, 0.2), delay_ms = uniform(rng, 0.0, 100.0);
-  const double from_s = uniform(rng, 3.0, 20.0), blackout_s = uniform(rng, 1.0, 4.0);
-  switch (rng() % 3) {
-    case 0:
-      return "";
-    case 1:
-      return fmt::format("loss={:.2f},delay-ms={:.0f},jitter-ms={:.0f}", loss, delay_ms,
-                         0.3 * delay_ms);
-    default:
-      return fmt::format("loss=1,from={:.1f},to={:.1f}", from_s, from_s + blackout_s);
   }
 }
 

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
-#include <string>
 #include <string_view>
 #include <vector>
 
@@ -16,13 +16,24 @@ namespace swarm::launcher {
 enum class FaultKind : std::uint8_t {
   kKillAgent,       ///< SIGKILL of an agent process
   kFreezeAgent,     ///< SIGSTOP, and SIGCONT after `lasts`
+  kHangAgent,       ///< SIGSTOP for good: the launcher is to end it
   kKillPlanner,     ///< SIGKILL
   kFreezePlanner,   ///< as for agents
+  kHangPlanner,     ///< as for agents
   kFreezeLauncher,  ///< as for agents
+  kKillGateway,     ///< SIGKILL
+  kFreezeGateway,   ///< as for agents
   kPause,           ///< `swarm_launcher command pause`, and resume after `lasts`
-  kAddObstacle,     ///< a circle of 0.4 m somewhere on the map, removed after `lasts`
+  kAddObstacle,     ///< a circle of 0.4 m somewhere on the map, which stays
+  kFillDisk,        ///< no space is left for the run directory
+  kStepClock,       ///< the wall clock of all processes is set by `step_s`, and back after `lasts`
+  kCutHosts,        ///< nothing passes between the two hosts of the flight
 };
+inline constexpr std::size_t kFaultKinds = 14;
 std::string_view to_string(FaultKind kind);  ///< kebab-case
+
+/// Whether robots of the process that this hits are lost: nothing brings them back.
+bool loses_robots(FaultKind kind);
 
 /// One fault.
 struct Fault {
@@ -30,13 +41,16 @@ struct Fault {
   Duration lasts{};  ///< until it is undone; 0: for good
   FaultKind kind = FaultKind::kPause;
   std::uint32_t agent = 0;              ///< index of the process, for kinds that hit one
-  double x_share = 0.0, y_share = 0.0;  ///< place on the map, in shares of its bounds
+  double x_share = 0.0, y_share = 0.0;  ///< position on the map, in shares of its bounds
+  std::int64_t step_s = 0;              ///< for kStepClock
 };
 
 /// How a flight is disturbed.
 struct ChaosLimits {
   std::uint32_t agents = 0;  ///< processes
-  double kill_share = 0.05;  ///< at most this share of them is killed
+  bool gateway = false;      ///< the flight has a gateway
+  bool two_hosts = false;    ///< the flight has two hosts
+  double kill_share = 0.05;  ///< at most this share of the agents is lost
   double every_s = 1.5;      ///< mean time between faults
   double until_s = 30.0;     ///< of mission time
 };
@@ -44,9 +58,5 @@ struct ChaosLimits {
 /// The faults of a flight, by time. Each agent is hit at most once, so that each lost robot has one
 /// cause.
 std::vector<Fault> draw_faults(const ChaosLimits& limits, Rng& rng);
-
-/// What the flight's processes receive: loss, delay, and a blackout in which nothing arrives; for
-/// `--fault`, empty for a perfect network.
-std::string draw_network(Rng& rng);
 
 }  // namespace swarm::launcher

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "experiments/chaos/flight_processes.hpp"
 
+#include <algorithm>
+#include <csignal>
 #include <fstream>
 #include <iterator>
 #include <string_view>
@@ -29,25 +31,47 @@ bool is_program(const std::vector<std::string>& command_line, std::string_view n
   return !command_line.empty() && command_line.front().ends_with(name);
 }
 
-}  // namespace
-
-std::optional<pid_t> planner_of(pid_t launcher) {
-  for (const pid_t child : children_of(launcher)) {
-    if (is_program(command_line_of(child), "planner_service")) return child;
+template <class IsWanted>
+std::optional<pid_t> find_child(pid_t parent, const IsWanted& is_wanted) {
+  for (const pid_t child : children_of(parent)) {
+    if (is_wanted(command_line_of(child))) return child;
   }
   return std::nullopt;
 }
 
-std::optional<pid_t> agent_of(pid_t launcher, std::uint32_t robot) {
-  const std::string id = fmt::format("{}", robot);
-  for (const pid_t child : children_of(launcher)) {
-    const auto arguments = command_line_of(child);
-    if (!is_program(arguments, "robot_agent")) continue;
-    for (std::size_t i = 0; i + 1 < arguments.size(); ++i) {
-      if (arguments[i] == "--ids" && arguments[i + 1] == id) return child;
-    }
+}  // namespace
+
+std::optional<pid_t> planner_of(const FlightParents& parents) {
+  return find_child(parents.launcher, [](const std::vector<std::string>& line) {
+    return is_program(line, "planner_service");
+  });
+}
+
+std::optional<pid_t> gateway_of(const FlightParents& parents) {
+  return find_child(parents.launcher, [](const std::vector<std::string>& line) {
+    return is_program(line, "swarm_launcher") && line.size() > 1 && line[1] == "gateway";
+  });
+}
+
+std::optional<pid_t> agent_of(const FlightParents& parents, std::uint32_t robot) {
+  const auto flies_it = [id = fmt::format("{}", robot)](const std::vector<std::string>& line) {
+    const auto ids = std::find(line.begin(), line.end(), "--ids");
+    return is_program(line, "robot_agent") && line.end() - ids > 1 && *std::next(ids) == id;
+  };
+  const auto here = find_child(parents.launcher, flies_it);
+  return here || parents.joined == 0 ? here : find_child(parents.joined, flies_it);
+}
+
+// The parents first: they would start their children again.
+void kill_all(const FlightParents& parents) {
+  std::vector<pid_t> all = {parents.launcher};
+  if (parents.joined > 0) all.push_back(parents.joined);
+  for (const pid_t parent : {parents.launcher, parents.joined}) {
+    if (parent == 0) continue;
+    const auto children = children_of(parent);
+    all.insert(all.end(), children.begin(), children.end());
   }
-  return std::nullopt;
+  for (const pid_t pid : all) ::kill(pid, SIGKILL);
 }
 
 }  // namespace swarm::launcher

@@ -55,7 +55,44 @@ class RecordRing {
 
   /// Consumer: appends the oldest blocks to `out`, at least one and no more than `most_bytes`
   /// beyond it. They stay in the ring.
-  Taken copy(std::vector<unsigned char>& out, std::size_t most_bytes) const {
+  Taken copy(std::vector<unsigned char>& out, std::size_t most_bytes) {
+    pass_skip();
+    return collect(out, most_bytes);
+  }
+
+  /// Consumer: frees the room of what copy() found.
+  void pop(const Taken& taken) { read_.store(taken.until, std::memory_order_release); }
+
+  bool is_empty() const {
+    return read_.load(std::memory_order_acquire) == written_.load(std::memory_order_acquire);
+  }
+  /// Consumer: number of records that wait.
+  std::uint64_t waiting() const {
+    std::vector<unsigned char> ignored;
+    return collect(ignored, capacity_).records;
+  }
+
+ private:
+  struct Front {
+    std::uint32_t length = 0;   ///< bytes of the block behind it, or kSkip
+    std::uint32_t records = 0;  ///< in the block
+  };
+  static constexpr std::size_t kAlign = sizeof(Front);
+  static constexpr std::uint32_t kSkip = UINT32_MAX;  ///< the next block is at the begin
+  static constexpr std::size_t kStayBelow = 4096;
+
+  // Frees what was skipped at once, and not with the first block behind it: while that cannot be
+  // written, a ring that went back to its begin early would have no more room than it had used.
+  void pass_skip() {
+    const std::uint64_t read = read_.load(std::memory_order_relaxed);
+    if (read == written_.load(std::memory_order_acquire)) return;
+    const std::size_t at = read % capacity_;
+    Front front;
+    std::memcpy(&front, bytes_.get() + at, sizeof(front));
+    if (front.length == kSkip) read_.store(read + capacity_ - at, std::memory_order_release);
+  }
+
+  Taken collect(std::vector<unsigned char>& out, std::size_t most_bytes) const {
     Taken taken{.until = read_.load(std::memory_order_relaxed)};
     const std::uint64_t end = written_.load(std::memory_order_acquire);
     std::size_t copied = 0;
@@ -76,27 +113,6 @@ class RecordRing {
     }
     return taken;
   }
-
-  /// Consumer: frees the room of what copy() found.
-  void pop(const Taken& taken) { read_.store(taken.until, std::memory_order_release); }
-
-  bool is_empty() const {
-    return read_.load(std::memory_order_acquire) == written_.load(std::memory_order_acquire);
-  }
-  /// Consumer: number of records that wait.
-  std::uint64_t waiting() const {
-    std::vector<unsigned char> ignored;
-    return copy(ignored, capacity_).records;
-  }
-
- private:
-  struct Front {
-    std::uint32_t length = 0;   ///< bytes of the block behind it, or kSkip
-    std::uint32_t records = 0;  ///< in the block
-  };
-  static constexpr std::size_t kAlign = sizeof(Front);
-  static constexpr std::uint32_t kSkip = UINT32_MAX;  ///< the next block is at the begin
-  static constexpr std::size_t kStayBelow = 4096;
 
   void put_front(std::size_t at, const Front& front) {
     std::memcpy(bytes_.get() + at, &front, sizeof(front));

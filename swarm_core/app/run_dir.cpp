@@ -68,8 +68,8 @@ bool is_run_alive(const std::filesystem::path& run_dir) {
   return claimed || launcher_listens(run_dir);
 }
 
-Result<std::filesystem::path> make_run_dir(const std::filesystem::path& out,
-                                           const std::string& mission) {
+Result<std::filesystem::path> claim_dir(const std::filesystem::path& out,
+                                        const std::string& mission) {
   std::filesystem::path named = out;
   if (out.empty()) {
     auto made = make_default_dir(mission);
@@ -85,7 +85,11 @@ Result<std::filesystem::path> make_run_dir(const std::filesystem::path& out,
   }
   std::error_code error;
   std::filesystem::create_directories(dir, error);
-  if (!error && !claim(dir)) {
+  if (error) {
+    return fail(ErrorCode::kEnvironment,
+                fmt::format("cannot make {}: {}", dir.string(), error.message()));
+  }
+  if (!claim(dir)) {
     return fail(
         ErrorCode::kBadInput,
         fmt::format("--out {}: another run has begun in it; name another directory", dir.string()));
@@ -96,11 +100,19 @@ Result<std::filesystem::path> make_run_dir(const std::filesystem::path& out,
     return fail(ErrorCode::kBadInput,
                 fmt::format("--out {}: holds a run already; name another directory", dir.string()));
   }
+  return dir;
+}
+
+Result<std::filesystem::path> make_run_dir(const std::filesystem::path& out,
+                                           const std::string& mission) {
+  auto dir = claim_dir(out, mission);
+  if (!dir) return dir;
   for (const auto& folder : {kLogsFolder, kRobotLogFolder}) {
-    std::filesystem::create_directories(dir / folder, error);
+    std::error_code error;
+    std::filesystem::create_directories(*dir / folder, error);
     if (error) {
       return fail(ErrorCode::kEnvironment,
-                  fmt::format("cannot make {}: {}", (dir / folder).string(), error.message()));
+                  fmt::format("cannot make {}: {}", (*dir / folder).string(), error.message()));
     }
   }
   return dir;

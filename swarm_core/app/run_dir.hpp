@@ -9,10 +9,14 @@
 
 namespace swarm::shell {
 
-/// Makes the directory of a run with its folders and returns its absolute path. An empty `out`
-/// stands for runs/<mission>-<time>, or -2, -3 … behind it: each caller gets a directory of its
-/// own, also among processes that start at the same moment. Refuses a directory that holds a run
-/// already, and one that another process has claimed and not given back by its end.
+/// Makes a directory and returns its absolute path. An empty `out` stands for
+/// runs/<mission>-<time>, or -2, -3 … behind it: each caller gets a directory of its own, also
+/// among processes that start at the same moment. Refuses a directory that holds a run already, and
+/// one that another process has claimed and not given back by its end.
+Result<std::filesystem::path> claim_dir(const std::filesystem::path& out,
+                                        const std::string& mission);
+
+/// claim_dir() for a run: with its folders.
 Result<std::filesystem::path> make_run_dir(const std::filesystem::path& out,
                                            const std::string& mission);
 

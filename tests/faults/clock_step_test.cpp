@@ -7,9 +7,8 @@
 #include <csignal>
 #include <cstdint>
 #include <cstdio>
-#include <cstdlib>
 #include <filesystem>
-#include <fstream>
+#include <memory>
 #include <optional>
 #include <sstream>
 #include <string>
@@ -17,40 +16,12 @@
 #include <variant>
 #include <vector>
 
+#include "experiments/chaos/stepped_clock.hpp"
 #include "swarm_core/robot_log/robot_log_file.hpp"
 #include "tests/system/flown_run.hpp"
 
 namespace swarm::test {
 namespace {
-
-/// The wall clock of all programs started while it exists, as the shim has it.
-class SteppedClock {
- public:
-  SteppedClock() {
-    set_s(0);
-    ::setenv("LD_PRELOAD", SWARM_CLOCK_SHIM, 1);
-    ::setenv("SWARM_CLOCK_OFFSET_FILE", file().c_str(), 1);
-  }
-  ~SteppedClock() {
-    ::unsetenv("LD_PRELOAD");
-    ::unsetenv("SWARM_CLOCK_OFFSET_FILE");
-  }
-  SteppedClock(const SteppedClock&) = delete;
-  SteppedClock& operator=(const SteppedClock&) = delete;
-
-  /// In place, since the programs have the file mapped.
-  void set_s(std::int64_t offset_s) {
-    std::ofstream out(file(), std::ios::binary | (is_made_ ? std::ios::in : std::ios::out));
-    out.write(reinterpret_cast<const char*>(&offset_s), sizeof offset_s);
-    is_made_ = true;
-  }
-
- private:
-  std::string file() const { return (folder_.path() / "offset").string(); }
-
-  TemporaryFolder folder_;
-  bool is_made_ = false;
-};
 
 /// When a robot began to hold, and the longest time from one of its log's steps to the next.
 struct Flown {
@@ -95,11 +66,28 @@ std::optional<Duration> time_to_hold(const Flown& flown, UtcTime pause) {
   return *hold - pause;
 }
 
-class ClockStep : public testing::TestWithParam<const char*> {};
+/// Programs that are started by a test have a clock of their own.
+class ClockStep : public testing::TestWithParam<const char*> {
+ protected:
+  void SetUp() override {
+    auto made = launcher::SteppedClock::make(folder_.path() / "offset");
+    if (!made) GTEST_SKIP() << made.error().message;
+    clock_ = *std::move(made);
+  }
+  /// As an absolute offset.
+  void set_clock_s(std::int64_t offset_s) {
+    clock_->step(offset_s - offset_s_);
+    offset_s_ = offset_s;
+  }
+
+ private:
+  TemporaryFolder folder_;
+  std::unique_ptr<launcher::SteppedClock> clock_;
+  std::int64_t offset_s_ = 0;
+};
 
 // Commands, plans, scenes and heartbeats of before a step do not outrank those after it.
 TEST_P(ClockStep, ChangesNothingInFlight) {
-  SteppedClock clock;
   FlownRun run({"--channel", GetParam()});
   ASSERT_TRUE(run.mission_started()) << run.launcher().err();
   const auto command = [&](const std::vector<std::string>& arguments) {
@@ -111,7 +99,7 @@ TEST_P(ClockStep, ChangesNothingInFlight) {
   bool planner_killed = false;
   constexpr std::array<std::int64_t, 5> kSteps_s = {-8, -60, 3600, -3600, 60};
   for (const std::int64_t step_s : kSteps_s) {
-    clock.set_s(step_s);
+    set_clock_s(step_s);
     command({"pause"});
     std::this_thread::sleep_for(std::chrono::milliseconds(500));  // each robot holds for some ticks
     command({"resume"});
@@ -143,6 +131,20 @@ TEST_P(ClockStep, ChangesNothingInFlight) {
     EXPECT_LT(flown.longest_gap, std::chrono::seconds(40)) << robot << ": not by the wall clock";
   }
   std::printf("from a pause to the last robot's hold: at most %.3f s\n", to_seconds(longest));
+}
+
+// A stop is obeyed whatever its stamp: also the hosts' clocks may differ.
+TEST_P(ClockStep, DelaysNoEmergencyStop) {
+  FlownRun run({"--channel", GetParam()});
+  ASSERT_TRUE(run.mission_started()) << run.launcher().err();
+  set_clock_s(-20);
+
+  Program stop("swarm_launcher", {"command", run.dir().string(), "stop"});
+
+  EXPECT_EQ(stop.wait(), 0) << stop.err();
+  EXPECT_NE(stop.out().find("12 robots confirmed"), std::string::npos) << stop.out();
+  EXPECT_EQ(run.launcher().wait(), 1);
+  EXPECT_EQ(run.summary()["outcome"], "stopped");
 }
 
 INSTANTIATE_TEST_SUITE_P(Channels, ClockStep, testing::Values("topics", "groups"));

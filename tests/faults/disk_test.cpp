@@ -84,21 +84,15 @@ class DiskFault : public testing::Test {
   bool mission_started() const {
     return eventually([this] { return has_event(dir(), "command"); });
   }
-  void kill_planner() const {
-    const auto planners = children_of(launcher_->pid(), "planner_service");
-    ASSERT_EQ(planners.size(), 1U);
-    ::kill(planners.front(), SIGKILL);
-  }
-  /// A planner has been started after the one that was killed.
-  bool planner_is_back(pid_t killed) const {
-    return eventually([&] {
-      const auto planners = children_of(launcher_->pid(), "planner_service");
-      return planners.size() == 1 && planners.front() != killed;
-    });
-  }
-  pid_t planner() const {
-    const auto planners = children_of(launcher_->pid(), "planner_service");
-    return planners.empty() ? 0 : planners.front();
+  /// Kills the planner; a new one is started although the disk fails.
+  void expect_new_planner_after_a_kill() const {
+    const auto killed = planners();
+    ASSERT_EQ(killed.size(), 1U);
+    ::kill(killed.front(), SIGKILL);
+    EXPECT_TRUE(eventually([&] {
+      const auto now = planners();
+      return now.size() == 1 && now.front() != killed.front();
+    }));
   }
   /// The launcher itself has received all robots at their goals.
   void expect_that_all_arrived() const {
@@ -107,8 +101,19 @@ class DiskFault : public testing::Test {
     EXPECT_EQ(launcher_->err().find("agent process "), std::string::npos) << launcher_->err();
   }
 
+  /// As above, though the run is not ok: the launcher names what is missing, and `cause`.
+  void expect_arrival_with_missing_records(const std::string& cause) {
+    EXPECT_EQ(launcher_->wait(), 1) << launcher_->err();
+    expect_that_all_arrived();
+    EXPECT_NE(launcher_->out().find("missing"), std::string::npos) << launcher_->out();
+    EXPECT_NE(launcher_->err().find(cause), std::string::npos) << launcher_->err();
+  }
+
   std::unique_ptr<OwnDisk> disk_;
   std::unique_ptr<Program> launcher_;
+
+ private:
+  std::vector<pid_t> planners() const { return children_of(launcher_->pid(), "planner_service"); }
 };
 
 #define BEGIN_OR_SKIP(kind) \
@@ -118,15 +123,9 @@ TEST_F(DiskFault, FullAllArriveAndWhatIsMissingIsNamed) {
   BEGIN_OR_SKIP(kMemory);
   ASSERT_TRUE(mission_started());
   disk_->fill();
-  const pid_t first = planner();
-  kill_planner();
-  EXPECT_TRUE(planner_is_back(first));
+  expect_new_planner_after_a_kill();
 
-  EXPECT_EQ(launcher_->wait(), 1) << launcher_->err();
-
-  expect_that_all_arrived();
-  EXPECT_NE(launcher_->out().find("missing"), std::string::npos) << launcher_->out();
-  EXPECT_NE(launcher_->err().find("No space left on device"), std::string::npos);
+  expect_arrival_with_missing_records("No space left on device");
 }
 
 // The records of the full minute wait in memory.
@@ -134,9 +133,7 @@ TEST_F(DiskFault, FullForAWhileNothingIsMissing) {
   BEGIN_OR_SKIP(kMemory);
   ASSERT_TRUE(mission_started());
   disk_->fill();
-  const pid_t first = planner();
-  kill_planner();
-  EXPECT_TRUE(planner_is_back(first));
+  expect_new_planner_after_a_kill();
   std::this_thread::sleep_for(std::chrono::seconds(5));
   std::filesystem::remove(disk_->path() / "filler");
 
@@ -152,25 +149,17 @@ TEST_F(DiskFault, ReadOnlyAllArriveAndWhatIsMissingIsNamed) {
   BEGIN_OR_SKIP(kExt4);
   ASSERT_TRUE(mission_started());
   if (!disk_->make_read_only()) GTEST_SKIP() << "the kernel has no such switch";
-  const pid_t first = planner();
-  kill_planner();
-  EXPECT_TRUE(planner_is_back(first));
+  expect_new_planner_after_a_kill();
 
-  EXPECT_EQ(launcher_->wait(), 1) << launcher_->err();
-
-  expect_that_all_arrived();
-  EXPECT_NE(launcher_->out().find("missing"), std::string::npos) << launcher_->out();
-  EXPECT_NE(launcher_->err().find("Read-only file system"), std::string::npos);
+  expect_arrival_with_missing_records("Read-only file system");
 }
 
 TEST_F(DiskFault, RemovedAllArriveAndTheRestIsWrittenAgain) {
   BEGIN_OR_SKIP(kMemory);
   ASSERT_TRUE(mission_started());
-  const pid_t first = planner();
   std::filesystem::rename(dir(), disk_->path() / "removed");  // before its files are made again
   std::filesystem::remove_all(disk_->path() / "removed");
-  kill_planner();
-  EXPECT_TRUE(planner_is_back(first));
+  expect_new_planner_after_a_kill();
 
   EXPECT_EQ(launcher_->wait(), 1) << launcher_->err();
 
@@ -204,9 +193,7 @@ TEST_F(DiskFault, FrozenRobotsFlyOnAndNothingIsMissing) {
   constexpr std::chrono::seconds kFrozen{12};
   const auto thaw_at = std::chrono::steady_clock::now() + kFrozen;
   if (!execute("fsfreeze -f " + disk_->path().string())) GTEST_SKIP() << "cannot freeze";
-  const pid_t first = planner();
-  kill_planner();
-  EXPECT_TRUE(planner_is_back(first));
+  expect_new_planner_after_a_kill();
   const bool restarted_in_time = std::chrono::steady_clock::now() < thaw_at;
   std::this_thread::sleep_until(thaw_at);
   ASSERT_TRUE(execute("fsfreeze -u " + disk_->path().string()));

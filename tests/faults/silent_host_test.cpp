@@ -9,16 +9,6 @@
 namespace swarm::test {
 namespace {
 
-/// The address for other hosts, which a launcher prints.
-std::string join_address(Program& launcher) {
-  const std::string before = "swarm_launcher join ";
-  std::string err;
-  if (!eventually([&] { return (err = launcher.err()).find(before) != std::string::npos; }))
-    return "";
-  const std::size_t begin = err.find(before) + before.size();
-  return err.substr(begin, err.find_first_of(" \n", begin) - begin);
-}
-
 constexpr const char* kToken = "a-secret";
 
 TEST(SilentHost, IsDroppedAndAnotherOneFliesItsRobots) {

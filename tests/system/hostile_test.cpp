@@ -12,21 +12,13 @@
 #include <set>
 #include <sstream>
 
-#include "flown_run.hpp"
-#include "swarm_core/app/run_directory.hpp"
-#include "swarm_link/adapters/fastdds/fastdds_participant.hpp"
 #include "swarm_link/topics.hpp"
+#include "tests/system/intruder.hpp"
 
 namespace swarm::test {
 namespace {
 
 using namespace swarm::link;
-
-std::int64_t utc_ns() {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(
-             std::chrono::system_clock::now().time_since_epoch())
-      .count();
-}
 
 /// A well-formed plan of one leg; every test case spoils it in one way.
 PlanMessage decent_plan() {
@@ -54,17 +46,6 @@ CellStatesMessage decent_batch(std::uint32_t robot, const Cell& cell) {
                       .stamp_utc_ns = utc_ns(),
                       .x_m = 10,
                       .y_m = 10}}};
-}
-
-/// A foreign participant on the bus of a run.
-Result<std::unique_ptr<Participant>> intrude(const FlownRun& run) {
-  const auto info = shell::read_run_info(run.dir());
-  if (!info) return tl::unexpected(info.error());
-  return make_fastdds_participant({.name = "hostile",
-                                   .domain = info->domain,
-                                   .index = 60,
-                                   .discovery = {info->discovery_host, info->discovery_port},
-                                   .ownership_strength = 1000});
 }
 
 /// The state of a run by its bus: the planner's phase and how many robots are in a mode.

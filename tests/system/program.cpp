@@ -101,6 +101,15 @@ std::string read_text(const std::filesystem::path& file) {
   return text.str();
 }
 
+std::string join_address(const Program& launcher) {
+  const std::string before = "swarm_launcher join ";
+  std::string err;
+  if (!eventually([&] { return (err = launcher.err()).find(before) != std::string::npos; }))
+    return "";
+  const std::size_t begin = err.find(before) + before.size();
+  return err.substr(begin, err.find_first_of(" \n", begin) - begin);
+}
+
 bool has_event(const std::filesystem::path& run_dir, const std::string& code) {
   return read_text(run_dir / "events.jsonl").find("\"code\":\"" + code + "\"") != std::string::npos;
 }

@@ -62,6 +62,9 @@ bool eventually(Condition condition, std::chrono::seconds guard = std::chrono::s
 
 std::string read_text(const std::filesystem::path& file);
 
+/// The address HOST:PORT for other hosts, which a launcher prints; empty if it never does.
+std::string join_address(const Program& launcher);
+
 /// Whether `events.jsonl` of a run has an event with this code.
 bool has_event(const std::filesystem::path& run_dir, const std::string& code);
 

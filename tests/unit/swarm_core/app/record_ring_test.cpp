@@ -89,6 +89,33 @@ TEST(RecordRing, HoldsWhatAQueueHolds) {
   EXPECT_GT(refused, 100U);
 }
 
+// An empty ring goes back to its begin, from wherever it is. While the disk then takes nothing,
+// what the consumer copies stays in the ring; all room but that of the blocks must be there.
+TEST(RecordRing, HasAllItsRoomAfterItWentBackToItsBegin) {
+  constexpr std::size_t kCapacity = 1U << 16U;
+  constexpr std::size_t kBlock = 56, kWithFront = kBlock + 8;
+  const std::string text(kBlock, 'x');
+  const auto block = bytes_of(text);
+  for (std::size_t blocks_before = 1; blocks_before <= 140; ++blocks_before) {
+    RecordRing sut(kCapacity);
+    std::uint64_t records = 0;
+    for (std::size_t i = 0; i < blocks_before; ++i) {
+      ASSERT_TRUE(sut.push(block, 1));
+      take(sut, kBlock, records);
+    }
+    ASSERT_TRUE(sut.push(block, 1));
+
+    std::vector<unsigned char> not_written;
+    sut.copy(not_written, kCapacity);
+
+    std::size_t waiting = 1;
+    while (sut.push(block, 1)) ++waiting;
+    EXPECT_GE(waiting, kCapacity / kWithFront - 1) << blocks_before;
+    EXPECT_EQ(sut.waiting(), waiting);
+    EXPECT_TRUE(take(sut, kCapacity, records) == std::string(waiting * kBlock, 'x'));
+  }
+}
+
 TEST(RecordRing, PassesBytesBetweenTwoThreads) {
   RecordRing sut(1024);
   constexpr int kBlocks = 100'000;

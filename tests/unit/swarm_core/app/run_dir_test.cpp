@@ -71,6 +71,13 @@ TEST_F(RunDir, KeepsWhatTheDirectoryHolds) {
   EXPECT_EQ(folder_.read("run/notes.txt"), "mine");
 }
 
+TEST_F(RunDir, IsClaimedWithoutTheFoldersOfARun) {
+  const auto dir = claim_dir("several", "unused");
+  ASSERT_TRUE(dir) << dir.error().message;
+  EXPECT_EQ(*dir, folder_ / "several");
+  EXPECT_TRUE(fs::is_empty(*dir));
+}
+
 TEST_F(RunDir, CannotBeMadeBelowAFile) {
   folder_.write("file", "");
   const auto refused = make_run_dir("file/run", "x");
