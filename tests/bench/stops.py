@@ -68,7 +68,7 @@ class Flight:
             pass
 
     def stop(self):
-        """By the command line, as a user would; with its words."""
+        """By the command line, as a user would; returns its answer."""
         command = [BIN / "swarm_launcher", "command", self.dir, "stop"]
         if not self.dir.exists():
             domain = pathlib.Path(str(self.dir) + ".domain").read_text()
@@ -116,7 +116,7 @@ def stop_in(case, folder, options):
                 with offset.open("r+b") as mapped:  # in place, since the programs have it mapped
                     mapped.write(struct.pack("q", step))
                 time.sleep(1)
-        said = flight.stop()
+        answer = flight.stop()
         time.sleep(3)
         os.kill(flight.launcher.pid, signal.SIGCONT)
         termios.tcflow(flight.slave, termios.TCOON)
@@ -128,7 +128,7 @@ def stop_in(case, folder, options):
         if case == "disk":
             shutil.copytree(flight.dir, folder / "copy")
             flight.dir = folder / "copy"
-        return flight.dir, said
+        return flight.dir, answer
     finally:
         if case == "disk":
             subprocess.run(["umount", "-l", place])
@@ -144,7 +144,7 @@ def main():
     failed = False
     for case in options.cases or CASES:
         with tempfile.TemporaryDirectory() as folder:
-            run, said = stop_in(case, pathlib.Path(folder), options)
+            run, answer = stop_in(case, pathlib.Path(folder), options)
             audit = subprocess.run([BIN / "swarm_monitor", "audit", run, "--json"], capture_output=True, text=True)
             print(audit.stderr, end="", file=sys.stderr)
             try:
@@ -153,7 +153,7 @@ def main():
                 judged = {}
             latency = judged.get("stop_latency_ms") or {}
             print(json.dumps({"case": case, "channel": options.channel, "stop_latency_ms": latency, "outcome": judged.get("outcome"),
-                              "contacts": judged.get("collisions_robot"), "command": said[-200:]}), flush=True)
+                              "contacts": judged.get("collisions_robot"), "command": answer[-200:]}), flush=True)
             failed = failed or not latency
     return 1 if failed else 0
 
