@@ -16,6 +16,7 @@
 #include "swarm_core/metrics/histogram.hpp"
 #include "swarm_link/channels/state_channel.hpp"
 #include "swarm_link/gate/gate.hpp"
+#include "swarm_link/gate/waiting_plan.hpp"
 
 namespace swarm::agent {
 
@@ -118,7 +119,7 @@ class Inbox {
   std::uint64_t plan_digest_ = 0;
   link::Gate gate_;
   std::optional<NewPlan> new_plan_;
-  std::optional<link::PlanMessage> waiting_plan_;  // of a planner that does not rule, the newest
+  link::WaitingPlan waiting_plan_;
   std::optional<Scene> new_scene_;
   std::uint64_t plan_scene_version_ = 0;
   std::uint64_t plan_epoch_ = 0;

@@ -29,8 +29,7 @@ struct Case {
   std::string name;
   AnyMessage bad;
   RefusalReason reason;
-  std::string only{};    ///< the one receiver that refuses it; empty: all that read the topic
-  std::string except{};  ///< the one that does not
+  std::string only{};  ///< the one receiver that refuses it; empty: all that read the topic
 };
 
 std::vector<Case> all_cases();
