@@ -84,6 +84,7 @@ void Inbox::receive(const link::CommandMessage& command, UtcTime utc_now) {
   if (!gate_.command(command, utc_now)) return;
   const MissionPhase before = mission_.phase();
   mission_.on_command(command.kind);
+  command_id_ = std::max(command_id_, command.command_id);
   if (mission_.phase() == MissionPhase::kStopped && before != MissionPhase::kStopped) {
     stop_stamp_utc_ns_ = to_stamp(command.stamp_utc_ns);  // a stop passes with any stamp
   }

@@ -176,8 +176,8 @@ void ProcessLoop::confirm_stop() {
     return robot.loop.mode() == RobotMode::kStopped;
   };
   if (!std::ranges::all_of(local_.robots, has_stopped)) return;
-  bus_.stops->confirm({.first_robot_id = local_.robots.front().loop.id().value(),
-                       .robots = static_cast<std::uint32_t>(local_.robots.size())});
+  bus_.stops->confirm({.first = local_.robots.front().loop.id().value(),
+                       .count = static_cast<std::uint32_t>(local_.robots.size())});
 }
 
 /// Rebuilds the map when the scene has changed, and at every tick while an obstacle moves.

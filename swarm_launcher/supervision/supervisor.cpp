@@ -87,6 +87,7 @@ void Supervisor::on_status(RobotId robot, const RobotReport& report) {
   const bool is_late = r.silent_since && report.sent_at <= *r.silent_since;
   if (is_late && !r.received && !r.absent) return;
   r.report = report;
+  r.has_stopped = r.has_stopped || report.confirms_stop;
   r.received = true;
   r.cleared = false;
   process.silence.on_received();
@@ -302,9 +303,10 @@ Supervisor::Counts Supervisor::counts() const {
       continue;
     }
     c.ready += r.received && r.report.has_plan && r.report.receives_neighbours ? 1 : 0;
-    c.arrived += r.report.mode == RobotMode::kArrived && has_newest_goal(r) ? 1 : 0;
+    c.arrived +=
+        r.report.mode == RobotMode::kArrived && !r.has_stopped && has_newest_goal(r) ? 1 : 0;
     c.settled += r.report.settled && has_newest_goal(r) ? 1 : 0;
-    c.stopped += r.report.mode == RobotMode::kStopped ? 1 : 0;
+    c.stopped += r.has_stopped ? 1 : 0;
   }
   return c;
 }
@@ -315,7 +317,7 @@ std::vector<RobotId> Supervisor::unstopped() const {
   std::vector<RobotId> out;
   for (std::uint32_t i = 0; i < robots_.size(); ++i) {
     const bool runs = process_of(RobotId(i)).alive && !robots_[i].lost && !robots_[i].absent;
-    if (runs && robots_[i].report.mode != RobotMode::kStopped) out.emplace_back(i);
+    if (runs && !robots_[i].has_stopped) out.emplace_back(i);
   }
   return out;
 }

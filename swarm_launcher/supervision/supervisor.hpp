@@ -50,6 +50,7 @@ struct RobotReport {
   bool settled = false;
   std::uint64_t scene_version = 0;  ///< scene that its plan was made for
   SteadyTime sent_at{};             ///< by its stamp, on the launcher's clock
+  bool confirms_stop = false;       ///< it has obeyed the emergency stop
 };
 
 /// Signals that end a process, weakest first.
@@ -122,9 +123,7 @@ class Supervisor {
   /// silence began.
   void on_status(RobotId robot, const RobotReport& report);
   /// A robot has confirmed a stop by another path than its status.
-  void on_stop_confirmed(RobotId robot) {
-    robots_.at(robot.value()).report.mode = RobotMode::kStopped;
-  }
+  void on_stop_confirmed(RobotId robot) { robots_.at(robot.value()).has_stopped = true; }
   /// A heartbeat of the planner of this epoch arrived.
   void on_heartbeat(std::uint64_t epoch);
   /// Another host has taken over `count` processes from `first` on. This gives the robots no more
@@ -188,8 +187,9 @@ class Supervisor {
   };
   struct Robot {
     RobotReport report;
-    bool received = false;  ///< since the last start of its process
-    bool absent = false;    ///< not received when the mission started
+    bool has_stopped = false;  ///< confirmed the emergency stop, which is final
+    bool received = false;     ///< since the last start of its process
+    bool absent = false;       ///< not received when the mission started
     bool lost = false;
     bool cleared = false;                      ///< by a user, since it fell silent
     std::optional<SteadyTime> silent_since{};  // its body is an obstacle

@@ -10,6 +10,9 @@
 namespace swarm::launcher {
 namespace {
 
+constexpr RobotReport kHasStopped{
+    .has_plan = true, .mode = RobotMode::kStopped, .confirms_stop = true};
+
 TEST(Supervisor, NamesWhoIsMissingAndGivesUp) {
   SupervisorBench bench(5);
   bench.run_for(seconds(1));
@@ -53,8 +56,9 @@ TEST(Supervisor, CountsARobotThatStoppedItselfAsLost) {
 TEST(Supervisor, RepeatsAStopAndNamesWhoHasNotConfirmed) {
   RunningBench bench(4);
   bench.start();
-  for (const std::uint32_t i : {0U, 1U, 3U})
-    bench.sut->on_status(RobotId(i), {true, true, RobotMode::kStopped, false});
+  for (const std::uint32_t i : {0U, 1U, 3U}) bench.sut->on_status(RobotId(i), kHasStopped);
+  bench.sut->on_status(RobotId(2), {.has_plan = true, .mode = RobotMode::kStopped});
+  bench.sut->on_status(RobotId(3), {.has_plan = true, .mode = RobotMode::kStopped});
 
   bench.sut->on_command(CommandKind::kStop, bench.now);
   bench.run_for(seconds(6));
