@@ -105,7 +105,8 @@ bool ProcessLoop::may_move(SteadyTime now, UtcTime utc_now) {
   const StandReason reason = permit_.update({.now = now,
                                              .planner = inbox_.mission().planner_received_at(),
                                              .launcher = whereabouts_.last_beat(),
-                                             .all_cells = bus_.states->receives_all()});
+                                             .all_cells = bus_.states->receives_all(),
+                                             .lacks_files = bus_.states->lacks_files()});
   events_.on_permit(now, utc_now, reason);
   return reason == StandReason::kNone;
 }

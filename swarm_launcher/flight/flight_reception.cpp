@@ -38,6 +38,9 @@ void FlightLoop::read_events(const FlightTime& now) {
   for (std::size_t i = 0; i < events.size(); ++i) {
     if (!throttle_.admit(senders[i], now.steady)) continue;
     ports_.log.forward(events[i]);
+    if (events[i].code == link::kCellsMissing && events[i].source < options_.mission.robots.count) {
+      supervisor_.on_hindered(RobotId(events[i].source), events[i].text);
+    }
     if (events[i].code != link::kDuplicateId || !duplicates_.insert(events[i].source).second) {
       continue;
     }

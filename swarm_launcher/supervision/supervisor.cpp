@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <utility>
 
 #include <fmt/format.h>
@@ -160,9 +161,9 @@ void Supervisor::gather(SteadyTime now, std::vector<Action>& actions) {
     actions.emplace_back(LogEvent{
         .warning = true,
         .code = "quorum",
-        .text =
-            fmt::format("{} of {} robots are not ready after {} s: {}", missing.size(),
-                        robots_.size(), options_.launcher.quorum_timeout_s, describe(missing))});
+        .text = fmt::format("{} of {} robots are not ready after {} s: {}{}", missing.size(),
+                            robots_.size(), options_.launcher.quorum_timeout_s, describe(missing),
+                            hindrances_of(missing))});
     if (!enough) {
       begin_ending(Outcome::kQuorumTimeout, now);
       return;
@@ -171,6 +172,21 @@ void Supervisor::gather(SteadyTime now, std::vector<Action>& actions) {
   leave_out_absent(now);
   stage_ = Stage::kRunning;
   command(CommandKind::kStart, now, actions);
+}
+
+// What the processes of missing robots reported: robots by reason.
+std::string Supervisor::hindrances_of(const std::vector<RobotId>& missing) const {
+  std::map<std::string, std::vector<RobotId>> robots;
+  for (const RobotId robot : missing) {
+    const std::uint32_t first = robot.value() - robot.value() % options_.per_process;
+    if (const std::string& why = robots_[first].hindrance; !why.empty()) {
+      robots[why].push_back(robot);
+    }
+  }
+  std::string text;
+  for (const auto& [why, hindered] : robots)
+    text += fmt::format("; {}: {}", describe(hindered), why);
+  return text;
 }
 
 // A delayed step sends at most two repetitions, so that overdue ones do not come as a burst.

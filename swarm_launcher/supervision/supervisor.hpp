@@ -124,6 +124,10 @@ class Supervisor {
   void on_status(RobotId robot, const RobotReport& report);
   /// A robot has confirmed a stop by another path than its status.
   void on_stop_confirmed(RobotId robot) { robots_.at(robot.value()).has_stopped = true; }
+  /// The process of a robot, which is its first one, reports why it cannot receive all others.
+  void on_hindered(RobotId robot, const std::string& why) {
+    robots_.at(robot.value()).hindrance = why;
+  }
   /// A heartbeat of the planner of this epoch arrived.
   void on_heartbeat(std::uint64_t epoch);
   /// Another host has taken over `count` processes from `first` on. This gives the robots no more
@@ -193,6 +197,7 @@ class Supervisor {
     bool lost = false;
     bool cleared = false;                      ///< by a user, since it fell silent
     std::optional<SteadyTime> silent_since{};  // its body is an obstacle
+    std::string hindrance{};                   ///< last report of its process before the start
   };
 
   /// Whether another host starts the process.
@@ -233,6 +238,7 @@ class Supervisor {
   static std::string_view sign_of_life(std::uint32_t process);
   std::string name_of(ProcessIndex process) const;
   void leave_out_absent(SteadyTime now);
+  std::string hindrances_of(const std::vector<RobotId>& missing) const;
   void report_late_joiners(std::vector<Action>& actions);
 
   void hold_without_planner(std::uint32_t deaths);

@@ -44,6 +44,7 @@ void Supervisor::on_exit(ProcessIndex process, const ProcessExit& exit, SteadyTi
     robots_[r].received = false;
     robots_[r].report = {};
     robots_[r].has_stopped = false;
+    robots_[r].hindrance.clear();
   }
   if (is_remote(process) && stage_ != Stage::kRunning) {
     p.started = false;

@@ -27,6 +27,21 @@ TEST(Supervisor, NamesWhoIsMissingAndGivesUp) {
   EXPECT_LT(bench.sut->discovery_s(), 0.0);
 }
 
+TEST(Supervisor, NamesWhyTheMissingRobotsAreNotReady) {
+  SupervisorBench bench(6, 2);
+  bench.run_for(seconds(1));
+  for (std::uint32_t i = 0; i < 6; ++i) {
+    bench.sut->on_status(RobotId(i), {true, i < 2, RobotMode::kWaiting, false});
+  }
+  bench.sut->on_hindered(RobotId(0), "a reason that is over");
+  bench.sut->on_hindered(RobotId(4), "no more files");
+  bench.run_for(seconds(35));
+
+  EXPECT_TRUE(
+      bench.logged("quorum: 4 of 6 robots are not ready after 30 s: 2-5; 4-5: no more files"))
+      << bench.log.back();
+}
+
 TEST(Supervisor, EndsWhenAllHaveSettled) {
   RunningBench bench(5);
   bench.start();
