@@ -34,14 +34,11 @@ void Inbox::receive_plans(UtcTime utc_now) {
   for (link::PlanMessage& message : plans_) receive_plan(message, utc_now);
 }
 
-/// A plan of a planner that does not rule is kept: the topic delivers it once, and its sender may
-/// be about to take over.
+/// A plan of a planner that does not rule is kept, see WaitingPlan.
 void Inbox::receive_plan(link::PlanMessage& message, UtcTime utc_now) {
   auto plan = gate_.plan(message, utc_now);
   if (!plan) {
-    if (plan.error() == link::RefusalReason::kStale && message.epoch != gate_.planner_epoch()) {
-      waiting_plan_ = std::move(message);
-    }
+    waiting_plan_.keep(std::move(message), plan.error(), gate_.planner_epoch());
     return;
   }
   plan_time_.on_plan(message.version, plan->digest() == plan_digest_);
@@ -54,9 +51,7 @@ void Inbox::receive_plan(link::PlanMessage& message, UtcTime utc_now) {
 
 /// Its sender rules since the last heartbeat.
 void Inbox::take_waiting_plan(UtcTime utc_now) {
-  if (!waiting_plan_ || waiting_plan_->epoch != gate_.planner_epoch()) return;
-  auto message = *std::exchange(waiting_plan_, std::nullopt);
-  receive_plan(message, utc_now);
+  if (auto message = waiting_plan_.take(gate_.planner_epoch())) receive_plan(*message, utc_now);
 }
 
 void Inbox::receive_scenes(UtcTime utc_now) {
@@ -89,6 +84,7 @@ void Inbox::receive(const link::CommandMessage& command, UtcTime utc_now) {
   if (!gate_.command(command, utc_now)) return;
   const MissionPhase before = mission_.phase();
   mission_.on_command(command.kind);
+  command_id_ = std::max(command_id_, command.command_id);
   if (mission_.phase() == MissionPhase::kStopped && before != MissionPhase::kStopped) {
     stop_stamp_utc_ns_ = to_stamp(command.stamp_utc_ns);  // a stop passes with any stamp
   }

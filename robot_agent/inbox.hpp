@@ -16,6 +16,7 @@
 #include "swarm_core/metrics/histogram.hpp"
 #include "swarm_link/channels/state_channel.hpp"
 #include "swarm_link/gate/gate.hpp"
+#include "swarm_link/gate/waiting_plan.hpp"
 
 namespace swarm::agent {
 
@@ -87,6 +88,8 @@ class Inbox {
   /// Plan time of the newest plan; empty until a heartbeat of that plan is received.
   std::optional<PlanTime> plan_time(SteadyTime now) { return plan_time_.at(now); }
   std::int64_t stop_stamp_utc_ns() const { return stop_stamp_utc_ns_; }
+  /// Of the newest command that the robots obey; 0: none yet.
+  std::uint64_t command_id() const { return command_id_; }
 
   /// A robot of this process under whose id a state arrived that it did not publish, made after
   /// this process began to receive; of several the first.
@@ -118,12 +121,13 @@ class Inbox {
   std::uint64_t plan_digest_ = 0;
   link::Gate gate_;
   std::optional<NewPlan> new_plan_;
-  std::optional<link::PlanMessage> waiting_plan_;  // of a planner that does not rule, the newest
+  link::WaitingPlan waiting_plan_;
   std::optional<Scene> new_scene_;
   std::uint64_t plan_scene_version_ = 0;
   std::uint64_t plan_epoch_ = 0;
   std::uint32_t plan_version_ = 0;
   std::int64_t stop_stamp_utc_ns_ = 0;
+  std::uint64_t command_id_ = 0;
   std::uint32_t skewed_ = 0;
   std::optional<UtcTime> began_;  ///< of the first call of receive()
   std::optional<RobotId> duplicate_id_;

@@ -28,6 +28,9 @@ constexpr std::string_view to_string(Severity severity) {
 /// Code of the event by which a robot reports states under its id that it did not publish.
 inline constexpr std::string_view kDuplicateId = "duplicate-id";
 
+/// Code of the event by which a robot reports that it cannot receive all cells around.
+inline constexpr std::string_view kCellsMissing = "cells-missing";
+
 /// "planner", "launcher" or "robot-7".
 inline std::string source_name(std::uint32_t source) {
   if (source == kPlannerSource) return "planner";

@@ -91,7 +91,7 @@ struct CellStatesMessage {
       kFields{};
 };
 
-/// A command of the user or of the mission script. A repeated stop has an id of its own.
+/// A command of the user or of the mission script. A repeated stop is the same message again.
 struct CommandMessage {
   std::uint16_t schema_version = kSchemaVersion;
   CommandKind kind = CommandKind::kStart;
@@ -147,6 +147,7 @@ struct StatusMessage {
   std::uint32_t plan_version = 0;  ///< of the plan it follows; 0: none
   std::uint64_t plan_epoch = 0;
   std::uint64_t plan_scene_version = 0;  ///< scene that the plan was made for
+  std::uint64_t command_id = 0;          ///< of the newest command that it obeys; 0: none yet
   std::int64_t stamp_utc_ns = 0;
   double plan_time_s = 0;                        ///< of the plan's clock, as the process has it
   std::vector<RobotStatusMessage> robots{};      ///< the group, by id
@@ -157,11 +158,11 @@ struct StatusMessage {
   using M = StatusMessage;
   static constexpr std::string_view kIdlName = "Status";
   static constexpr bool kKeyed = true;
-  static constexpr FieldList<&M::first_robot_id, &M::schema_version, &M::process_id,
-                             &M::plan_version, &M::plan_epoch, &M::plan_scene_version,
-                             &M::stamp_utc_ns, &M::plan_time_s, up_to(kMaxStatusRobots, &M::robots),
-                             up_to(kMaxRefusalReasons, &M::refused),
-                             up_to(kMaxHistogramBins, &M::state_age)>
+  static constexpr FieldList<
+      &M::first_robot_id, &M::schema_version, &M::process_id, &M::plan_version, &M::plan_epoch,
+      &M::plan_scene_version, &M::command_id, &M::stamp_utc_ns, &M::plan_time_s,
+      up_to(kMaxStatusRobots, &M::robots), up_to(kMaxRefusalReasons, &M::refused),
+      up_to(kMaxHistogramBins, &M::state_age)>
       kFields{};
 };
 

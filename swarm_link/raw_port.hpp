@@ -40,7 +40,7 @@ RawTopic raw_topic(const Topic<M>& topic) {
 struct RawSample {
   std::span<const std::byte> bytes{};  ///< CDR with its encapsulation
   std::int64_t published_utc_ns = 0;   ///< by the writer's clock; 0 if the backend has none
-  std::uint64_t sender = 0;  ///< distinguishes the senders of a topic; 0 if the backend cannot
+  std::uint64_t sender = 0;            ///< participant of the writer, on all topics; 0: unknown
 };
 
 /// A received sample that owns its bytes.

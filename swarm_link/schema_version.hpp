@@ -7,6 +7,6 @@
 namespace swarm::link {
 
 /// Version of idl/swarm.idl, in every message that has a topic. A receiver refuses any other.
-inline constexpr std::uint16_t kSchemaVersion = 4;
+inline constexpr std::uint16_t kSchemaVersion = 5;
 
 }  // namespace swarm::link

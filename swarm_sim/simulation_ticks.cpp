@@ -146,7 +146,9 @@ void Simulation::report_status() {
                                        .mode = status.mode,
                                        .settled = status.settled,
                                        .scene_version = keeper_.planned_scene(),
-                                       .sent_at = now_});
+                                       .sent_at = now_,
+                                       .confirms_stop = phase_ == MissionPhase::kStopped &&
+                                                        status.mode == RobotMode::kStopped});
     keeper_.receive({.robot = RobotId(i),
                      .position_m = {status.x_m, status.y_m},
                      .arrived = status.arrived,

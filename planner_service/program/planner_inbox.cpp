@@ -23,10 +23,7 @@ void PlannerInbox::receive(UtcTime now) {
   for (const link::SceneMessage& message : scenes_) {
     if (auto scene = gate_.scene(message, now)) new_scenes_.push_back(std::move(*scene));
   }
-  statuses_.clear();
-  readers_.status->take(statuses_);
-  std::erase_if(statuses_,
-                [&](const link::StatusMessage& status) { return !gate_.status(status, now); });
+  receive_statuses(now);
   heartbeats_.clear();
   readers_.heartbeat->take(heartbeats_);
   std::erase_if(heartbeats_, [&](const link::HeartbeatMessage& beat) {
@@ -34,6 +31,22 @@ void PlannerInbox::receive(UtcTime now) {
   });
   gate_.set_undecodable(readers_.command->undecodable() + readers_.scene->undecodable() +
                         readers_.status->undecodable() + readers_.heartbeat->undecodable());
+}
+
+// A robot whose body is an obstacle has died or is silent: its next process has another sender.
+void PlannerInbox::receive_statuses(UtcTime now) {
+  for (const Scene& scene : new_scenes_) {
+    for (const SceneObstacle& obstacle : scene.obstacles) {
+      if (obstacle.owner) gate_.release_status(*obstacle.owner, now);
+    }
+  }
+  statuses_.clear();
+  senders_.clear();
+  readers_.status->take_with_senders(statuses_, senders_);
+  std::size_t next = 0;
+  std::erase_if(statuses_, [&](const link::StatusMessage& status) {
+    return !gate_.status_of(status, {senders_[next++], now});
+  });
 }
 
 // t0 is the stamp of the command that starts the mission, also when it arrives late.

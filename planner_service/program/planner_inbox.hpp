@@ -37,7 +37,7 @@ class PlannerInbox {
   std::int64_t t0_utc_ns() const { return t0_utc_ns_; }
   /// Of the last receive(), each newer than the one before.
   std::span<Scene> scenes() { return new_scenes_; }
-  /// Of the last receive(); robot ids are those of the mission.
+  /// Of the last receive(); robot ids are those of the mission, each from its own sender.
   std::span<const link::StatusMessage> statuses() const { return statuses_; }
   /// Of the last receive(), of all planners, this one included.
   std::span<const link::HeartbeatMessage> heartbeats() const { return heartbeats_; }
@@ -46,6 +46,7 @@ class PlannerInbox {
 
  private:
   void apply(const link::CommandMessage& command);
+  void receive_statuses(UtcTime now);
 
   Readers readers_;
   link::Gate gate_;
@@ -55,6 +56,7 @@ class PlannerInbox {
   std::vector<link::CommandMessage> commands_;
   std::vector<link::SceneMessage> scenes_;
   std::vector<link::StatusMessage> statuses_;
+  std::vector<std::uint64_t> senders_;
   std::vector<link::HeartbeatMessage> heartbeats_;
 };
 

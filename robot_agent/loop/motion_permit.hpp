@@ -16,6 +16,7 @@ namespace swarm::agent {
 enum class StandReason : std::uint8_t {
   kNone,          ///< they may move
   kCellsMissing,  ///< the states of a cell that they need cannot be received
+  kFilesMissing,  ///< the same, since the process can open no more files
   kWaking,        ///< the process slept longer than a command lasts: it receives before it moves
   kCutOff,        ///< planner and launcher are not received, or not for long enough yet
   kIsObstacle,    ///< not received by the launcher, which has made the body an obstacle
@@ -28,6 +29,9 @@ constexpr std::string_view to_string(StandReason reason) {
       return "moves again";
     case StandReason::kCellsMissing:
       return "cannot receive the states of all cells around: stands";
+    case StandReason::kFilesMissing:
+      return "cannot receive the states of all cells around, as it can open no more files "
+             "(ulimit -n): stands";
     case StandReason::kWaking:
       return "slept longer than a command lasts: stands until it has received its neighbours";
     case StandReason::kCutOff:
@@ -63,6 +67,7 @@ class MotionPermit {
     std::optional<SteadyTime> launcher{};  ///< of the last beat
     bool all_cells = true;
     bool is_obstacle = false;  ///< a body of the process, in the scene
+    bool lacks_files = false;  ///< that is why it does not receive all cells
   };
 
   /// Call it at each tick. The first reason that applies, in the order of the enumeration.
@@ -78,7 +83,9 @@ class MotionPermit {
     const bool was_cut_off = is_cut_off_ || slept > options_.cut_off_after;
     is_cut_off_ = newest == kNever || now - newest > options_.cut_off_after;
     if (was_cut_off && !is_cut_off_ && has_moved_) back_at_ = now;
-    if (!reception.all_cells) return StandReason::kCellsMissing;
+    if (!reception.all_cells) {
+      return reception.lacks_files ? StandReason::kFilesMissing : StandReason::kCellsMissing;
+    }
     if (is_within(options_.full_interval, woke_at_, now)) return StandReason::kWaking;
     // What a process reads when it wakes may have waited in its sockets all the time it slept: it
     // is no sign that anything is received now.

@@ -15,12 +15,13 @@ namespace {
 constexpr Duration kStatsEvery = std::chrono::seconds(1);
 constexpr Duration kWakingEvery = std::chrono::seconds(10);
 
-constexpr const char* code_of(StandReason reason) {
+constexpr std::string_view code_of(StandReason reason) {
   switch (reason) {
     case StandReason::kNone:
       return "moves-again";
     case StandReason::kCellsMissing:
-      return "cells-missing";
+    case StandReason::kFilesMissing:
+      return link::kCellsMissing;
     case StandReason::kWaking:
       return "woke-late";
     case StandReason::kCutOff:
@@ -98,8 +99,8 @@ void ProcessEvents::on_permit(SteadyTime now, UtcTime utc_now, StandReason reaso
     waking_reported_at_ = now;
   }
   stand_reported_ = !moves;
-  announce(utc_now, moves ? link::Severity::kInfo : link::Severity::kWarning, code_of(reason),
-           std::string(to_string(reason)));
+  announce(utc_now, moves ? link::Severity::kInfo : link::Severity::kWarning,
+           std::string(code_of(reason)), std::string(to_string(reason)));
 }
 
 void ProcessEvents::on_launcher(UtcTime utc_now, bool is_lost) {

@@ -105,7 +105,8 @@ bool ProcessLoop::may_move(SteadyTime now, UtcTime utc_now) {
                                              .planner = inbox_.mission().planner_received_at(),
                                              .launcher = whereabouts_.last_beat(),
                                              .all_cells = bus_.states->receives_all(),
-                                             .is_obstacle = is_obstacle()});
+                                             .is_obstacle = is_obstacle(),
+                                             .lacks_files = bus_.states->lacks_files()});
   events_.on_permit(now, utc_now, reason);
   return reason == StandReason::kNone;
 }
@@ -183,8 +184,8 @@ void ProcessLoop::confirm_stop() {
     return robot.loop.mode() == RobotMode::kStopped;
   };
   if (!std::ranges::all_of(local_.robots, has_stopped)) return;
-  bus_.stops->confirm({.first_robot_id = local_.robots.front().loop.id().value(),
-                       .robots = static_cast<std::uint32_t>(local_.robots.size())});
+  bus_.stops->confirm({.first = local_.robots.front().loop.id().value(),
+                       .count = static_cast<std::uint32_t>(local_.robots.size())});
 }
 
 /// Rebuilds the map when the scene has changed, and at every tick while an obstacle moves.

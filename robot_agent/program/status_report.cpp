@@ -27,10 +27,13 @@ bool has_updates(std::span<const LocalRobot> robots) {
 /// Groups take turns by their number, so that messages spread over the ticks of a status period.
 void StatusReport::on_tick(const Source& source) {
   // The launcher starts the mission once all robots have the plan: a new plan is reported at once,
-  // as is the presence of the process at its first tick.
+  // as is the presence of the process at its first tick, and a command, which users wait for.
   const std::uint32_t version = source.inbox.plan_version();
-  const bool all_have_updates = ticks_ == 0 || version != plan_reported_;
+  const std::uint64_t command = source.inbox.command_id();
+  const bool all_have_updates =
+      ticks_ == 0 || version != plan_reported_ || command != command_reported_;
   plan_reported_ = version;
+  command_reported_ = command;
   for (std::size_t first = 0; first < source.robots.size(); first += kGroup) {
     if (all_have_updates || cadence_.is_due(first / kGroup, ticks_) ||
         has_updates(group(source.robots, first))) {
@@ -53,6 +56,7 @@ void StatusReport::publish_group(const Source& source, std::size_t first) {
   message_.plan_epoch = source.inbox.plan_epoch();
   message_.plan_version = source.inbox.plan_version();
   message_.plan_scene_version = source.inbox.plan_scene_version();
+  message_.command_id = source.inbox.command_id();
   message_.stamp_utc_ns = source.utc_now.time_since_epoch().count();
   const auto plan_time = source.inbox.plan_time(source.now);
   message_.plan_time_s = plan_time ? plan_time->plan_time_s : 0.0;

@@ -15,7 +15,7 @@
 namespace swarm::agent {
 
 /// Publishes the status of the robots of a process: groups of them in turn, at the mission's rate
-/// and at once whenever a robot changes its mode or comes to rest.
+/// and at once whenever a robot changes its mode or comes to rest, or a command is obeyed.
 class StatusReport {
  public:
   StatusReport(const Mission& mission, link::Writer<link::StatusMessage>& writer)
@@ -43,7 +43,8 @@ class StatusReport {
   link::Writer<link::StatusMessage>& writer_;
   link::StatusMessage message_;  // reused, so that no tick allocates
   std::uint64_t ticks_ = 0;
-  std::uint32_t plan_reported_ = 0;  // version
+  std::uint32_t plan_reported_ = 0;     // version
+  std::uint64_t command_reported_ = 0;  // id
 };
 
 }  // namespace swarm::agent

@@ -5,7 +5,10 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <limits>
+#include <stdexcept>
 #include <system_error>
+#include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -15,6 +18,45 @@ namespace swarm::shell {
 namespace {
 
 constexpr std::size_t kMaxRunInfoBytes = 64U << 20U;  // with the mission, see run_inputs.hpp
+
+/// The keys of `run.json`. What is wrong with one is thrown, as the parser does.
+class RunKeys {
+ public:
+  explicit RunKeys(const nlohmann::json& json) : json_(json) {}
+
+  std::string text(const char* key) const { return json_.at(key).get<std::string>(); }
+  bool flag(const char* key) const { return json_.at(key).get<bool>(); }
+  link::Vendor vendor(const char* is_cyclone) const {
+    return flag(is_cyclone) ? link::Vendor::kCycloneDds : link::Vendor::kFastDds;
+  }
+  /// A whole number that fits its type: the parser alone would cut it off.
+  template <class Number>
+  Number number(const char* key) const {
+    const nlohmann::json& value = json_.at(key);
+    using Limits = std::numeric_limits<Number>;
+    bool fits = false;
+    if (value.is_number_unsigned()) {
+      fits = std::in_range<Number>(value.get<std::uint64_t>());
+    } else if (value.is_number_integer()) {
+      fits = std::in_range<Number>(value.get<std::int64_t>());
+    }
+    if (fits) return value.get<Number>();
+    throw std::invalid_argument(fmt::format("{} is {}, not a whole number from {} to {}", key,
+                                            value.dump(), Limits::min(), Limits::max()));
+  }
+  Channel channel(const char* key) const {
+    const std::string name = text(key);
+    for (const Channel channel : {Channel::kTopics, Channel::kGroups}) {
+      if (name == to_string(channel)) return channel;
+    }
+    throw std::invalid_argument(fmt::format("{} is \"{}\", not {} or {}", key, name,
+                                            to_string(Channel::kTopics),
+                                            to_string(Channel::kGroups)));
+  }
+
+ private:
+  const nlohmann::json& json_;
+};
 
 }  // namespace
 
@@ -74,7 +116,8 @@ std::string to_json(const RunInfo& info) {
                                {"seed", info.seed},
                                {"began_utc_ns", info.began.time_since_epoch().count()},
                                {"boot_id", info.clock.boot_id},
-                               {"utc_minus_steady_ns", info.clock.utc_minus_steady_ns}};
+                               {"utc_minus_steady_ns", info.clock.utc_minus_steady_ns},
+                               {"replay", info.is_replay}};
   return json.dump(2) + "\n";
 }
 
@@ -87,33 +130,30 @@ Result<RunInfo> read_run_info(const std::filesystem::path& run_dir) {
 }
 
 // Every key is required: a file that lacks one was written by another version, and its run cannot
-// be joined. An unknown channel counts as topics.
+// be joined.
 Result<RunInfo> read_run_info_file(const std::filesystem::path& file) {
   const auto text = read_file(file, kMaxRunInfoBytes);
   if (!text) return tl::unexpected(text.error());
   try {
     const auto json = nlohmann::json::parse(*text);
-    const auto vendor = [&json](const char* is_cyclone) {
-      return json.at(is_cyclone).get<bool>() ? link::Vendor::kCycloneDds : link::Vendor::kFastDds;
-    };
+    const RunKeys keys(json);
     return RunInfo{
-        .domain = json.at("domain").get<std::uint32_t>(),
-        .discovery_host = json.at("discovery_host").get<std::string>(),
-        .discovery_port = json.at("discovery_port").get<std::uint16_t>(),
-        .agents = json.at("agents").get<std::uint32_t>(),
-        .relays = json.at("hubs").get<std::uint32_t>(),
-        .launcher = vendor("cyclone_launcher"),
-        .planner = vendor("cyclone_planner"),
-        .host = json.at("host").get<std::string>(),
-        .interface = json.at("interface").get<std::string>(),
-        .channel = json.at("channel").get<std::string>() == to_string(Channel::kGroups)
-                       ? Channel::kGroups
-                       : Channel::kTopics,
-        .seed = json.at("seed").get<std::uint64_t>(),
-        .began = UtcTime(Duration(json.at("began_utc_ns").get<std::int64_t>())),
-        .clock = {.boot_id = json.at("boot_id").get<std::string>(),
-                  .utc_minus_steady_ns = json.at("utc_minus_steady_ns").get<std::int64_t>()}};
-  } catch (const nlohmann::json::exception& e) {
+        .domain = keys.number<std::uint32_t>("domain"),
+        .discovery_host = keys.text("discovery_host"),
+        .discovery_port = keys.number<std::uint16_t>("discovery_port"),
+        .agents = keys.number<std::uint32_t>("agents"),
+        .relays = keys.number<std::uint32_t>("hubs"),
+        .launcher = keys.vendor("cyclone_launcher"),
+        .planner = keys.vendor("cyclone_planner"),
+        .host = keys.text("host"),
+        .interface = keys.text("interface"),
+        .channel = keys.channel("channel"),
+        .seed = keys.number<std::uint64_t>("seed"),
+        .began = UtcTime(Duration(keys.number<std::int64_t>("began_utc_ns"))),
+        .clock = {.boot_id = keys.text("boot_id"),
+                  .utc_minus_steady_ns = keys.number<std::int64_t>("utc_minus_steady_ns")},
+        .is_replay = keys.flag("replay")};
+  } catch (const std::exception& e) {
     return fail(ErrorCode::kBadInput,
                 fmt::format("{}: not a run directory: {}", file.string(), e.what()));
   }

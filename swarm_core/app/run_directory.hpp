@@ -49,14 +49,15 @@ struct RunInfo {
   Channel channel = Channel::kTopics;
   std::uint64_t seed = 0;
   UtcTime began{};
-  RunClock clock{};  ///< of the host that this file is on
+  RunClock clock{};        ///< of the host that this file is on
+  bool is_replay = false;  ///< a recording is published again: its stamps are old
 };
 
 /// The content of `run.json`.
 std::string to_json(const RunInfo& info);
 /// Writes `run.json`, atomically.
 Result<void> write_run_info(const std::filesystem::path& run_dir, const RunInfo& info);
-/// Reads `run.json`; kBadInput if it is missing or lacks a key.
+/// Reads `run.json`; kBadInput if it is missing, lacks a key, or has a value out of its range.
 Result<RunInfo> read_run_info(const std::filesystem::path& run_dir);
 /// Reads a file of another name with the same content.
 Result<RunInfo> read_run_info_file(const std::filesystem::path& file);

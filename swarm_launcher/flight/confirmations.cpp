@@ -2,51 +2,49 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "swarm_launcher/flight/confirmations.hpp"
 
-#include <algorithm>
-
 #include <fmt/format.h>
 
 namespace swarm::launcher {
-namespace {
-
-/// A robot that has arrived or has stopped for good stays so, whatever the phase is.
-bool obeys(RobotMode mode, CommandKind kind) {
-  switch (kind) {
-    case CommandKind::kStart:
-      return mode != RobotMode::kWaiting;
-    case CommandKind::kPause:
-      return mode != RobotMode::kMoving;
-    case CommandKind::kResume:
-      return mode != RobotMode::kHolding;
-    case CommandKind::kStop:
-      break;
-  }
-  return mode == RobotMode::kStopped;
-}
-
-}  // namespace
 
 void Confirmations::wait_for(ClientId client, CommandKind kind, SteadyTime now) {
   waiting_.push_back({client, kind, now});
 }
 
-void Confirmations::on_status(RobotId robot, RobotMode mode, SteadyTime now) {
-  modes_[robot.value()] = {mode, now};
+// The newest one of its kind: robots name only the newest command.
+void Confirmations::on_sent(const SentCommand& command) {
+  for (Waiting& waiting : waiting_) {
+    if (waiting.kind == command.kind) waiting.command = command;
+  }
 }
 
-std::uint32_t Confirmations::confirmed(const Waiting& waiting) const {
-  return static_cast<std::uint32_t>(
-      std::count_if(modes_.begin(), modes_.end(), [&](const Received& robot) {
-        return robot.at > waiting.since && obeys(robot.mode, waiting.kind);
-      }));
+void Confirmations::on_status(RobotId robot, const Obedience& reported, UtcTime now) {
+  robots_.at(robot.value()) = {reported, now};
 }
 
-std::vector<Confirmations::Answer> Confirmations::due(std::uint32_t lost, SteadyTime now) {
+std::uint32_t Confirmations::confirmed(const Waiting& waiting,
+                                       const std::vector<bool>& is_lost) const {
+  if (!waiting.command) return 0;
+  std::uint32_t count = 0;
+  for (std::size_t i = 0; i < robots_.size(); ++i) {
+    const auto& robot = robots_[i];
+    if (robot && !is_lost[i] &&
+        confirms(robot->reported, *waiting.command, robot->at, stamp_tolerance_)) {
+      ++count;
+    }
+  }
+  return count;
+}
+
+std::vector<Confirmations::Answer> Confirmations::due(const std::vector<RobotId>& lost,
+                                                      SteadyTime now) {
   std::vector<Answer> answers;
-  const auto robots = static_cast<std::uint32_t>(modes_.size()) - lost;
+  if (waiting_.empty()) return answers;
+  std::vector<bool> is_lost(robots_.size(), false);
+  for (const RobotId robot : lost) is_lost.at(robot.value()) = true;
+  const auto robots = static_cast<std::uint32_t>(robots_.size() - lost.size());
   std::erase_if(waiting_, [&](const Waiting& waiting) {
-    const std::uint32_t obeying = std::min(confirmed(waiting), robots);
-    if (obeying < robots && now - waiting.since < kTimeout) return false;
+    const std::uint32_t obeying = confirmed(waiting, is_lost);
+    if ((obeying < robots || !waiting.command) && now - waiting.since < kTimeout) return false;
     answers.push_back(
         {waiting.client,
          obeying == robots

@@ -10,7 +10,6 @@
 
 #include "swarm_core/mission_file/scene_change_file.hpp"
 #include "swarm_launcher/flight/process_commands.hpp"
-#include "swarm_link/event_names.hpp"
 
 namespace swarm::launcher {
 namespace {
@@ -38,7 +37,8 @@ FlightLoop::FlightLoop(const FlightOptions& options, const std::filesystem::path
       supervisor_(supervision_of(options), now),
       view_(options.mission.robots.count, options.mission.link.communication_radius_m),
       fallen_(options.mission, ports_.scene, ports_.log, ports_.logged_position),
-      confirmations_(options.mission.robots.count) {}
+      stamp_tolerance_(from_seconds(options.mission.timing.clock_skew_warn_s)),
+      confirmations_(options.mission.robots.count, stamp_tolerance_) {}
 
 FlightLoop::~FlightLoop() {
   for (const auto& [pid, process] : children_) ports_.spawner.signal(pid, EndSignal::kKill);
@@ -49,10 +49,12 @@ FlightLoop::~FlightLoop() {
 Result<void> FlightLoop::step(const FlightTime& now) {
   reap(now);
   read_bus(now);
+  report_refusals(now);
   if (ports_.hosts != nullptr) {
     for (const LogEvent& event : ports_.hosts->step(supervisor_, now.steady)) {
       ports_.log.log(now.utc, event);
     }
+    for (const ProcessIndex process : ports_.hosts->take_ended()) release(process, now.utc);
   }
   serve_requests(now);
   for (const Action& action : supervisor_.step(now.steady)) {
@@ -80,71 +82,16 @@ void FlightLoop::reap(const FlightTime& now) {
     measurements_.cpu_s += child->cpu_s;
     measurements_.max_rss_mb = std::max(measurements_.max_rss_mb, child->max_rss_mb);
     supervisor_.on_exit(known->second, child->exit, now.steady);
+    release(known->second, now.utc);
     children_.erase(known);
   }
 }
 
-// Republishes statuses and events for monitors, which do not discover the agents.
-void FlightLoop::read_bus(const FlightTime& now) {
-  ports_.bus.participant->receive();
-  ports_.bus.inbox.receive(now.utc);
-  for (const link::StatusMessage& status : ports_.bus.inbox.statuses()) {
-    if (ports_.observer != nullptr) ports_.observer->on_status(status);
-    ports_.bus.status_relay->write(status);
-    on_status(status, now);
-  }
-  for (const link::HeartbeatMessage& beat : ports_.bus.inbox.heartbeats()) {
-    supervisor_.on_heartbeat(beat.epoch);
-  }
-  read_events(now);
-  read_stops(now.steady);
-}
-
-// A robot whose id is used twice is displayed as well, once: of other events the log is enough.
-void FlightLoop::read_events(const FlightTime& now) {
-  const auto events = ports_.bus.inbox.events();
-  const auto senders = ports_.bus.inbox.event_senders();
-  for (std::size_t i = 0; i < events.size(); ++i) {
-    if (!throttle_.admit(senders[i], now.steady)) continue;
-    ports_.log.forward(events[i]);
-    if (events[i].code != link::kDuplicateId || !duplicates_.insert(events[i].source).second) {
-      continue;
-    }
-    ports_.display.print(fmt::format(
-        "{}: its process receives states under an id of its own that another process sent",
-        link::source_name(events[i].source)));
-  }
-  if (const auto dropped = throttle_.report(now.steady)) {
-    ports_.log.log(now.utc, {.warning = true, .code = "events-dropped", .text = *dropped});
-  }
-}
-
-// A command sends its stop to the robots, too, past a launcher that may have been suspended: what
-// the robots obey holds for the run.
-void FlightLoop::read_stops(SteadyTime now) {
-  if (ports_.stops == nullptr || !ports_.stops->take()) return;
-  if (supervisor_.phase() == MissionPhase::kStopped) return;
-  supervisor_.on_command(CommandKind::kStop, now);
-  if (ports_.hosts != nullptr) ports_.hosts->on_user_command(CommandKind::kStop);
-}
-
-// Positions are kept for robots that fall, and each robot's report goes to the supervisor.
-void FlightLoop::on_status(const link::StatusMessage& status, const FlightTime& now) {
-  const UtcTime stamp(Duration(status.stamp_utc_ns));
-  for (const link::RobotStatusMessage& robot : status.robots) {
-    const RobotId id(robot.robot_id);
-    view_.take(robot);
-    confirmations_.on_status(id, robot.mode, now.steady);
-    fallen_.on_status(
-        id, {.at = stamp, .position_m = {robot.x_m, robot.y_m}, .at_rest = robot.settled});
-    if (ports_.hosts != nullptr) ports_.hosts->on_status(id, now.steady);
-    supervisor_.on_status(id, {.has_plan = status.plan_version > 0,
-                               .receives_neighbours = view_.receives_neighbours(robot.robot_id),
-                               .mode = robot.mode,
-                               .settled = robot.settled,
-                               .scene_version = status.plan_scene_version,
-                               // On the launcher's steady clock, which the supervisor uses.
-                               .sent_at = now.steady - (now.utc - stamp)});
+// The next process of these robots reports from another sender.
+void FlightLoop::release(ProcessIndex process, UtcTime now) {
+  const auto [first, count] = supervisor_.robots_of(process);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    ports_.bus.inbox.release_status(RobotId(first.value() + i), now);
   }
 }
 
@@ -194,19 +141,28 @@ void FlightLoop::signal(const SignalProcess& action) {
 
 // The UTC stamp serves as the command's id, so ids increase also after a restart of the launcher.
 // Two commands of one step have the same time; robots refuse an id that they know, so the second
-// one is stamped a nanosecond later.
+// one is stamped a nanosecond later. A repeated stop keeps its id, which the robots confirm.
 void FlightLoop::send(CommandKind kind, UtcTime now) {
-  last_command_ns_ = std::max(last_command_ns_ + 1, now.time_since_epoch().count());
+  SentCommand command{.kind = kind};
+  if (kind == CommandKind::kStop && stop_) {
+    command = *stop_;
+  } else {
+    last_command_ns_ = std::max(last_command_ns_ + 1, now.time_since_epoch().count());
+    command.id = static_cast<std::uint64_t>(last_command_ns_);
+    command.stamp = UtcTime(Duration(last_command_ns_));
+    confirmations_.on_sent(command);
+  }
+  if (kind == CommandKind::kStop) stop_ = command;
   ports_.bus.commands->write({.kind = kind,
-                              .command_id = static_cast<std::uint64_t>(last_command_ns_),
-                              .stamp_utc_ns = last_command_ns_});
+                              .command_id = command.id,
+                              .stamp_utc_ns = command.stamp.time_since_epoch().count()});
 }
 
 // Beside the command's reliable topic, which on a lossy network may be late, and until the last
-// process has ended.
+// process has ended. The same stop, so that robots confirm it by either path.
 void FlightLoop::send_stop(const FlightTime& now) {
   if (ports_.stop == nullptr || supervisor_.phase() != MissionPhase::kStopped) return;
-  ports_.stop->step(now.steady, now.utc);
+  ports_.stop->step(now.steady, stop_ ? stop_->stamp : now.utc);
   for (const RobotId robot : ports_.stop->newly_confirmed()) supervisor_.on_stop_confirmed(robot);
 }
 

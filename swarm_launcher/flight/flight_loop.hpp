@@ -61,9 +61,11 @@ class FlightLoop {
  private:
   /// The parts of a step, in their order.
   void reap(const FlightTime& now);
+  void release(ProcessIndex process, UtcTime now);
   void read_bus(const FlightTime& now);
   void read_events(const FlightTime& now);
   void read_stops(SteadyTime now);
+  void report_refusals(const FlightTime& now);
   void serve_requests(const FlightTime& now);
   Result<void> act(const Action& action, UtcTime now);
   void show(SteadyTime now);
@@ -88,13 +90,17 @@ class FlightLoop {
   Supervisor supervisor_;
   SwarmView view_;
   FallenRobots fallen_;
+  Duration stamp_tolerance_;  ///< of statuses that confirm commands
   Confirmations confirmations_;
+  std::optional<SentCommand> stop_;  ///< the emergency stop, once it was sent
   EventThrottle throttle_;
   std::set<std::uint32_t> duplicates_;  ///< robots whose duplicate id was displayed
   std::map<pid_t, ProcessIndex> children_;
   std::vector<ControlRequests::ClientId> stopping_;  // wait for the confirmation of a stop
   Measurements measurements_;
-  SteadyTime shown_at_;               ///< last update of the live line
+  SteadyTime shown_at_;  ///< last update of the live line
+  link::RefusalCounters reported_refusals_;
+  SteadyTime refusals_reported_at_;
   std::int64_t last_command_ns_ = 0;  ///< stamp of the last command
   std::uint32_t planner_starts_ = 0;
 };

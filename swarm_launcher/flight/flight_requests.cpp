@@ -26,7 +26,7 @@ std::optional<CommandKind> command_named(const std::string& name) {
 void FlightLoop::serve_requests(const FlightTime& now) {
   for (const ControlRequests::Request& request : ports_.control.poll()) serve(request, now);
   answer_stops();
-  for (const auto& [client, text] : confirmations_.due(supervisor_.counts().lost, now.steady)) {
+  for (const auto& [client, text] : confirmations_.due(supervisor_.lost(), now.steady)) {
     ports_.control.answer(client, text);
   }
 }

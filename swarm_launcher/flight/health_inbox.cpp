@@ -5,39 +5,52 @@
 #include <cstddef>
 #include <utility>
 
+#include "swarm_core/app/file_watch.hpp"
+
 namespace swarm::launcher {
+namespace {
+
+/// Takes what arrived on a topic and keeps what the check accepts.
+template <class M, class Check>
+void take_checked(link::Reader<M>& reader, std::vector<M>& out, std::vector<std::uint64_t>& senders,
+                  Check check) {
+  out.clear();
+  senders.clear();
+  reader.take_with_senders(out, senders);
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    if (!check(out[i], senders[i])) continue;
+    if (kept != i) out[kept] = std::move(out[i]);
+    senders[kept++] = senders[i];
+  }
+  out.resize(kept);
+  senders.resize(kept);
+}
+
+}  // namespace
 
 HealthInbox::HealthInbox(Readers readers, const link::WireLimits& limits)
     : readers_(std::move(readers)),
       gate_({.limits = limits, .own_source = link::kLauncherSource}) {}
 
+// Events last: whose they may be follows from statuses and heartbeats.
 void HealthInbox::receive(UtcTime now) {
-  statuses_.clear();
-  readers_.status->take(statuses_);
-  std::erase_if(statuses_,
-                [&](const link::StatusMessage& status) { return !gate_.status(status, now); });
-  receive_events();
-  heartbeats_.clear();
-  readers_.heartbeat->take(heartbeats_);
-  std::erase_if(heartbeats_,
-                [&](const link::HeartbeatMessage& beat) { return !gate_.heartbeat(beat, now); });
+  take_checked(*readers_.status, statuses_, senders_,
+               [&](const link::StatusMessage& status, std::uint64_t sender) {
+                 return gate_.status_of(status, {sender, now}).has_value();
+               });
+  take_checked(*readers_.heartbeat, heartbeats_, senders_,
+               [&](const link::HeartbeatMessage& beat, std::uint64_t sender) {
+                 return gate_.heartbeat_of(beat, {sender, now}).has_value();
+               });
+  // Lost records fail the audit of the run.
+  take_checked(*readers_.event, events_, event_senders_,
+               [&](const link::EventMessage& event, std::uint64_t sender) {
+                 const bool is_evidence = event.code == shell::kRecordsLost;
+                 return gate_.event_of(event, {sender, now}, is_evidence).has_value();
+               });
   gate_.set_undecodable(readers_.status->undecodable() + readers_.event->undecodable() +
                         readers_.heartbeat->undecodable());
-}
-
-// Events under the launcher's own source are refused as forged; see GateOptions::own_source.
-void HealthInbox::receive_events() {
-  events_.clear();
-  event_senders_.clear();
-  readers_.event->take_with_senders(events_, event_senders_);
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < events_.size(); ++i) {
-    if (!gate_.event(events_[i])) continue;
-    if (kept != i) events_[kept] = std::move(events_[i]);
-    event_senders_[kept++] = event_senders_[i];
-  }
-  events_.resize(kept);
-  event_senders_.resize(kept);
 }
 
 }  // namespace swarm::launcher

@@ -27,7 +27,10 @@ class HealthInbox {
   /// Replaces what the previous call received.
   void receive(UtcTime now);
 
-  /// Of the last receive(); robot ids are those of the mission.
+  /// The process of a robot has ended: the next one's statuses come from another sender.
+  void release_status(RobotId robot, UtcTime now) { gate_.release_status(robot, now); }
+
+  /// Of the last receive(); robot ids are those of the mission, each from its own sender.
   std::span<const link::StatusMessage> statuses() const { return statuses_; }
   /// Of the last receive().
   std::span<const link::EventMessage> events() const { return events_; }
@@ -39,14 +42,13 @@ class HealthInbox {
   const link::RefusalCounters& refused() const { return gate_.refused(); }
 
  private:
-  void receive_events();
-
   Readers readers_;
   link::Gate gate_;
   std::vector<link::StatusMessage> statuses_;
   std::vector<link::EventMessage> events_;
   std::vector<std::uint64_t> event_senders_;
   std::vector<link::HeartbeatMessage> heartbeats_;
+  std::vector<std::uint64_t> senders_;
 };
 
 }  // namespace swarm::launcher

@@ -31,6 +31,7 @@ void StopOrder::step(SteadyTime now, UtcTime utc_now) {
   received_.clear();
   sender_->take(received_);
   for (const link::StopConfirmation& some : received_) {
+    if (some.command_id != static_cast<std::uint64_t>(stamp_utc_ns_)) continue;  // of another stop
     const std::uint64_t end = std::uint64_t{some.first_robot_id} + some.robots;
     if (end > robots_.value_or(kMaxRobots)) continue;  // of no robot of the run
     if (has_confirmed_.size() < end) has_confirmed_.resize(end);

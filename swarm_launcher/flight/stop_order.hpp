@@ -14,14 +14,14 @@
 namespace swarm::launcher {
 
 /// An emergency stop that a process sends to the robots on the stop channel, and the robots that
-/// have confirmed it. Single thread; the time is passed in.
+/// have confirmed it: only answers that name its id count. Single thread; the time is passed in.
 class StopOrder {
  public:
   /// `robots`: number of robots of the run, if it is known.
   StopOrder(std::unique_ptr<link::StopSender> sender, std::optional<std::uint32_t> robots);
 
   /// Sends if a datagram is due: at every call in the first half second, then every 50 ms. Takes
-  /// the confirmations.
+  /// the confirmations. The UTC time of the first call is stamp and id of the stop.
   void step(SteadyTime now, UtcTime utc_now);
 
   /// Robots that confirmed in the last step, each once.

@@ -223,7 +223,8 @@ void RemoteHosts::watch(Host& host, Supervisor& supervisor, SteadyTime now,
   if (!host.over) return;
   host.counted = true;
   for (std::uint32_t i = 0; i < host.processes; ++i) {
-    supervisor.on_exit(ProcessIndex(host.first_process.value() + i), {}, now);
+    ended_.emplace_back(host.first_process.value() + i);
+    supervisor.on_exit(ended_.back(), {}, now);
   }
   if (!begun_) free_.push_back({host.first_robot - offer_.first_robot, host.robots});
   log.push_back({.warning = supervisor.stage() != Supervisor::Stage::kEnding,

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "swarm_launcher/hosts/host_watch.hpp"
@@ -45,6 +46,9 @@ class RemoteHosts {
 
   /// Accepts hosts, reads their lines and reports to the supervisor. Returns what to log.
   std::vector<LogEvent> step(Supervisor& supervisor, SteadyTime now);
+
+  /// Processes of hosts that have ended since the last call.
+  std::vector<ProcessIndex> take_ended() { return std::exchange(ended_, {}); }
 
   /// Requests the end of a process of another host, and with it of all processes of that host.
   void end(ProcessIndex process, EndSignal signal);
@@ -94,6 +98,7 @@ class RemoteHosts {
   std::filesystem::path dir_;
   std::vector<Host> hosts_;
   std::vector<std::size_t> joined_;  // since the last step: indices of hosts_
+  std::vector<ProcessIndex> ended_;  // since the last call of take_ended()
   std::vector<Block> free_;          // not assigned yet
   std::vector<bool> collected_;      // robot logs
   bool paused_ = false;              // by us

@@ -14,9 +14,9 @@ namespace swarm::launcher {
 
 /// Bounds how many events of each sender are logged, so that a sender which floods the launcher, by
 /// a fault or on purpose, fills neither the disk nor the log: a token bucket per sender. Senders
-/// are distinguished by the DDS writer that published the event, and not by the source that the
-/// event names, so that a flood in a robot's name does not silence the robot. Pure; the times are
-/// passed in. Not thread-safe.
+/// are distinguished by the DDS participant that published the event, and not by the source that
+/// the event names, so that a flood in a robot's name does not silence the robot. Pure; the times
+/// are passed in. Not thread-safe.
 class EventThrottle {
  public:
   static constexpr double kBurst = 200.0;    ///< events at once

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <utility>
 
 #include <fmt/format.h>
@@ -87,6 +88,7 @@ void Supervisor::on_status(RobotId robot, const RobotReport& report) {
   const bool is_late = r.silent_since && report.sent_at <= *r.silent_since;
   if (is_late && !r.received && !r.absent) return;
   r.report = report;
+  r.has_stopped = r.has_stopped || report.confirms_stop;
   r.received = true;
   r.cleared = false;
   process.silence.on_received();
@@ -159,9 +161,9 @@ void Supervisor::gather(SteadyTime now, std::vector<Action>& actions) {
     actions.emplace_back(LogEvent{
         .warning = true,
         .code = "quorum",
-        .text =
-            fmt::format("{} of {} robots are not ready after {} s: {}", missing.size(),
-                        robots_.size(), options_.launcher.quorum_timeout_s, describe(missing))});
+        .text = fmt::format("{} of {} robots are not ready after {} s: {}{}", missing.size(),
+                            robots_.size(), options_.launcher.quorum_timeout_s, describe(missing),
+                            hindrances_of(missing))});
     if (!enough) {
       begin_ending(Outcome::kQuorumTimeout, now);
       return;
@@ -170,6 +172,21 @@ void Supervisor::gather(SteadyTime now, std::vector<Action>& actions) {
   leave_out_absent(now);
   stage_ = Stage::kRunning;
   command(CommandKind::kStart, now, actions);
+}
+
+// What the processes of missing robots reported: robots by reason.
+std::string Supervisor::hindrances_of(const std::vector<RobotId>& missing) const {
+  std::map<std::string, std::vector<RobotId>> robots;
+  for (const RobotId robot : missing) {
+    const std::uint32_t first = robot.value() - robot.value() % options_.per_process;
+    if (const std::string& why = robots_[first].hindrance; !why.empty()) {
+      robots[why].push_back(robot);
+    }
+  }
+  std::string text;
+  for (const auto& [why, hindered] : robots)
+    text += fmt::format("; {}: {}", describe(hindered), why);
+  return text;
 }
 
 // A delayed step sends at most two repetitions, so that overdue ones do not come as a burst.
@@ -302,9 +319,10 @@ Supervisor::Counts Supervisor::counts() const {
       continue;
     }
     c.ready += r.received && r.report.has_plan && r.report.receives_neighbours ? 1 : 0;
-    c.arrived += r.report.mode == RobotMode::kArrived && has_newest_goal(r) ? 1 : 0;
+    c.arrived +=
+        r.report.mode == RobotMode::kArrived && !r.has_stopped && has_newest_goal(r) ? 1 : 0;
     c.settled += r.report.settled && has_newest_goal(r) ? 1 : 0;
-    c.stopped += r.report.mode == RobotMode::kStopped ? 1 : 0;
+    c.stopped += r.has_stopped ? 1 : 0;
   }
   return c;
 }
@@ -315,7 +333,7 @@ std::vector<RobotId> Supervisor::unstopped() const {
   std::vector<RobotId> out;
   for (std::uint32_t i = 0; i < robots_.size(); ++i) {
     const bool runs = process_of(RobotId(i)).alive && !robots_[i].lost && !robots_[i].absent;
-    if (runs && robots_[i].report.mode != RobotMode::kStopped) out.emplace_back(i);
+    if (runs && !robots_[i].has_stopped) out.emplace_back(i);
   }
   return out;
 }

@@ -50,6 +50,7 @@ struct RobotReport {
   bool settled = false;
   std::uint64_t scene_version = 0;  ///< scene that its plan was made for
   SteadyTime sent_at{};             ///< by its stamp, on the launcher's clock
+  bool confirms_stop = false;       ///< it has obeyed the emergency stop
 };
 
 /// Signals that end a process, weakest first.
@@ -122,8 +123,10 @@ class Supervisor {
   /// silence began.
   void on_status(RobotId robot, const RobotReport& report);
   /// A robot has confirmed a stop by another path than its status.
-  void on_stop_confirmed(RobotId robot) {
-    robots_.at(robot.value()).report.mode = RobotMode::kStopped;
+  void on_stop_confirmed(RobotId robot) { robots_.at(robot.value()).has_stopped = true; }
+  /// The process of a robot, which is its first one, reports why it cannot receive all others.
+  void on_hindered(RobotId robot, const std::string& why) {
+    robots_.at(robot.value()).hindrance = why;
   }
   /// A heartbeat of the planner of this epoch arrived.
   void on_heartbeat(std::uint64_t epoch);
@@ -188,11 +191,13 @@ class Supervisor {
   };
   struct Robot {
     RobotReport report;
-    bool received = false;  ///< since the last start of its process
-    bool absent = false;    ///< not received when the mission started
+    bool has_stopped = false;  ///< confirmed the emergency stop, which is final
+    bool received = false;     ///< since the last start of its process
+    bool absent = false;       ///< not received when the mission started
     bool lost = false;
     bool cleared = false;                      ///< by a user, since it fell silent
     std::optional<SteadyTime> silent_since{};  // its body is an obstacle
+    std::string hindrance{};                   ///< last report of its process before the start
   };
 
   /// Whether another host starts the process.
@@ -233,6 +238,7 @@ class Supervisor {
   static std::string_view sign_of_life(std::uint32_t process);
   std::string name_of(ProcessIndex process) const;
   void leave_out_absent(SteadyTime now);
+  std::string hindrances_of(const std::vector<RobotId>& missing) const;
   void report_late_joiners(std::vector<Action>& actions);
 
   void hold_without_planner(std::uint32_t deaths);

@@ -34,6 +34,8 @@ class StateChannel {
   /// robots' own states be published. A process for which it is false would enter cells without
   /// receiving who is there. It is tried again at each listen_around().
   virtual bool receives_all() const { return true; }
+  /// Whether that is for lack of open files, see `ulimit -n`.
+  virtual bool lacks_files() const { return false; }
 
   /// Batches that could not be decoded, since the start.
   virtual std::uint64_t undecodable() const = 0;

@@ -24,7 +24,7 @@ static_assert(std::endian::native == std::endian::little);  // of the ids in a c
 constexpr std::size_t kHeaderBytes = 8;
 using Header = std::array<char, kHeaderBytes>;
 constexpr Header kStop{'S', 'W', 'S', 'T', 'O', 'P', 0, 1};
-constexpr Header kConfirmation{'S', 'W', 'S', 'T', 'O', 'P', 1, 1};
+constexpr Header kConfirmation{'S', 'W', 'S', 'T', 'O', 'P', 1, 2};
 constexpr Header kBeat{'S', 'W', 'S', 'T', 'O', 'P', 2, 1};
 constexpr std::size_t kMaxBeats = 8;  // kept of those that arrive between two calls
 constexpr int kReceiveBytes = 1 << 18;
@@ -121,6 +121,11 @@ void StopSender::take(std::vector<StopConfirmation>& confirmations) {
 
 /// Listens in the group and answers senders directly.
 struct StopReceiver::Impl : DatagramSink {
+  struct Sender {
+    sockaddr_in address;
+    std::uint64_t command_id;  // of its last stop
+  };
+
   Impl(const StopChannelOptions& options, int group_socket, int reply_socket)
       : fd(group_socket), reply_fd(reply_socket), drain(options.faults) {}
   ~Impl() override {
@@ -139,11 +144,15 @@ struct StopReceiver::Impl : DatagramSink {
     CommandMessage message;
     if (!content || !decode(*content, message)) return;
     stop = message;
-    const auto is_sender = [&](const sockaddr_in& s) {
-      return s.sin_port == sender.sin_port && s.sin_addr.s_addr == sender.sin_addr.s_addr;
-    };
-    if (senders.size() >= kMaxSenders || std::ranges::any_of(senders, is_sender)) return;
-    senders.push_back(sender);
+    const auto known = std::ranges::find_if(senders, [&](const Sender& s) {
+      return s.address.sin_port == sender.sin_port &&
+             s.address.sin_addr.s_addr == sender.sin_addr.s_addr;
+    });
+    if (known != senders.end()) {
+      known->command_id = message.command_id;
+    } else if (senders.size() < kMaxSenders) {
+      senders.push_back({sender, message.command_id});
+    }
   }
 
   void keep(const LauncherBeat& beat) {
@@ -156,7 +165,7 @@ struct StopReceiver::Impl : DatagramSink {
   DatagramDrain drain;
   std::vector<LauncherBeat> beats{};
   std::optional<CommandMessage> stop{};
-  std::vector<sockaddr_in> senders{};
+  std::vector<Sender> senders{};
 };
 
 StopReceiver::StopReceiver(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
@@ -184,11 +193,15 @@ std::optional<CommandMessage> StopReceiver::take() {
 
 std::span<const LauncherBeat> StopReceiver::beats() const { return impl_->beats; }
 
-void StopReceiver::confirm(const StopConfirmation& stopped) {
-  std::array<std::byte, kHeaderBytes + sizeof stopped> bytes;
+void StopReceiver::confirm(const RobotRange& stopped) {
+  StopConfirmation confirmation{.first_robot_id = stopped.first, .robots = stopped.count};
+  std::array<std::byte, kHeaderBytes + sizeof confirmation> bytes;
   std::memcpy(bytes.data(), kConfirmation.data(), kHeaderBytes);
-  std::memcpy(bytes.data() + kHeaderBytes, &stopped, sizeof stopped);
-  for (const sockaddr_in& sender : impl_->senders) send_to(impl_->reply_fd, bytes, sender);
+  for (const Impl::Sender& sender : impl_->senders) {
+    confirmation.command_id = sender.command_id;
+    std::memcpy(bytes.data() + kHeaderBytes, &confirmation, sizeof confirmation);
+    send_to(impl_->reply_fd, bytes, sender.address);
+  }
   impl_->senders.clear();
 }
 

@@ -23,7 +23,8 @@
 /// The launcher's beats go to the same group: they, too, must not depend on discovery.
 ///
 /// A datagram is 8 bytes "SWSTOP", kind and version, then the content: of a stop the CDR bytes of
-/// its CommandMessage, of a confirmation the ids of the stopped robots, of a beat see LauncherBeat.
+/// its CommandMessage, of a confirmation the ids of the stopped robots and of the stop that it
+/// answers, of a beat see LauncherBeat.
 namespace swarm::link {
 
 /// Where the datagrams of a run go.
@@ -37,6 +38,7 @@ struct StopChannelOptions {
 struct StopConfirmation {
   std::uint32_t first_robot_id = 0;  ///< the smallest id
   std::uint32_t robots = 0;          ///< their number
+  std::uint64_t command_id = 0;      ///< the receiver's own stop that it answers
 };
 
 /// The end that stops robots: launcher, or a command. Single thread.
@@ -81,8 +83,9 @@ class StopReceiver {
   /// first seven and the last one.
   std::span<const LauncherBeat> beats() const;
 
-  /// Answers all who have sent a stop since the last confirmation.
-  void confirm(const StopConfirmation& stopped);
+  /// Answers all who have sent a stop since the last confirmation, each with the id of its last
+  /// one.
+  void confirm(const RobotRange& stopped);
 
  private:
   struct Impl;

@@ -33,7 +33,8 @@ bool is_after(std::int64_t stamp_utc_ns, std::uint64_t latest_ns) {
 Gate::Gate(const GateOptions& options)
     : options_(options),
       ruler_(options.stamps == Stamps::kLive ? std::optional(options.limits.planner_takeover)
-                                             : std::nullopt) {}
+                                             : std::nullopt),
+      status_owners_(options.limits.status_takeover) {}
 
 std::uint64_t Gate::latest_ns(UtcTime now) const {
   return to_ns(now + options_.limits.clock_skew_refuse);
@@ -86,6 +87,12 @@ Checked<void> Gate::heartbeat(const HeartbeatMessage& message, UtcTime now) {
   auto checked = check_heartbeat(message);
   if (checked) checked = order(message, now);
   return counted(checked);
+}
+
+Checked<void> Gate::heartbeat_of(const HeartbeatMessage& message, const Sent& sent) {
+  const auto checked = heartbeat(message, sent.received);
+  if (checked) planner_senders_.insert(sent.sender);
+  return checked;
 }
 
 Checked<void> Gate::any_heartbeat(const HeartbeatMessage& message, UtcTime now) {
@@ -145,6 +152,14 @@ Checked<void> Gate::status(const StatusMessage& message, UtcTime now) {
   return counted(checked);
 }
 
+// Only a valid status may own its robots.
+Checked<void> Gate::status_of(const StatusMessage& message, const Sent& sent) {
+  auto checked = check_status(message, options_.limits);
+  if (checked) checked = order(message, sent.received);
+  if (checked) checked = status_owners_.accept(message, sent);
+  return counted(checked);
+}
+
 Checked<void> Gate::order(const StatusMessage& message, UtcTime now) const {
   const std::uint64_t latest = latest_ns(now);
   if (message.plan_epoch > latest || message.plan_scene_version > latest) {
@@ -159,6 +174,26 @@ Checked<void> Gate::event(const EventMessage& message) {
   auto checked = check_event(message, options_.limits);
   if (checked && options_.own_source == message.source) checked = refuse(RefusalReason::kForged);
   return counted(checked);
+}
+
+Checked<void> Gate::event_of(const EventMessage& message, const Sent& sent, bool is_evidence) {
+  auto checked = check_event(message, options_.limits);
+  const bool is_own = options_.own_source == message.source;
+  if (checked && (is_own || !is_of_its_source(message, sent, is_evidence))) {
+    checked = refuse(RefusalReason::kForged);
+  }
+  return counted(checked);
+}
+
+// A planner that stands by reports events, but publishes no heartbeats.
+bool Gate::is_of_its_source(const EventMessage& message, const Sent& sent, bool is_evidence) const {
+  if (sent.sender == 0) return true;
+  if (message.source == kPlannerSource) {
+    return !is_evidence || planner_senders_.contains(sent.sender);
+  }
+  const RobotId robot(message.source);
+  return is_evidence ? status_owners_.is_of(robot, sent.sender)
+                     : status_owners_.may_be_of(robot, sent.sender, sent.received);
 }
 
 // The vector is sized at the first call: only processes that forward states need it.

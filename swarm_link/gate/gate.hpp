@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <vector>
 
 #include "swarm_link/gate/content_checks.hpp"
 #include "swarm_link/gate/echo_guard.hpp"
 #include "swarm_link/gate/newest_key.hpp"
 #include "swarm_link/gate/ruling_planner.hpp"
+#include "swarm_link/gate/status_owners.hpp"
 
 namespace swarm::link {
 
@@ -49,14 +51,24 @@ class Gate {
   Checked<Scene> scene(const SceneMessage& message, UtcTime now);
   /// Ordered by number; of the ruling planner.
   Checked<void> heartbeat(const HeartbeatMessage& message, UtcTime now);
+  /// The same; remembers the sender as a planner.
+  Checked<void> heartbeat_of(const HeartbeatMessage& message, const Sent& sent);
   /// Of any planner, in any order: for planners, which watch each other.
   Checked<void> any_heartbeat(const HeartbeatMessage& message, UtcTime now);
   /// Ordered by id, except that a stop passes whatever its stamp and id are, and again and again.
   Checked<void> command(const CommandMessage& message, UtcTime now);
   /// Not ordered: statuses have no number, and DDS keeps each writer's order.
   Checked<void> status(const StatusMessage& message, UtcTime now);
+  /// The same, and of each robot only its own sender's (RawSample::sender).
+  Checked<void> status_of(const StatusMessage& message, const Sent& sent);
+  /// The process of a robot has ended: the next one may have another sender.
+  void release_status(RobotId robot, UtcTime now) { status_owners_.release(robot, now); }
   /// With any stamp: a process must be able to report that its own clock is wrong.
   Checked<void> event(const EventMessage& message);
+  /// The same, and not of a sender whose statuses of that robot are refused. `is_evidence`: it
+  /// decides on the verdict of the run, so that it must come from the sender of the robot's
+  /// statuses or of the planner's heartbeats.
+  Checked<void> event_of(const EventMessage& message, const Sent& sent, bool is_evidence);
 
   /// The batch without its states, which the caller passes to state() one by one.
   Checked<void> batch(const CellStatesMessage& message) { return counted(check_batch(message)); }
@@ -115,6 +127,7 @@ class Gate {
   Checked<void> order(const CommandMessage& message, UtcTime now);
   Checked<void> order(const StatusMessage& message, UtcTime now) const;
   PlannerOrder order_of(std::uint64_t epoch) const;
+  bool is_of_its_source(const EventMessage& message, const Sent& sent, bool is_evidence) const;
 
   GateOptions options_;
   RefusalCounters refused_;        ///< since the start
@@ -124,6 +137,8 @@ class Gate {
   std::uint64_t foreign_heartbeats_ = 0;
   NewestKey<std::uint64_t> scene_;  ///< the newest of each topic
   NewestKey<std::uint64_t> command_{0};
+  StatusOwners status_owners_;
+  std::set<std::uint64_t> planner_senders_;            ///< whose heartbeats passed
   std::vector<NewestKey<std::int64_t>> newest_state_;  // by robot, once newer_state() is used
 };
 

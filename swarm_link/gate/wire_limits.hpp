@@ -19,6 +19,7 @@ struct WireLimits {
   Duration clock_skew_warn{};    ///< a stamp further from our clock is used and reported
   Duration clock_skew_refuse{};  ///< a stamp further from our clock is refused
   Duration planner_takeover{};   ///< silence of a planner after which another one is followed
+  Duration status_takeover{};    ///< silence of a robot after which another sender is followed
 };
 
 /// Limits of a mission; the slack of the bounds is the default.

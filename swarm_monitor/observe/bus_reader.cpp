@@ -18,11 +18,8 @@ constexpr double kNoNeighbour_m = 1e8;
 
 }  // namespace
 
-/// Stamps of recorded states are accepted, since the run may be a replay of an old recording;
-/// everything else is checked as in an agent.
-BusReader::BusReader(const Mission& mission, Observer& observer)
-    : gate_({.limits = link::wire_limits(mission), .stamps = link::Stamps::kRecorded}),
-      observer_(observer) {}
+BusReader::BusReader(const Mission& mission, Observer& observer, link::Stamps stamps)
+    : gate_({.limits = link::wire_limits(mission), .stamps = stamps}), observer_(observer) {}
 
 /// Dispatch by topic. The index of states is compared first, because states are most of the
 /// traffic.
@@ -92,14 +89,20 @@ void BusReader::take_status(const TappedSample& sample) {
 /// Observers get a reference to the reader's own copy, valid until the next plan.
 void BusReader::take_plan(const TappedSample& sample) {
   link::PlanMessage message;
-  if (!decode(sample, message)) return;
-  auto plan = gate_.plan(message, sample.received);
-  if (!plan) return;
+  if (decode(sample, message)) take_plan(std::move(message), sample.received);
+}
+
+void BusReader::take_plan(link::PlanMessage message, UtcTime received) {
+  auto plan = gate_.plan(message, received);
+  if (!plan) {
+    waiting_plan_.keep(std::move(message), plan.error(), gate_.planner_epoch());
+    return;
+  }
   plan_ = std::move(*plan);
   observer_.on_plan({.flow = plan_,
                      .version = message.version,
                      .excess_m = message.excess_m,
-                     .received = sample.received});
+                     .received = received});
 }
 
 void BusReader::take_scene(const TappedSample& sample) {
@@ -113,6 +116,9 @@ void BusReader::take_scene(const TappedSample& sample) {
 void BusReader::take_heartbeat(const TappedSample& sample) {
   link::HeartbeatMessage message;
   if (!decode(sample, message) || !gate_.heartbeat(message, sample.received)) return;
+  if (auto plan = waiting_plan_.take(gate_.planner_epoch())) {
+    take_plan(std::move(*plan), sample.received);
+  }
   observer_.on_clock({.phase = message.phase,
                       .mission_time_s = message.mission_time_s,
                       .plan_time_s = message.plan_time_s,

@@ -21,10 +21,12 @@ Result<void> observe_run(const std::filesystem::path& run_dir, Observer& observe
                          const std::function<bool()>& go_on) {
   const auto mission = load_mission(run_dir / shell::kMissionFile, open_catalogue());
   if (!mission) return tl::unexpected(mission.error());
+  const auto run = shell::read_run_info(run_dir);
+  if (!run) return tl::unexpected(run.error());
   const auto tap = tap_bus(run_dir);
   if (!tap) return tl::unexpected(tap.error());
   observer.on_mission(*mission);
-  BusReader reader(*mission, observer);
+  BusReader reader(*mission, observer, stamps_of(*run));
   while (go_on()) {
     const auto next = std::chrono::steady_clock::now() + kPoll;
     (*tap)->take(Duration(0), [&](const TappedSample& sample) { reader.take(sample); });

@@ -108,8 +108,11 @@ Result<void> replay(const ReplayOptions& options) {
   const auto dir = shell::make_run_dir(options.out, "replay");
   if (!dir) return tl::unexpected(dir.error());
   if (auto written = write_attachments(*score, *dir); !written) return written;
-  const shell::RunInfo run{
-      .domain = lock->domain(), .relays = 1, .channel = Channel::kGroups, .began = utc_now()};
+  const shell::RunInfo run{.domain = lock->domain(),
+                           .relays = 1,
+                           .channel = Channel::kGroups,
+                           .began = utc_now(),
+                           .is_replay = true};
   auto cast = Cast::join(run);
   if (!cast) return tl::unexpected(cast.error());
   if (auto written = shell::write_run_info(*dir, run); !written) return written;

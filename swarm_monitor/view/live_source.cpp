@@ -43,15 +43,16 @@ Result<std::unique_ptr<LiveSource>> look_at_run(const std::filesystem::path& run
   if (!run) return tl::unexpected(run.error());
   auto tap = tap_bus(run_dir, number);
   if (!tap) return tl::unexpected(tap.error());
-  return std::make_unique<LiveSource>(std::move(*mission), run->channel, std::move(*tap), control);
+  return std::make_unique<LiveSource>(std::move(*mission), *run, std::move(*tap), control);
 }
 
-LiveSource::LiveSource(Mission mission, Channel channel, std::unique_ptr<BusTap> tap, bool control)
+LiveSource::LiveSource(Mission mission, const shell::RunInfo& run, std::unique_ptr<BusTap> tap,
+                       bool control)
     : mission_(std::move(mission)),
-      channel_(channel),
+      channel_(run.channel),
       control_(control),
       tap_(std::move(tap)),
-      state_(mission_),
+      state_(mission_, stamps_of(run)),
       now_(utc_now()) {
   for (const RecordedTopic& topic : recorded_topics()) {
     raw_channels_.push_back({topic.name, topic.schema.name, topic.schema.data});

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "swarm_core/app/run_directory.hpp"
 #include "swarm_core/mission/channel.hpp"
 #include "swarm_monitor/view/swarm_state.hpp"
 #include "swarm_monitor/view/view_frame.hpp"
@@ -21,7 +22,7 @@ namespace swarm::monitor {
 class LiveSource final : public ViewSource {
  public:
   /// `control`: whether the page offers to control the run.
-  LiveSource(Mission mission, Channel channel, std::unique_ptr<BusTap> tap, bool control);
+  LiveSource(Mission mission, const shell::RunInfo& run, std::unique_ptr<BusTap> tap, bool control);
 
   /// Drains the bus and updates scenes, events and series.
   void poll(UtcTime now) override;

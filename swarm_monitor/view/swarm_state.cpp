@@ -17,8 +17,8 @@ constexpr std::size_t kMostEvents = 100'000;
 
 }  // namespace
 
-SwarmState::SwarmState(const Mission& mission)
-    : reader_(mission, *this),
+SwarmState::SwarmState(const Mission& mission, link::Stamps stamps)
+    : reader_(mission, *this, stamps),
       robots_(mission.robots.count),
       scene_(first_scene(mission.world.obstacles().size())),
       meter_(mission.robots.count) {}

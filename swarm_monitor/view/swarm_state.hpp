@@ -22,7 +22,7 @@ namespace swarm::monitor {
 /// State of a swarm in progress, from its bus alone. Pure: samples and time are arguments.
 class SwarmState final : private Observer {
  public:
-  explicit SwarmState(const Mission& mission);
+  SwarmState(const Mission& mission, link::Stamps stamps);
   SwarmState(const SwarmState&) = delete;
   SwarmState& operator=(const SwarmState&) = delete;
 

@@ -61,6 +61,32 @@ TEST_P(Participants, CarryCommandsUnchanged) { round_trip<CommandMessage>(); }
 TEST_P(Participants, CarryStatusUnchanged) { round_trip<StatusMessage>(); }
 TEST_P(Participants, CarryEventsUnchanged) { round_trip<EventMessage>(); }
 
+TEST_P(Participants, NameTheSenderOnAllTopics) {
+  const auto statuses_of_a = a.make_writer(status_topic()).value();
+  const auto events_of_a = a.make_writer(event_topic()).value();
+  const auto events_of_b = b.make_writer(event_topic()).value();
+  const auto statuses = b.make_reader(status_topic()).value();
+  const auto events = b.make_reader(event_topic()).value();
+  ASSERT_TRUE(bus->eventually([&] {
+    return statuses_of_a->matched() == 1 && events_of_a->matched() == 1 &&
+           events_of_b->matched() == 1 && statuses->matched() == 1 && events->matched() == 2;
+  }));
+  const auto sender = [&](const auto& writer, const auto& reader, const auto& message) {
+    EXPECT_TRUE(writer->write(message));
+    std::vector<std::decay_t<decltype(message)>> received;
+    std::vector<std::uint64_t> senders;
+    EXPECT_TRUE(bus->eventually([&] {
+      reader->take_with_senders(received, senders);
+      return !senders.empty();
+    }));
+    return senders.empty() ? 0 : senders.front();
+  };
+  const std::uint64_t sender_a = sender(statuses_of_a, statuses, StatusMessage{});
+  EXPECT_NE(sender_a, 0U);
+  EXPECT_EQ(sender(events_of_a, events, EventMessage{}), sender_a);
+  EXPECT_NE(sender(events_of_b, events, EventMessage{}), sender_a);
+}
+
 TEST_P(Participants, MatchExactlyWhereTheWriterOffersWhatTheReaderAsksFor) {
   struct Pair {
     WriterPtr<CommandMessage> writer;

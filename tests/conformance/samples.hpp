@@ -134,6 +134,7 @@ inline StatusMessage sample<StatusMessage>(Rng& rng) {
                        .plan_version = integer<std::uint32_t>(rng),
                        .plan_epoch = integer<std::uint64_t>(rng),
                        .plan_scene_version = integer<std::uint64_t>(rng),
+                       .command_id = integer<std::uint64_t>(rng),
                        .stamp_utc_ns = integer<std::int64_t>(rng),
                        .plan_time_s = number(rng)};
   for (int i = 0; i < 100; ++i) status.robots.push_back(sample<RobotStatusMessage>(rng));

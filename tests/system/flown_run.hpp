@@ -29,6 +29,7 @@ class FlownRun {
 
   std::filesystem::path dir() const { return folder_.path() / "run"; }
   Program& launcher() { return *launcher_; }
+  const Program& launcher() const { return *launcher_; }
 
   bool mission_started() const {
     return eventually([this] { return has_event(dir(), "command"); });

@@ -5,6 +5,7 @@
 #include <array>
 #include <map>
 #include <mutex>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -144,7 +145,7 @@ class CycloneReader final : public RawReader {
         if (infos[i].valid_data) {  // else a notice that a writer has left
           sink({.bytes = bytes_of(*samples[i]),
                 .published_utc_ns = infos[i].source_timestamp,
-                .sender = infos[i].publication_handle});
+                .sender = sender_of(infos[i].publication_handle)});
           ++taken;
         }
         ddsi_serdata_unref(samples[i]);
@@ -159,8 +160,25 @@ class CycloneReader final : public RawReader {
   }
 
  private:
+  // By participant: a process that makes many writers is one sender. A writer that has left is no
+  // longer known to the library, but to the map.
+  std::uint64_t sender_of(dds_instance_handle_t writer) {
+    const auto known = senders_.find(writer);
+    if (known != senders_.end()) return known->second;
+    dds_builtintopic_endpoint_t* const endpoint =
+        dds_get_matched_publication_data(reader_.get(), writer);
+    if (endpoint == nullptr) return writer;
+    const std::uint64_t sender = endpoint->participant_instance_handle;
+    dds_builtintopic_free_endpoint(endpoint);
+    if (senders_.size() >= kMostSenders) senders_.clear();
+    senders_.emplace(writer, sender);
+    return sender;
+  }
+
+  static constexpr std::size_t kMostSenders = 4096;
   Entity topic_;
   Entity reader_;
+  std::unordered_map<dds_instance_handle_t, std::uint64_t> senders_;  ///< participant of a writer
 };
 
 class CycloneParticipant final : public Participant {

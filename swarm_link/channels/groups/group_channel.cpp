@@ -3,6 +3,7 @@
 #include "swarm_link/channels/groups/group_channel.hpp"
 
 #include <algorithm>
+#include <cerrno>
 #include <random>
 #include <vector>
 
@@ -41,23 +42,30 @@ class GroupSocket {
  public:
   GroupSocket(const sockaddr_in& group, const in_addr& interface, int buffer_bytes)
       : fd_(open_receive_socket(group, buffer_bytes)),
+        lacks_files_(fd_ < 0 && (errno == EMFILE || errno == ENFILE)),
         joined_(fd_ >= 0 && join_group(fd_, group.sin_addr, interface)) {}
   ~GroupSocket() {
     if (fd_ >= 0) ::close(fd_);  // which also ends the membership
   }
   GroupSocket(GroupSocket&& other) noexcept
-      : fd_(std::exchange(other.fd_, -1)), joined_(other.joined_) {}
+      : fd_(std::exchange(other.fd_, -1)),
+        lacks_files_(other.lacks_files_),
+        joined_(other.joined_) {}
   GroupSocket& operator=(GroupSocket&& other) noexcept {
     std::swap(fd_, other.fd_);
+    std::swap(lacks_files_, other.lacks_files_);
     std::swap(joined_, other.joined_);
     return *this;
   }
 
   bool joined() const { return joined_; }
+  /// It could not be opened, since process or machine have used up their open files.
+  bool lacks_files() const { return lacks_files_; }
   int fd() const { return fd_; }
 
  private:
   int fd_;
+  bool lacks_files_;
   bool joined_;
 };
 
@@ -106,6 +114,7 @@ class GroupChannel final : public StateChannel, private DatagramSink {
     std::erase_if(joined_, [&](const Joined& joined) {
       return !std::binary_search(groups_.begin(), groups_.end(), joined.group);
     });
+    lacks_files_ = false;
     for (const in_addr_t group : groups_) {
       const auto at = std::lower_bound(joined_.begin(), joined_.end(), group,
                                        [](const Joined& j, in_addr_t g) { return j.group < g; });
@@ -113,12 +122,14 @@ class GroupChannel final : public StateChannel, private DatagramSink {
       sockaddr_in address = group_of(options_.domain, {});
       address.sin_addr.s_addr = group;
       GroupSocket socket(address, interface_, options_.receive_buffer_bytes);
+      lacks_files_ = lacks_files_ || socket.lacks_files();
       if (socket.joined()) joined_.insert(at, {group, std::move(socket)});
     }
     receives_all_ = joined_.size() == groups_.size();
   }
 
   bool receives_all() const override { return receives_all_; }
+  bool lacks_files() const override { return lacks_files_; }
 
   std::size_t take(std::vector<CellStatesMessage>& out) override {
     taking_ = &out;
@@ -157,6 +168,7 @@ class GroupChannel final : public StateChannel, private DatagramSink {
   CellBatches batches_;
   LeftCells left_;
   bool receives_all_ = true;
+  bool lacks_files_ = false;
   GuidPrefix prefix_;
   std::uint64_t sequence_number_ = 0;
   in_addr interface_;

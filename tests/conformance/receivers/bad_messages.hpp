@@ -17,7 +17,13 @@ namespace swarm::link::conformance {
 inline constexpr UtcTime kNow{std::chrono::seconds(1'800'000'000)};
 inline constexpr auto kHuge = std::numeric_limits<std::uint64_t>::max();
 
-/// Stamps and ids of a time `seconds` after kNow.
+/// What the messages refer to: the receiver's present time, and the planner that it follows.
+struct Basis {
+  UtcTime now = kNow;
+  std::uint64_t epoch = 1'799'999'900'000'000'000;  ///< 100 s before kNow
+};
+
+/// Stamps and ids of a time `seconds` after the basis' present time.
 std::int64_t ns_after(int seconds);
 std::uint64_t id_after(int seconds);
 
@@ -29,10 +35,10 @@ struct Case {
   std::string name;
   AnyMessage bad;
   RefusalReason reason;
-  std::string only{};    ///< the one receiver that refuses it; empty: all that read the topic
-  std::string except{};  ///< the one that does not
+  std::string only{};  ///< the one receiver that refuses it; empty: all that read the topic
 };
 
-std::vector<Case> all_cases();
+/// All cases; the functions above refer to this basis from now on.
+std::vector<Case> all_cases(const Basis& basis = {});
 
 }  // namespace swarm::link::conformance

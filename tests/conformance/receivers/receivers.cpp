@@ -193,7 +193,7 @@ class GatewayReceiver final : public QueueReceiver<CellStatesMessage> {
 /// Receives encoded samples, as from the bus.
 class MonitorReceiver final : public Receiver {
  public:
-  explicit MonitorReceiver(const Mission& mission) : sut_(mission) {}
+  explicit MonitorReceiver(const Mission& mission) : sut_(mission, Stamps::kLive) {}
 
   bool reads(const AnyMessage&) const override { return true; }
 

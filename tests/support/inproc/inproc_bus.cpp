@@ -27,18 +27,20 @@ struct InprocBus::Impl {
   }
 
   std::map<std::pair<std::string, std::string>, std::weak_ptr<Channel>> channels;
+  std::uint64_t participants = 0;
 };
 
 namespace {
 
-// Makes endpoints on the channels of a bus; its writers share one ownership strength.
+// Makes endpoints on the channels of a bus; its writers share one ownership strength and number.
 template <class Impl>
 class InprocParticipant final : public Participant {
  public:
-  InprocParticipant(Impl& bus, std::uint32_t strength) : bus_(bus), strength_(strength) {}
+  InprocParticipant(Impl& bus, std::uint32_t strength)
+      : bus_(bus), sender_{strength, ++bus.participants} {}
 
   Result<RawWriterPtr> make_writer(const RawTopic& topic) override {
-    return std::make_unique<inproc::InprocWriter>(bus_.channel(topic), topic, strength_);
+    return std::make_unique<inproc::InprocWriter>(bus_.channel(topic), topic, sender_);
   }
   Result<RawReaderPtr> make_reader(const RawTopic& topic) override {
     return std::make_unique<inproc::InprocReader>(bus_.channel(topic), topic.qos);
@@ -49,7 +51,7 @@ class InprocParticipant final : public Participant {
 
  private:
   Impl& bus_;
-  std::uint32_t strength_;
+  inproc::InprocWriter::Sender sender_;
 };
 
 }  // namespace

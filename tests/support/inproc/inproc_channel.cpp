@@ -36,7 +36,8 @@ void InprocReader::catch_up() {
 bool InprocWriter::write(std::span<const std::byte> bytes) {
   if (bytes.size() < cdr::kEncapsulationBytes + (keyed_ ? sizeof(std::uint32_t) : 0)) return false;
   Sample sample{.bytes = std::make_shared<std::vector<std::byte>>(bytes.begin(), bytes.end()),
-                .instance = keyed_ ? instance_of(bytes) : 0};
+                .instance = keyed_ ? instance_of(bytes) : 0,
+                .sender = sender_.number};
   for (auto* reader : channel_->readers) reader->deliver(*this, sample);
   if (qos_.durability == Durability::kTransientLocal) history_.push(std::move(sample));
   return true;

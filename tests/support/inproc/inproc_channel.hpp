@@ -21,6 +21,7 @@ namespace swarm::link::inproc {
 struct Sample {
   std::shared_ptr<const std::vector<std::byte>> bytes;
   std::uint32_t instance = 0;  ///< value of the key; 0 if the topic has none
+  std::uint64_t sender = 0;    ///< number of the writer's participant, from 1
 };
 
 /// The key of a keyed topic: its first member. \pre the bytes are little-endian, as our encoder's
@@ -54,7 +55,7 @@ class History {
   std::size_t hand_over(const RawReader::Sink& sink) {
     counts_.clear();
     const std::deque<Sample> all = std::exchange(samples_, {});
-    for (const Sample& sample : all) sink({.bytes = *sample.bytes});
+    for (const Sample& sample : all) sink({.bytes = *sample.bytes, .sender = sample.sender});
     return all.size();
   }
 
@@ -122,11 +123,16 @@ class InprocReader final : public RawReader {
 /// Delivers to all readers of its topic within write(), in the caller's thread.
 class InprocWriter final : public RawWriter {
  public:
-  InprocWriter(std::shared_ptr<Channel> channel, const RawTopic& topic, std::uint32_t strength)
+  /// Of a participant: its strength and its number.
+  struct Sender {
+    std::uint32_t strength = 0;
+    std::uint64_t number = 0;
+  };
+  InprocWriter(std::shared_ptr<Channel> channel, const RawTopic& topic, const Sender& sender)
       : channel_(std::move(channel)),
         qos_(topic.qos),
         keyed_(topic.keyed),
-        strength_(strength),
+        sender_(sender),
         history_(topic.qos.depth) {
     channel_->writers.push_back(this);
   }
@@ -140,7 +146,7 @@ class InprocWriter final : public RawWriter {
   int matched() const override;
 
   const Qos& qos() const { return qos_; }
-  std::uint32_t strength() const { return strength_; }
+  std::uint32_t strength() const { return sender_.strength; }
   /// What a late transient-local reader receives.
   const std::deque<Sample>& history() const { return history_.samples(); }
 
@@ -148,8 +154,8 @@ class InprocWriter final : public RawWriter {
   std::shared_ptr<Channel> channel_;
   Qos qos_;
   bool keyed_;
-  std::uint32_t strength_;  ///< for exclusive ownership
-  History history_;         ///< of a transient-local writer, for late readers
+  Sender sender_;
+  History history_;  ///< of a transient-local writer, for late readers
 };
 
 }  // namespace swarm::link::inproc

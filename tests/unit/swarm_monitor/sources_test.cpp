@@ -104,7 +104,10 @@ class Live : public testing::Test {
   }
 
   FakeTap* tap_ = new FakeTap;
-  LiveSource source_{small_mission(), Channel::kGroups, std::unique_ptr<BusTap>(tap_), true};
+  LiveSource source_{small_mission(),
+                     {.channel = Channel::kGroups, .is_replay = true},
+                     std::unique_ptr<BusTap>(tap_),
+                     true};
 };
 
 TEST_F(Live, CarriesRobotsOnFromTheirLastState) {

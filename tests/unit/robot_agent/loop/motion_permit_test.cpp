@@ -82,6 +82,8 @@ TEST_F(MotionPermitTest, StandsWhileACellCannotBeReceived) {
   healthy(0, 1000);
   EXPECT_EQ(tick(1100, 1100, 1100, false), StandReason::kCellsMissing);
   EXPECT_EQ(tick(1200, 1200, 1200), StandReason::kNone);
+  EXPECT_EQ(sut_.update({.now = at(1300), .all_cells = false, .lacks_files = true}),
+            StandReason::kFilesMissing);
 }
 
 TEST_F(MotionPermitTest, StandsWhereTheSceneHasItsBodyUntilThatIsCleared) {

@@ -94,6 +94,11 @@ TEST_F(ProcessEventsTest, AnnounceWhyRobotsStandAndWhenTheyMoveAgain) {
 TEST_F(ProcessEventsTest, AnnounceThatCellsAreMissingAlsoBeforeTheFirstMove) {
   events_.on_permit(steady(), utc(), StandReason::kCellsMissing);
   EXPECT_EQ(writer_.take().size(), 1U);
+  events_.on_permit(steady(), utc(), StandReason::kFilesMissing);
+  const auto events = writer_.take();
+  ASSERT_EQ(events.size(), 1U);
+  EXPECT_EQ(events[0].code, "cells-missing");
+  EXPECT_NE(events[0].text.find("ulimit -n"), std::string::npos);
 }
 
 TEST_F(ProcessEventsTest, AnnounceEachLossAndReturnOfTheLauncherOnce) {

@@ -85,6 +85,21 @@ TEST_F(StatusReportTest, ReportsANewPlanAtOnce) {
   EXPECT_LE(tick().size(), 1U);
 }
 
+TEST_F(StatusReportTest, NamesTheNewestCommandAtOnce) {
+  while (!tick().empty()) {
+  }
+  send_command(CommandKind::kStart, utc_ns());
+  receive();
+  report_.on_tick(source());
+  ASSERT_EQ(writer_.written.size(), 3U);
+  const std::uint64_t started = writer_.take()[0].command_id;
+  EXPECT_EQ(started, sut_.command_id());
+  EXPECT_NE(started, 0U);
+  send_command(CommandKind::kPause, utc_ns(seconds(60)));  // stale: it is not obeyed
+  EXPECT_LE(tick().size(), 1U);
+  EXPECT_EQ(sut_.command_id(), started);
+}
+
 TEST_F(StatusReportTest, ReportsTheGroupOfARobotThatChangesItsModeAtOnce) {
   tick();
   while (!tick().empty()) {

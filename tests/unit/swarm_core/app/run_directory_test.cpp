@@ -29,7 +29,8 @@ RunInfo unusual_run() {
           .channel = Channel::kGroups,
           .seed = std::numeric_limits<std::uint64_t>::max(),
           .began = UtcTime(Duration(1'700'000'000'123'456'789)),
-          .clock = {.boot_id = "a boot", .utc_minus_steady_ns = -12}};
+          .clock = {.boot_id = "a boot", .utc_minus_steady_ns = -12},
+          .is_replay = true};
 }
 
 TEST(RunInfo, ComesBackFromItsFileAsItWas) {
@@ -54,13 +55,14 @@ TEST(RunInfo, ComesBackFromItsFileAsItWas) {
   EXPECT_EQ(read->began, wrote.began);
   EXPECT_EQ(read->clock.boot_id, wrote.clock.boot_id);
   EXPECT_EQ(read->clock.utc_minus_steady_ns, wrote.clock.utc_minus_steady_ns);
+  EXPECT_EQ(read->is_replay, wrote.is_replay);
 }
 
 TEST(RunInfo, IsRefusedWithoutAnyOneOfItsKeys) {
   const ScratchFolder folder;
   ASSERT_TRUE(write_run_info(folder.path(), unusual_run()));
   const auto whole = nlohmann::json::parse(folder.read("run.json"));
-  ASSERT_EQ(whole.size(), 14U);
+  ASSERT_EQ(whole.size(), 15U);
 
   for (const auto& [key, value] : whole.items()) {
     auto part = whole;
@@ -93,14 +95,37 @@ TEST(RunInfo, IsRefusedWhereItsFileIsNoneOrRubbish) {
   }
 }
 
-TEST(RunInfo, TakesAnUnknownChannelForTopics) {
+TEST(RunInfo, IsRefusedWithAValueOutOfItsRange) {
   const ScratchFolder folder;
   ASSERT_TRUE(write_run_info(folder.path(), unusual_run()));
-  auto json = nlohmann::json::parse(folder.read("run.json"));
-  json["channel"] = "pigeons";
-  folder.write("run.json", json.dump());
-
-  EXPECT_EQ(read_run_info(folder.path())->channel, Channel::kTopics);
+  const auto whole = nlohmann::json::parse(folder.read("run.json"));
+  const struct {
+    const char* key;
+    nlohmann::json value;
+    std::string message;
+  } cases[] = {
+      {"discovery_port", 70'000, "discovery_port is 70000, not a whole number from 0 to 65535"},
+      {"discovery_port", -1, "discovery_port is -1, not a whole number from 0 to 65535"},
+      {"discovery_port", 11.5, "discovery_port is 11.5, not a whole number from 0 to 65535"},
+      {"domain", 4294967296, "domain is 4294967296, not a whole number from 0 to 4294967295"},
+      {"agents", "12", "agents is \"12\", not a whole number from 0 to 4294967295"},
+      {"hubs", -1, "hubs is -1, not a whole number from 0 to 4294967295"},
+      {"seed", -1, "seed is -1, not a whole number from 0 to 18446744073709551615"},
+      {"began_utc_ns", std::numeric_limits<std::uint64_t>::max(),
+       "began_utc_ns is 18446744073709551615, not a whole number from -9223372036854775808 to "
+       "9223372036854775807"},
+      {"channel", "pigeons", "channel is \"pigeons\", not topics or groups"},
+  };
+  for (const auto& c : cases) {
+    auto json = whole;
+    json[c.key] = c.value;
+    folder.write("run.json", json.dump());
+    const auto read = read_run_info(folder.path());
+    ASSERT_FALSE(read) << c.message;
+    EXPECT_EQ(read.error().code, ErrorCode::kBadInput);
+    EXPECT_EQ(read.error().message,
+              (folder / "run.json").string() + ": not a run directory: " + c.message);
+  }
 }
 
 TEST(WriteFile, ReplacesTheWholeContentAndLeavesNoOtherFile) {

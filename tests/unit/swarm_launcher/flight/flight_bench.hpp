@@ -67,8 +67,10 @@ struct OtherSide {
 struct FakeRobot {
   RobotMode mode = RobotMode::kWaiting;
   bool settled = false;
-  bool silent = false;  ///< its statuses do not get through
+  bool silent = false;           ///< its statuses do not get through
+  std::uint64_t command_id = 0;  ///< of the newest command that it obeys
   bool ignores_stop = false;
+  link::Writer<link::StatusMessage>* statuses = nullptr;  ///< null: the one that all share
 };
 
 /// Flies a mission of three robots, one per process, with a manual clock: no process, no waiting.
@@ -134,7 +136,10 @@ class FlightBench : public ::testing::Test {
   /// All robots that have obeyed what was published so far reach the goal.
   void arrive() {
     run_for(milliseconds(100));
-    for (FakeRobot& robot : robots) robot = {.mode = RobotMode::kArrived, .settled = true};
+    for (FakeRobot& robot : robots) {
+      robot.mode = RobotMode::kArrived;
+      robot.settled = true;
+    }
   }
 
   /// Whether the event log has a line with this code.
@@ -176,6 +181,9 @@ class FlightBench : public ::testing::Test {
     others.commands->take(commands);
     for (std::size_t i = known; i < commands.size(); ++i) {
       for (FakeRobot& robot : robots) {
+        if (commands[i].kind != CommandKind::kStop || !robot.ignores_stop) {
+          robot.command_id = std::max(robot.command_id, commands[i].command_id);
+        }
         if (commands[i].kind == CommandKind::kStart) robot.mode = RobotMode::kMoving;
         if (commands[i].kind == CommandKind::kPause && robot.mode == RobotMode::kMoving) {
           robot.mode = RobotMode::kHolding;
@@ -195,17 +203,19 @@ class FlightBench : public ::testing::Test {
     for (const FakeChild& child : spawner.children) {
       if (child.is_planner() || !child.runs || robots[child.first_robot()].silent) continue;
       const std::uint32_t id = child.first_robot();
-      others.statuses->write({.first_robot_id = id,
-                              .plan_version = 1,
-                              .plan_scene_version = scene->scene().version,
-                              .stamp_utc_ns = now.utc.time_since_epoch().count(),
-                              .robots = {{.robot_id = id,
-                                          .mode = robots[id].mode,
-                                          .settled = robots[id].settled,
-                                          .x_m = 5.0 + id,
-                                          .y_m = 5.0,
-                                          .neighbours_heard = kRobots - 1,
-                                          .ticks = 1}}});
+      auto& writer = robots[id].statuses != nullptr ? *robots[id].statuses : *others.statuses;
+      writer.write({.first_robot_id = id,
+                    .plan_version = 1,
+                    .plan_scene_version = scene->scene().version,
+                    .command_id = robots[id].command_id,
+                    .stamp_utc_ns = now.utc.time_since_epoch().count(),
+                    .robots = {{.robot_id = id,
+                                .mode = robots[id].mode,
+                                .settled = robots[id].settled,
+                                .x_m = 5.0 + id,
+                                .y_m = 5.0,
+                                .neighbours_heard = kRobots - 1,
+                                .ticks = 1}}});
     }
   }
 

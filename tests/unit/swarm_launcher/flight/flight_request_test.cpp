@@ -41,6 +41,69 @@ TEST_F(FlightLoopRequest, CountsRobotsThatDoNotConfirmAPause) {
             "failed: only 2 of 3 robots confirmed the pause within 5 s");
 }
 
+/// A participant that is no robot.
+struct StatusForger {
+  explicit StatusForger(link::InprocBus& bus)
+      : participant(bus.make_participant()),
+        statuses(*participant->make_writer(link::status_topic())) {}
+  /// In the name of a robot that obeys a command.
+  void confirm(std::uint32_t robot, RobotMode mode, std::uint64_t command, UtcTime now) {
+    statuses->write({.first_robot_id = robot,
+                     .plan_version = 1,
+                     .command_id = command,
+                     .stamp_utc_ns = now.time_since_epoch().count(),
+                     .robots = {{.robot_id = robot, .mode = mode, .x_m = 5, .y_m = 5}}});
+  }
+  std::unique_ptr<link::Participant> participant;
+  link::WriterPtr<link::StatusMessage> statuses;
+};
+
+TEST_F(FlightLoopRequest, IsNotConfirmedByAForgedStatus) {
+  for (const char* request : {"pause", "stop"}) {
+    SCOPED_TRACE(request);
+    ASSERT_TRUE(run_to_phase(MissionPhase::kRunning));
+    robots[1].silent = true;  // it hangs
+    StatusForger forger(bus);
+    const auto client = requests.send(request);
+    const RobotMode mode =
+        request == std::string("pause") ? RobotMode::kHolding : RobotMode::kStopped;
+    const std::uint64_t before = loop->measurements().refused_by_launcher;
+    for (int i = 0; i < 300; ++i) {  // 6 s
+      step();
+      if (!commands.empty()) forger.confirm(1, mode, commands.back().command_id, now.utc);
+    }
+    const std::string answer = requests.answer_to(client);
+    EXPECT_TRUE(answer == "failed: only 2 of 3 robots confirmed the pause within 5 s" ||
+                answer == "failed: stop not confirmed by robots 1")
+        << answer;
+    EXPECT_GT(loop->measurements().refused_by_launcher, before + 100);
+    EXPECT_TRUE(is_logged("refused"));
+    robots[1].silent = false;
+    requests.send("resume");
+    run_for(milliseconds(100));
+  }
+}
+
+TEST_F(FlightLoopRequest, IsNotConfirmedByARobotThatStoppedForAnotherCommand) {
+  ASSERT_TRUE(run_to_phase(MissionPhase::kRunning));
+  robots[1].mode = RobotMode::kStopped;  // by itself
+  robots[1].ignores_stop = true;
+  const auto client = requests.send("stop");
+  ASSERT_TRUE(run_to_the_end());
+  EXPECT_EQ(requests.answer_to(client), "failed: stop not confirmed by robots 1");
+}
+
+TEST_F(FlightLoopRequest, IsConfirmedByTheNextProcessOfARobot) {
+  options.mission.launcher.respawn_agent_max = 1;
+  ASSERT_TRUE(run_to_phase(MissionPhase::kRunning));
+  spawner.end(spawner.agent(1), {.signal = 9});
+  const auto next = bus.make_participant();
+  const auto statuses = *next->make_writer(link::status_topic());
+  robots[1].statuses = statuses.get();
+  run_for(seconds(2));
+  EXPECT_EQ(answer_to("pause"), "done: 3 robots confirmed the pause");
+}
+
 TEST_F(FlightLoopRequest, ReportsACommandThatChangesNothing) {
   ASSERT_TRUE(run_to_phase(MissionPhase::kRunning));
   EXPECT_EQ(answer_to("resume"), "done: resume sent; it changes nothing, the mission is running");

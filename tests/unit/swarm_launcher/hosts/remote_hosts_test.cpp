@@ -122,6 +122,8 @@ TEST(RemoteHosts, GivesTheRobotsOfOneThatFailedAtTheStartToTheNext) {
   Bench bench;
   bench.join(2).close();
   EXPECT_TRUE(bench.until([&] { return bench.logged("host-over"); }));
+  EXPECT_EQ(bench.hosts.take_ended(), (std::vector{ProcessIndex(3), ProcessIndex(4)}));
+  EXPECT_TRUE(bench.hosts.take_ended().empty());
 
   bench.answer.clear();
   LineSocket again = bench.join(2);

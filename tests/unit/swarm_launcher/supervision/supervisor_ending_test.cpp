@@ -10,6 +10,9 @@
 namespace swarm::launcher {
 namespace {
 
+constexpr RobotReport kHasStopped{
+    .has_plan = true, .mode = RobotMode::kStopped, .confirms_stop = true};
+
 TEST(Supervisor, NamesWhoIsMissingAndGivesUp) {
   SupervisorBench bench(5);
   bench.run_for(seconds(1));
@@ -22,6 +25,21 @@ TEST(Supervisor, NamesWhoIsMissingAndGivesUp) {
   EXPECT_EQ(bench.sut->outcome(), Outcome::kQuorumTimeout);
   EXPECT_EQ(bench.sut->stage(), Supervisor::Stage::kDone);
   EXPECT_LT(bench.sut->discovery_s(), 0.0);
+}
+
+TEST(Supervisor, NamesWhyTheMissingRobotsAreNotReady) {
+  SupervisorBench bench(6, 2);
+  bench.run_for(seconds(1));
+  for (std::uint32_t i = 0; i < 6; ++i) {
+    bench.sut->on_status(RobotId(i), {true, i < 2, RobotMode::kWaiting, false});
+  }
+  bench.sut->on_hindered(RobotId(0), "a reason that is over");
+  bench.sut->on_hindered(RobotId(4), "no more files");
+  bench.run_for(seconds(35));
+
+  EXPECT_TRUE(
+      bench.logged("quorum: 4 of 6 robots are not ready after 30 s: 2-5; 4-5: no more files"))
+      << bench.log.back();
 }
 
 TEST(Supervisor, EndsWhenAllHaveSettled) {
@@ -53,8 +71,9 @@ TEST(Supervisor, CountsARobotThatStoppedItselfAsLost) {
 TEST(Supervisor, RepeatsAStopAndNamesWhoHasNotConfirmed) {
   RunningBench bench(4);
   bench.start();
-  for (const std::uint32_t i : {0U, 1U, 3U})
-    bench.sut->on_status(RobotId(i), {true, true, RobotMode::kStopped, false});
+  for (const std::uint32_t i : {0U, 1U, 3U}) bench.sut->on_status(RobotId(i), kHasStopped);
+  bench.sut->on_status(RobotId(2), {.has_plan = true, .mode = RobotMode::kStopped});
+  bench.sut->on_status(RobotId(3), {.has_plan = true, .mode = RobotMode::kStopped});
 
   bench.sut->on_command(CommandKind::kStop, bench.now);
   bench.run_for(seconds(6));

@@ -96,7 +96,8 @@ class Play {
                                 .receives_neighbours = rng_() % 8 != 0,
                                 .mode = static_cast<RobotMode>(rng_() % 20 == 0 ? 4 : rng_() % 4),
                                 .settled = rng_() % 2 == 0,
-                                .sent_at = now_ - milliseconds(rng_() % 100)});
+                                .sent_at = now_ - milliseconds(rng_() % 100),
+                                .confirms_stop = rng_() % 20 == 0});
     }
   }
 

@@ -60,8 +60,8 @@ TEST_F(StopChannel, BringsConfirmationsToThoseWhoSent) {
   const auto robots = receiver(212);
   asked->send(kStopMessage);
   ASSERT_TRUE(take_sent(*robots));
-  robots->confirm({.first_robot_id = 40, .robots = 3});
-  robots->confirm({.first_robot_id = 40, .robots = 3});  // no stop since the last one
+  robots->confirm({.first = 40, .count = 3});
+  robots->confirm({.first = 40, .count = 3});  // no stop since the last one
   std::vector<StopConfirmation> to_asked, to_silent;
   for (int i = 0; i < 5000 && to_asked.empty(); ++i) {
     asked->take(to_asked);
@@ -71,7 +71,32 @@ TEST_F(StopChannel, BringsConfirmationsToThoseWhoSent) {
   ASSERT_EQ(to_asked.size(), 1U);
   EXPECT_EQ(to_asked[0].first_robot_id, 40U);
   EXPECT_EQ(to_asked[0].robots, 3U);
+  EXPECT_EQ(to_asked[0].command_id, kStopMessage.command_id);
   EXPECT_TRUE(to_silent.empty());
+}
+
+TEST_F(StopChannel, ConfirmsToEachSenderItsOwnStop) {
+  const auto first = sender(220), second = sender(220);
+  const auto robots = receiver(220);
+  CommandMessage stop = kStopMessage;
+  first->send(stop);
+  ASSERT_TRUE(take_sent(*robots));
+  stop.command_id = 8;
+  first->send(stop);  // the last one of a sender counts
+  ASSERT_TRUE(take_sent(*robots));
+  stop.command_id = 9;
+  second->send(stop);
+  ASSERT_TRUE(take_sent(*robots));
+  robots->confirm({.first = 40, .count = 3});
+  for (const auto& [from, id] : {std::pair(first.get(), 8U), std::pair(second.get(), 9U)}) {
+    std::vector<StopConfirmation> confirmed;
+    for (int i = 0; i < 5000 && confirmed.empty(); ++i) {
+      from->take(confirmed);
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    ASSERT_EQ(confirmed.size(), 1U);
+    EXPECT_EQ(confirmed[0].command_id, id);
+  }
 }
 
 TEST_F(StopChannel, CarriesTheLaunchersBeatsBesideStops) {

@@ -26,7 +26,8 @@ WireLimits limits() {
           .bounds_m = {.min_m = {0.0, 0.0}, .max_m = {50.0, 40.0}},
           .clock_skew_warn = std::chrono::milliseconds(250),
           .clock_skew_refuse = kRefuse,
-          .planner_takeover = kTakeover};
+          .planner_takeover = kTakeover,
+          .status_takeover = std::chrono::seconds(10)};
 }
 
 /// One leg from (10, 10) to (20, 10).
@@ -259,6 +260,52 @@ TEST_F(GateTest, RefusesStatusesOfTheFuture) {
   ahead = status;
   ahead.plan_scene_version = kHuge;  // would have arrived at every goal to come
   EXPECT_FALSE(sut.status(ahead, kNow));
+  EXPECT_TRUE(counted(RefusalReason::kForged));
+}
+
+constexpr std::uint64_t kRobots = 11, kPlanner = 12, kForger = 13;
+
+TEST_F(GateTest, TakesStatusesOfARobotFromItsOwnSender) {
+  const StatusMessage status{.stamp_utc_ns = ns(kNow), .robots = {{.robot_id = 1}}};
+  EXPECT_TRUE(sut.status_of(status, {kRobots, kNow}));
+  EXPECT_FALSE(sut.status_of(status, {kForger, kNow}));
+  EXPECT_TRUE(counted(RefusalReason::kForged));
+  sut.release_status(RobotId(1), s_later(1));
+  EXPECT_FALSE(sut.status_of(status, {kRobots, s_later(1)})) << "sent before the process ended";
+  EXPECT_TRUE(counted(RefusalReason::kStale));
+  StatusMessage bad = status;
+  bad.robots[0].robot_id = 100;
+  EXPECT_FALSE(sut.status_of(bad, {kRobots, kNow}));
+  EXPECT_TRUE(counted(RefusalReason::kOutOfRange));
+}
+
+// Others report events in a robot's or the planner's name only before that is received.
+TEST_F(GateTest, TakesEventsThatTheirSourceMayHaveSent) {
+  const EventMessage of_robot{.source = 1, .stamp_utc_ns = ns(kNow), .code = "note"};
+  const EventMessage of_planner{.source = kPlannerSource, .stamp_utc_ns = ns(kNow), .code = "note"};
+  EXPECT_TRUE(sut.event_of(of_robot, {kRobots, kNow}, false)) << "before its first status";
+  EXPECT_TRUE(sut.event_of(of_planner, {kForger, kNow}, false)) << "a planner that stands by";
+  EXPECT_FALSE(sut.event_of(of_robot, {kRobots, kNow}, true));
+  EXPECT_TRUE(counted(RefusalReason::kForged));
+  EXPECT_FALSE(sut.event_of(of_planner, {kPlanner, kNow}, true));
+  EXPECT_TRUE(counted(RefusalReason::kForged));
+
+  EXPECT_TRUE(
+      sut.status_of({.stamp_utc_ns = ns(kNow), .robots = {{.robot_id = 1}}}, {kRobots, kNow}));
+  EXPECT_TRUE(sut.heartbeat_of(heartbeat(id(kNow), 1), {kPlanner, kNow}));
+  for (const bool is_evidence : {false, true}) {
+    EXPECT_TRUE(sut.event_of(of_robot, {kRobots, kNow}, is_evidence));
+    EXPECT_TRUE(sut.event_of(of_planner, {kPlanner, kNow}, is_evidence));
+    EXPECT_FALSE(sut.event_of(of_robot, {kForger, kNow}, is_evidence));
+    EXPECT_TRUE(counted(RefusalReason::kForged));
+  }
+  EXPECT_FALSE(sut.event_of(of_planner, {kForger, kNow}, true));
+  EXPECT_TRUE(counted(RefusalReason::kForged));
+
+  sut.release_status(RobotId(1), kNow);
+  EXPECT_TRUE(sut.event_of(of_robot, {kRobots, kNow}, true))
+      << "the last events of a process that has ended";
+  EXPECT_FALSE(sut.event_of(of_robot, {kForger, kNow}, true));
   EXPECT_TRUE(counted(RefusalReason::kForged));
 }
 

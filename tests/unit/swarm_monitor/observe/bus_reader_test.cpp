@@ -52,7 +52,7 @@ class BusReaderTest : public testing::Test {
   }
 
   Notes notes_;
-  BusReader reader_{four_robots(), notes_};
+  BusReader reader_{four_robots(), notes_, link::Stamps::kRecorded};
 };
 
 TEST_F(BusReaderTest, ReportsAllFieldsOfAState) {
@@ -151,6 +151,32 @@ TEST_F(BusReaderTest, ReportsPlansInTheirOrder) {
   EXPECT_EQ(notes_.plans, (std::vector<std::uint32_t>{1, 2, 1}));
   EXPECT_EQ(reader_.refused()[RefusalReason::kDuplicate], 1U);
   EXPECT_EQ(reader_.refused()[RefusalReason::kStale], 3U);
+}
+
+// As the robots do: a planner that beats leads, and another one with its plan only after a silence.
+TEST_F(BusReaderTest, OfARunInProgressFollowsTheRulingPlanner) {
+  BusReader live(four_robots(), notes_, link::Stamps::kLive);
+  const auto beat_of = [&](std::uint64_t epoch, std::uint64_t number, double at_s) {
+    auto message = beat(number);
+    message.epoch = epoch;
+    message.mission_time_s = static_cast<double>(epoch);
+    message.stamp_utc_ns = utc_ns(second(at_s));
+    deliver(live, "swarm/heartbeat", second(at_s), message);
+  };
+  beat_of(5, 1, 10.0);
+  deliver(live, "swarm/plan", second(10.0), plan(5, 1));
+  deliver(live, "swarm/plan", second(10.1), plan(6, 2));
+  beat_of(6, 1, 10.1);
+  beat_of(5, 2, 10.2);
+  EXPECT_EQ(notes_.plans, (std::vector<std::uint32_t>{1}));
+  ASSERT_EQ(notes_.clocks.size(), 2U);
+  EXPECT_EQ(notes_.clocks[1].mission_time_s, 5.0);
+  EXPECT_EQ(live.refused()[RefusalReason::kStale], 2U);
+
+  beat_of(6, 2, 15.0);
+  EXPECT_EQ(notes_.plans, (std::vector<std::uint32_t>{1, 2}));
+  ASSERT_EQ(notes_.clocks.size(), 3U);
+  EXPECT_EQ(notes_.clocks[2].mission_time_s, 6.0);
 }
 
 TEST_F(BusReaderTest, ReportsAClockAndNoOlderOne) {

@@ -45,7 +45,7 @@ class SwarmStateTest : public testing::Test {
   const SwarmState::Robot& robot(std::size_t i) const { return state_.robots()[i]; }
 
   std::uint32_t number_ = 0;
-  SwarmState state_{four_robots()};
+  SwarmState state_{four_robots(), link::Stamps::kRecorded};
 };
 
 TEST_F(SwarmStateTest, BeginsEmpty) {

@@ -1,0 +1,99 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+// What a flight receives over the bus and the stop channel.
+#include <cstddef>
+
+#include <fmt/format.h>
+
+#include "swarm_launcher/flight/flight_loop.hpp"
+#include "swarm_link/event_names.hpp"
+
+namespace swarm::launcher {
+namespace {
+
+constexpr Duration kReportRefusalsEvery = std::chrono::seconds(1);
+
+}  // namespace
+
+// Republishes statuses and events for monitors, which do not discover the agents.
+void FlightLoop::read_bus(const FlightTime& now) {
+  ports_.bus.participant->receive();
+  ports_.bus.inbox.receive(now.utc);
+  for (const link::StatusMessage& status : ports_.bus.inbox.statuses()) {
+    if (ports_.observer != nullptr) ports_.observer->on_status(status);
+    ports_.bus.status_relay->write(status);
+    on_status(status, now);
+  }
+  for (const link::HeartbeatMessage& beat : ports_.bus.inbox.heartbeats()) {
+    supervisor_.on_heartbeat(beat.epoch);
+  }
+  read_events(now);
+  read_stops(now.steady);
+}
+
+// A robot whose id is used twice is displayed as well, once: of other events the log is enough.
+void FlightLoop::read_events(const FlightTime& now) {
+  const auto events = ports_.bus.inbox.events();
+  const auto senders = ports_.bus.inbox.event_senders();
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    if (!throttle_.admit(senders[i], now.steady)) continue;
+    ports_.log.forward(events[i]);
+    if (events[i].code == link::kCellsMissing && events[i].source < options_.mission.robots.count) {
+      supervisor_.on_hindered(RobotId(events[i].source), events[i].text);
+    }
+    if (events[i].code != link::kDuplicateId || !duplicates_.insert(events[i].source).second) {
+      continue;
+    }
+    ports_.display.print(fmt::format(
+        "{}: its process receives states under an id of its own that another process sent",
+        link::source_name(events[i].source)));
+  }
+  if (const auto dropped = throttle_.report(now.steady)) {
+    ports_.log.log(now.utc, {.warning = true, .code = "events-dropped", .text = *dropped});
+  }
+}
+
+// As agents and planner do, once a second, so that a flood makes few events.
+void FlightLoop::report_refusals(const FlightTime& now) {
+  if (now.steady - refusals_reported_at_ < kReportRefusalsEvery) return;
+  refusals_reported_at_ = now.steady;
+  link::report_new(ports_.bus.inbox.refused(), reported_refusals_,
+                   [&](link::RefusalReason reason, std::uint32_t times) {
+                     ports_.log.note(now.utc, link::Severity::kWarning, "refused",
+                                     fmt::format("{} message(s): {}", times, to_string(reason)));
+                   });
+}
+
+// A command sends its stop to the robots, too, past a launcher that may have been suspended: what
+// the robots obey holds for the run.
+void FlightLoop::read_stops(SteadyTime now) {
+  if (ports_.stops == nullptr || !ports_.stops->take()) return;
+  if (supervisor_.phase() == MissionPhase::kStopped) return;
+  supervisor_.on_command(CommandKind::kStop, now);
+  if (ports_.hosts != nullptr) ports_.hosts->on_user_command(CommandKind::kStop);
+}
+
+// Positions are kept for robots that fall, and each robot's report goes to the supervisor.
+void FlightLoop::on_status(const link::StatusMessage& status, const FlightTime& now) {
+  const UtcTime stamp(Duration(status.stamp_utc_ns));
+  for (const link::RobotStatusMessage& robot : status.robots) {
+    const RobotId id(robot.robot_id);
+    view_.take(robot);
+    const Obedience obedience{robot.mode, status.command_id, stamp};
+    confirmations_.on_status(id, obedience, now.utc);
+    fallen_.on_status(
+        id, {.at = stamp, .position_m = {robot.x_m, robot.y_m}, .at_rest = robot.settled});
+    if (ports_.hosts != nullptr) ports_.hosts->on_status(id, now.steady);
+    supervisor_.on_status(
+        id, {.has_plan = status.plan_version > 0,
+             .receives_neighbours = view_.receives_neighbours(robot.robot_id),
+             .mode = robot.mode,
+             .settled = robot.settled,
+             .scene_version = status.plan_scene_version,
+             // On the launcher's steady clock, which the supervisor uses.
+             .sent_at = now.steady - (now.utc - stamp),
+             .confirms_stop = stop_ && confirms(obedience, *stop_, now.utc, stamp_tolerance_)});
+  }
+}
+
+}  // namespace swarm::launcher
