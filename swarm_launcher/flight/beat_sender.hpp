@@ -19,8 +19,10 @@ class BeatSender {
   /// `run`: the begin of the run [ns], by which robots know that a beat is theirs.
   BeatSender(std::unique_ptr<link::StopSender> sender, std::uint64_t run);
 
-  /// Sends a beat if one is due. Call it often.
-  void step(SteadyTime now, const Supervisor& supervisor);
+  /// Sends a beat if one is due. Call it often. `lists_all`: robots that are not listed may be
+  /// taken for healthy ones somewhere else; false while a gateway does not run, since those beyond
+  /// it are not received where they are near.
+  void step(SteadyTime now, const Supervisor& supervisor, bool lists_all = true);
 
  private:
   std::unique_ptr<link::StopSender> sender_;

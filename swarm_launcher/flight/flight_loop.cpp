@@ -61,8 +61,10 @@ Result<void> FlightLoop::step(const FlightTime& now) {
     if (auto done = act(action, now.utc); !done) return done;
   }
   send_stop(now);
-  if (ports_.beats != nullptr) ports_.beats->step(now.steady, supervisor_);
   for (const LogEvent& event : ports_.helpers.step(now.steady)) ports_.log.log(now.utc, event);
+  if (ports_.beats != nullptr) {
+    ports_.beats->step(now.steady, supervisor_, !ports_.helpers.is_gateway_down());
+  }
   if (const auto message = ports_.helpers.message()) ports_.display.print(*message);
   if (ports_.observer != nullptr) ports_.observer->on_step(*this, now.steady);
   show(now.steady);

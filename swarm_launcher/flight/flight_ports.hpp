@@ -45,6 +45,9 @@ class HelperProcesses {
   virtual std::optional<LogEvent> on_exit(pid_t pid, SteadyTime now) = 0;
   /// Starts those again whose restart is due, and returns what to log.
   virtual std::vector<LogEvent> step(SteadyTime now) = 0;
+  /// Whether robots of the run do not receive each other, since the gateway between them does not
+  /// run. As of the last step().
+  virtual bool is_gateway_down() const = 0;
   /// A message for the user that has become available, once.
   virtual std::optional<std::string> message() = 0;
 };

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "swarm_launcher/flight/gateway.hpp"
 
+#include <chrono>
 #include <cstdio>
 
 #include <fmt/format.h>
@@ -10,6 +11,7 @@
 #include "swarm_core/app/run_directory.hpp"
 #include "swarm_core/app/stop_signal.hpp"
 #include "swarm_core/base/clock.hpp"
+#include "swarm_launcher/flight/gateway_beat.hpp"
 #include "swarm_launcher/processes/child_process.hpp"
 #include "swarm_link/gateway/gateway.hpp"
 #include "swarm_link/roles/run_meeting.hpp"
@@ -43,10 +45,12 @@ Result<ExitCode> run_gateway(const GatewayCommandOptions& options) {
                                          .interface = run->interface,
                                          .limits = link::wire_limits(*mission)});
   if (!gateway) return tl::unexpected(gateway.error());
+  GatewayBeatSender beat(static_cast<pid_t>(options.parent_pid));
   while (
       shell::stop_requests() == 0 &&
       (options.parent_pid == 0 || static_cast<std::uint32_t>(::getppid()) == options.parent_pid)) {
     (*gateway)->relay(kTimeout, utc_now());
+    beat.step(std::chrono::steady_clock::now());
   }
   using link::RefusalReason;
   const link::RefusalCounters& refused = (*gateway)->refused();

@@ -10,13 +10,15 @@ namespace swarm::launcher {
 
 // The child is reaped by the launcher's loop, or by init after it.
 GatewayKeeper::~GatewayKeeper() {
-  if (pid_ > 0) end_(pid_);
+  if (pid_ > 0) means_.end(pid_);
 }
 
 Result<void> GatewayKeeper::start(SteadyTime now) {
-  const auto pid = start_();
+  const auto pid = means_.start();
   if (!pid) return tl::unexpected(pid.error());
   pid_ = *pid;
+  is_killed_ = false;
+  sign_of_life_ = now;
   restarts_.on_start(now);
   return {};
 }
@@ -24,11 +26,13 @@ Result<void> GatewayKeeper::start(SteadyTime now) {
 std::optional<LogEvent> GatewayKeeper::on_exit(pid_t pid, SteadyTime now) {
   if (pid_ == 0 || pid != pid_) return std::nullopt;
   pid_ = 0;
+  is_up_ = false;
   return wait_for_restart("the gateway ended, see logs/gateway.log", now);
 }
 
 // A failed start counts as a process that ended at once.
 std::optional<LogEvent> GatewayKeeper::step(SteadyTime now) {
+  if (pid_ != 0) return watch(now);
   if (!restart_at_ || now < *restart_at_) return std::nullopt;
   restart_at_.reset();
   if (const auto started = start(now); !started) {
@@ -36,6 +40,22 @@ std::optional<LogEvent> GatewayKeeper::step(SteadyTime now) {
     return wait_for_restart(started.error().message, now);
   }
   return LogEvent{.code = "gateway-restarted", .text = "the gateway runs again"};
+}
+
+// Its end is handled as any other. A launcher that was suspended finds the beats of that time.
+std::optional<LogEvent> GatewayKeeper::watch(SteadyTime now) {
+  if (means_.is_beat(pid_)) {
+    is_up_ = true;
+    sign_of_life_ = now;
+  }
+  if (is_killed_ || now - sign_of_life_ <= (is_up_ ? kSilence : kFirstBeat)) return std::nullopt;
+  is_up_ = false;
+  is_killed_ = true;
+  means_.kill(pid_);
+  return LogEvent{.warning = true,
+                  .code = "gateway-silent",
+                  .text = fmt::format("the gateway has sent no beat for {:.0f} s: it is killed",
+                                      to_seconds(now - sign_of_life_))};
 }
 
 LogEvent GatewayKeeper::wait_for_restart(const std::string& reason, SteadyTime now) {

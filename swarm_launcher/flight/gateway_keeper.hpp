@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <chrono>
 #include <functional>
 #include <optional>
 #include <string>
@@ -16,17 +17,25 @@
 
 namespace swarm::launcher {
 
-/// Keeps the gateway process of a flight running: whenever it ends, or cannot be started, it is
-/// started again, ever more slowly while that happens in a row (see RestartPolicy). Without a
+/// Keeps the gateway process of a flight running: whenever it ends, hangs or cannot be started, it
+/// is started again, ever more slowly while that happens in a row (see RestartPolicy). Without a
 /// gateway the robots behind it and the others do not receive each other, so it is never given up.
 /// Decides only; processes are started and ended by the functions it is given. Destruction ends the
 /// process.
 class GatewayKeeper {
  public:
-  using Start = std::function<Result<pid_t>()>;
-  using End = std::function<void(pid_t)>;
+  struct Means {
+    std::function<Result<pid_t>()> start;
+    std::function<void(pid_t)> end;
+    std::function<void(pid_t)> kill;     ///< also one that hangs
+    std::function<bool(pid_t)> is_beat;  ///< whether it has sent a beat since the last call
+  };
+  /// Without a beat for longer, a gateway hangs: robots that do not receive each other meet soon.
+  static constexpr Duration kSilence = std::chrono::seconds(2);
+  /// It joins the bus before its first beat.
+  static constexpr Duration kFirstBeat = std::chrono::seconds(30);
 
-  GatewayKeeper(Start start, End end) : start_(std::move(start)), end_(std::move(end)) {}
+  explicit GatewayKeeper(Means means) : means_(std::move(means)) {}
   ~GatewayKeeper();
   GatewayKeeper(const GatewayKeeper&) = delete;
   GatewayKeeper& operator=(const GatewayKeeper&) = delete;
@@ -35,16 +44,21 @@ class GatewayKeeper {
   Result<void> start(SteadyTime now);
   /// An event if the child that ended was the gateway.
   std::optional<LogEvent> on_exit(pid_t pid, SteadyTime now);
-  /// Starts the gateway again if that is due: an event of that, too.
+  /// Starts the gateway again if that is due, and kills it if it hangs: an event of that, too.
   std::optional<LogEvent> step(SteadyTime now);
+  /// Whether it runs and has sent a beat since its start, as of the last step().
+  bool is_up() const { return is_up_; }
 
  private:
   LogEvent wait_for_restart(const std::string& reason, SteadyTime now);
+  std::optional<LogEvent> watch(SteadyTime now);
 
-  Start start_;
-  End end_;
+  Means means_;
   RestartPolicy restarts_;
   pid_t pid_ = 0;  ///< 0: it does not run
+  bool is_up_ = false;
+  bool is_killed_ = false;
+  SteadyTime sign_of_life_{};  ///< its start, or its last beat
   std::optional<SteadyTime> restart_at_;
 };
 

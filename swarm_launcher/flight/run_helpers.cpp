@@ -3,17 +3,25 @@
 #include "swarm_launcher/flight/run_helpers.hpp"
 
 #include <csignal>
+#include <memory>
 #include <utility>
 
+#include <unistd.h>
+
 #include "swarm_launcher/flight/gateway.hpp"
+#include "swarm_launcher/flight/gateway_beat.hpp"
 
 namespace swarm::launcher {
 
 RunHelpers::RunHelpers(const FlightChoices& how, const std::filesystem::path& run_dir)
     : monitors_(how.monitors, run_dir) {
   if (how.by_gateway > 0) {
-    gateway_.emplace([run_dir] { return start_gateway(run_dir); },
-                     [](pid_t pid) { ::kill(pid, SIGTERM); });
+    gateway_.emplace(
+        GatewayKeeper::Means{.start = [run_dir] { return start_gateway(run_dir); },
+                             .end = [](pid_t pid) { ::kill(pid, SIGTERM); },
+                             .kill = [](pid_t pid) { ::kill(pid, SIGKILL); },
+                             .is_beat = [beats = std::make_shared<GatewayBeatReceiver>(::getpid())](
+                                            pid_t pid) { return beats->take(pid); }});
   }
 }
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-// A gateway that is killed.
+// A gateway that is killed or frozen.
 #include <csignal>
 #include <set>
 
@@ -28,6 +28,20 @@ TEST(KilledGateway, IsStartedAgainAndTheSwarmArrives) {
   EXPECT_TRUE(has_event(run.dir(), "gateway-exit"));
   EXPECT_TRUE(has_event(run.dir(), "gateway-restarted"));
   EXPECT_EQ(run.summary()["arrived"], 12);
+}
+
+TEST(FrozenGateway, IsStartedAgainAndNoRobotsTouch) {
+  FlownRun run({"--channel", "groups", "--by-gateway", "3"});
+  ASSERT_TRUE(run.mission_started()) << run.launcher().err();
+  const auto gateways = children_of(run.launcher().pid(), "swarm_launcher");
+  ASSERT_EQ(gateways.size(), 1U);
+  ::kill(gateways.front(), SIGSTOP);
+
+  EXPECT_EQ(run.launcher().wait(), 0) << run.launcher().err();
+  EXPECT_TRUE(has_event(run.dir(), "gateway-silent"));
+  EXPECT_TRUE(has_event(run.dir(), "gateway-restarted"));
+  EXPECT_EQ(run.summary()["arrived"], 12);
+  EXPECT_EQ(run.summary()["collisions_robot"], 0);
 }
 
 }  // namespace

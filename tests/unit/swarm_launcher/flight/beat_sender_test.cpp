@@ -42,5 +42,25 @@ TEST(BeatSender, SendsTwiceASecondAndListsTheRobotsThatAreNotReceived) {
   }
 }
 
+TEST(BeatSender, StatesNothingAboutTheOthersWhileRobotsMayNotReceiveEachOther) {
+  if (!link::carries_multicast()) GTEST_SKIP() << "loopback carries no multicast here";
+  const auto robots = *link::StopReceiver::open({.domain = 219});
+  const Supervisor supervisor({.robots = 5, .launcher = {}, .script = {}}, at(0));
+  BeatSender sut(*link::StopSender::open({.domain = 219}), 77);
+
+  sut.step(at(0), supervisor, false);
+  sut.step(at(500), supervisor, true);
+
+  std::vector<link::LauncherBeat> beats;
+  for (int i = 0; i < 5000 && beats.size() < 2; ++i) {
+    robots->take();
+    beats.insert(beats.end(), robots->beats().begin(), robots->beats().end());
+    std::this_thread::sleep_for(milliseconds(1));
+  }
+  ASSERT_EQ(beats.size(), 2U);
+  EXPECT_FALSE(beats[0].lists_all);
+  EXPECT_TRUE(beats[1].lists_all);
+}
+
 }  // namespace
 }  // namespace swarm::launcher

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -19,17 +20,27 @@ struct GatewayKeeperTest : testing::Test {
   pid_t pid = 0;  ///< of the last process that was started
   int starts = 0;
   std::vector<pid_t> ended;
+  std::vector<pid_t> killed;
+  bool is_beat = false;     ///< since the last step
   std::string start_error;  ///< why none can be started
   SteadyTime now{seconds(1000)};
-  std::optional<GatewayKeeper> sut{std::in_place,
-                                   [this]() -> Result<pid_t> {
-                                     ++starts;
-                                     if (!start_error.empty()) {
-                                       return fail(ErrorCode::kEnvironment, start_error);
-                                     }
-                                     return pid = 100 + starts;
-                                   },
-                                   [this](pid_t child) { ended.push_back(child); }};
+  std::optional<GatewayKeeper> sut{
+      std::in_place,
+      GatewayKeeper::Means{.start = [this]() -> Result<pid_t> {
+                             ++starts;
+                             if (!start_error.empty()) {
+                               return fail(ErrorCode::kEnvironment, start_error);
+                             }
+                             return pid = 100 + starts;
+                           },
+                           .end = [this](pid_t child) { ended.push_back(child); },
+                           .kill = [this](pid_t child) { killed.push_back(child); },
+                           .is_beat = [this](pid_t) { return std::exchange(is_beat, false); }}};
+
+  std::optional<LogEvent> step_with_beat(SteadyTime at) {
+    is_beat = true;
+    return sut->step(at);
+  }
 };
 
 TEST_F(GatewayKeeperTest, IgnoresOtherChildren) {
@@ -79,6 +90,54 @@ TEST_F(GatewayKeeperTest, TriesAgainWhenItCannotBeStarted) {
   start_error.clear();
   EXPECT_FALSE(sut->step(now + milliseconds(800)));
   EXPECT_EQ(sut->step(now + milliseconds(900))->code, "gateway-restarted");
+}
+
+TEST_F(GatewayKeeperTest, IsUpFromItsFirstBeatToItsEnd) {
+  ASSERT_TRUE(sut->start(now));
+  sut->step(now);
+  EXPECT_FALSE(sut->is_up());
+  step_with_beat(now);
+  EXPECT_TRUE(sut->is_up());
+  sut->on_exit(pid, now);
+  EXPECT_FALSE(sut->is_up());
+  ASSERT_TRUE(sut->step(now + milliseconds(300)));
+  EXPECT_FALSE(sut->is_up()) << "it joins";
+  step_with_beat(now + milliseconds(400));
+  EXPECT_TRUE(sut->is_up());
+}
+
+TEST_F(GatewayKeeperTest, KillsOneThatHangsOnceAndStartsItAgain) {
+  ASSERT_TRUE(sut->start(now));
+  step_with_beat(now);
+  EXPECT_FALSE(sut->step(now + GatewayKeeper::kSilence));
+  EXPECT_TRUE(sut->is_up());
+  now += GatewayKeeper::kSilence + milliseconds(1);
+  const auto silent = sut->step(now);
+  ASSERT_TRUE(silent);
+  EXPECT_EQ(silent->code, "gateway-silent");
+  EXPECT_FALSE(sut->is_up());
+  EXPECT_FALSE(sut->step(now + seconds(5))) << "once";
+  EXPECT_EQ(killed, std::vector{pid});
+
+  now += seconds(5);
+  ASSERT_TRUE(sut->on_exit(pid, now));
+  ASSERT_TRUE(sut->step(now + milliseconds(300)));
+  EXPECT_EQ(starts, 2);
+}
+
+TEST_F(GatewayKeeperTest, WaitsLongerForTheFirstBeat) {
+  ASSERT_TRUE(sut->start(now));
+  EXPECT_FALSE(sut->step(now + GatewayKeeper::kFirstBeat));
+  EXPECT_TRUE(sut->step(now + GatewayKeeper::kFirstBeat + milliseconds(1)));
+  EXPECT_EQ(killed, std::vector{pid});
+}
+
+// Its beats of that time wait in the socket.
+TEST_F(GatewayKeeperTest, KillsNoneAfterTheLauncherWasSuspended) {
+  ASSERT_TRUE(sut->start(now));
+  step_with_beat(now);
+  EXPECT_FALSE(step_with_beat(now + seconds(20)));
+  EXPECT_TRUE(killed.empty());
 }
 
 TEST_F(GatewayKeeperTest, FailsAtTheFirstStart) {
