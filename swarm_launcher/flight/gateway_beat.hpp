@@ -10,8 +10,8 @@
 
 namespace swarm::launcher {
 
-/// A gateway that runs says so, by datagrams on a socket of the host that is named after its
-/// launcher: it is no robot, and publishes nothing of its own on the bus.
+/// A gateway sends beats while it runs, as datagrams on a socket of the host that is named after
+/// its launcher: it is no robot, and publishes nothing of its own on the bus.
 constexpr Duration kGatewayBeatPeriod = std::chrono::milliseconds(200);
 
 /// The launcher's end. Single thread; never blocks.

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "swarm_link/gate/refusal.hpp"
-#include "swarm_link/plan_message.hpp"
+#include "swarm_link/messages.hpp"
 
 namespace swarm::link {
 

@@ -80,7 +80,7 @@ TEST_F(FlightLoopRequest, IsNotConfirmedByAForgedStatus) {
     EXPECT_TRUE(is_logged("refused"));
     robots[1].silent = false;
     requests.send("resume");
-    run_for(milliseconds(100));
+    run_for(seconds(2));  // it is received again, so that no other sender is followed
   }
 }
 

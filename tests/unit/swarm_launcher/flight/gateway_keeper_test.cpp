@@ -46,7 +46,7 @@ struct GatewayKeeperTest : testing::Test {
 TEST_F(GatewayKeeperTest, IgnoresOtherChildren) {
   ASSERT_TRUE(sut->start(now));
   EXPECT_FALSE(sut->on_exit(7, now));
-  EXPECT_FALSE(sut->step(now + seconds(100)));
+  EXPECT_FALSE(sut->step(now + GatewayKeeper::kFirstBeat));
   EXPECT_EQ(starts, 1);
 }
 
