@@ -29,7 +29,10 @@ TEST(EventFlood, FillsNeitherTheLogNorTheDisk) {
   const auto begin = std::chrono::steady_clock::now();
 
   for (int i = 0; i < 5000; ++i) {
-    events->write({.source = 3, .stamp_utc_ns = utc_ns(), .code = "flood", .text = "again"});
+    events->write({.source = link::kPlannerSource,  // a robot's are of its own sender alone
+                   .stamp_utc_ns = utc_ns(),
+                   .code = "flood",
+                   .text = "again"});
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
 
