@@ -71,7 +71,7 @@ freeze() {
   shift
   kill -STOP "$@"
   sleep "$seconds"
-  kill -CONT "$@"
+  kill -CONT "$@" 2>/dev/null || true  # it may have been killed meanwhile
 }
 
 two_hosts() {
