@@ -23,7 +23,8 @@ inline OptionTable<PathKeys> path_keys() {
               "speed per metre to the aim point near the end")
       .number("stuck_after_s", &PathKeys::stuck_after_s, positive(3600),
               "after this long without progress a robot leaves its path for a while")
-      .number("escape_s", &PathKeys::escape_s, between(0, 600), "longest time off the path; crops: time in one random direction");
+      .number("escape_s", &PathKeys::escape_s, between(0, 600),
+              "longest time off the path; crops: time in one random direction");
 }
 
 /// Keys of methods with a repulsion from obstacles.

@@ -39,7 +39,8 @@ inline constexpr auto kLauncherKeys = std::to_array<SectionKey<LauncherSpec>>({
      "deaths in a row after which a planner ends the run before the start; in flight it is "
      "restarted all the same"},
     {"respawn_agent_max", &LauncherSpec::respawn_agent_max, between(0, 1000),
-     "deaths in a row, each within 20 s of life, after which a robot's process stays dead; 0: it is "
+     "deaths in a row, each within 20 s of life, after which a robot's process stays dead; 0: it "
+     "is "
      "never restarted"},
     {"on_launcher_loss", &LauncherSpec::on_launcher_loss, between(0, 1),
      "what robots do when the launcher's beats stop for timing.launcher_silence_s"},
