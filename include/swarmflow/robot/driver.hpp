@@ -83,8 +83,8 @@ class Driver {
   virtual ~Driver() = default;
 
   /// Connects to the robot; the only call that may take time: the launcher waits for the robot, up
-  /// to `launcher.quorum_timeout_s`. By default nothing. \return an error to end the robot's
-  /// process with its message
+  /// to `launcher.quorum_timeout_s`. By default nothing.
+  /// \return an error to end the robot's process with its message
   virtual Result<void> start() { return {}; }
 
   /// The newest measurement. Called once at the begin of every tick, with non-decreasing `now`.
