@@ -55,6 +55,9 @@ Result<void> PlanKeeper::plan_first() {
 
 bool PlanKeeper::take_scene(Scene scene) {
   if (scene_received_ && scene.version <= scene_.version) return false;
+  for (const SceneObstacle& o : scene_.obstacles) {
+    if (o.owner && !has_body(scene, *o.owner)) returned_.push_back(*o.owner);
+  }
   scene_ = std::move(scene);
   scene_received_ = true;
   for (const SceneObstacle& o : scene_.obstacles) {
@@ -107,8 +110,10 @@ void PlanKeeper::try_again(SteadyTime now, UtcTime utc, Step& step) {
   std::vector<ReportedRobot> robots;
   if (is_in_flight(now)) {
     robots = placed(robots_.fresh(now));
-    if (robots.empty() || is_waiting_for_robots(now)) return;
+    if (robots.empty() || is_waiting_for_robots(now) || is_waiting_for_returned(now)) return;
   }
+  returned_.clear();
+  returned_at_.reset();
   tried_at_ = now;
   auto planned = plan_around_bodies(utc, robots, step);
   if (!planned) {

@@ -80,6 +80,7 @@ class PlanKeeper {
   bool is_in_flight(SteadyTime now) const;
   bool is_in_flight_elsewhere(SteadyTime now) const;
   bool is_waiting_for_robots(SteadyTime now) const;
+  bool is_waiting_for_returned(SteadyTime now);
   std::vector<ReportedRobot> placed(std::vector<ReportedRobot> robots) const;
   Result<Replan> plan_anew(const World& world, std::span<const ReportedRobot> robots);
   Result<Replan> plan_around_bodies(UtcTime utc, std::span<const ReportedRobot> robots, Step& step);
@@ -97,6 +98,8 @@ class PlanKeeper {
   MissionPhase phase_ = MissionPhase::kReady;
   Scene scene_;
   bool scene_received_ = false;
+  std::vector<RobotId> returned_{};          // bodies cleared since the last plan
+  std::optional<SteadyTime> returned_at_{};  // the first of them
   Replan newest_;
   std::uint32_t version_ = 0;  // 0 = nothing published
   std::uint64_t planned_scene_ = 0;

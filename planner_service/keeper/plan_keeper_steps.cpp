@@ -11,7 +11,8 @@
 namespace swarm::planner {
 namespace {
 
-// A planner that restarts in flight waits this long for robots that have not reported.
+// A planner that restarts in flight, or plans with robots that have returned, waits this long for
+// those that have not reported.
 constexpr Duration kReportTimeout = std::chrono::milliseconds(1500);
 // With a plan at each period a status may refer to an earlier plan, up to this many before.
 constexpr std::uint32_t kPlansBack = 3;
@@ -43,6 +44,16 @@ bool PlanKeeper::is_in_flight_elsewhere(SteadyTime now) const {
 /// Whether robots may still report for the first time after a start of the planner.
 bool PlanKeeper::is_waiting_for_robots(SteadyTime now) const {
   return !robots_.received_all(now) && now - begun_at_ < kReportTimeout;
+}
+
+/// The launcher clears the body of a robot as soon as it receives the robot; here its status may
+/// arrive later. A plan without it would share out the goals as if it did not exist.
+bool PlanKeeper::is_waiting_for_returned(SteadyTime now) {
+  if (returned_.empty()) return false;
+  if (!returned_at_) returned_at_ = now;
+  return now - *returned_at_ < kReportTimeout && std::ranges::any_of(returned_, [&](RobotId robot) {
+           return !has_body(scene_, robot) && !robots_.is_received(robot, now);
+         });
 }
 
 /// Adds each robot's leg and goal in the plan in force: its share and the plan time determine both.

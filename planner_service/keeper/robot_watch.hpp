@@ -45,6 +45,10 @@ class RobotWatch {
     return robots;
   }
 
+  /// Whether it reported lately. \pre the id is below the number of robots
+  bool is_received(RobotId robot, SteadyTime now) const {
+    return is_fresh(received_.at(robot.value()), now);
+  }
   bool received_all(SteadyTime now) const { return fresh(now).size() == received_.size(); }
 
   /// Fresh robots under way that have made no progress for at least `after`.

@@ -97,5 +97,60 @@ TEST(PlanKeeperScene, KeepsThePlanInForceWhereThereIsNoneForTheScene) {
   EXPECT_TRUE(bench.step_after(GoTo{.goal = bench.mission.goal}).publish) << "and forgotten then";
 }
 
+/// Three robots in flight fell silent; their bodies are cleared again, and the scene is as at
+/// first.
+class ReturnedRobots : public testing::Test {
+ protected:
+  ReturnedRobots() {
+    bench_.step_after(milliseconds(50));
+    bench_.keeper.set_phase(MissionPhase::kRunning);
+    bench_.run_for(1.0);
+    for (std::uint32_t i = 0; i < 3; ++i) {
+      bench_.step_after(AddBody{.robot = RobotId(i), .shape = {bench_.positions_m[i], 0.3}});
+    }
+  }
+  /// The last of the steps.
+  PlanKeeper::Step clear_all() {
+    PlanKeeper::Step step;
+    for (std::uint32_t i = 0; i < 3; ++i) step = bench_.step_after(ClearBody{RobotId(i)});
+    return step;
+  }
+  bool is_planned(std::uint32_t robot) const {
+    return bench_.keeper.newest().entries.at(robot).source != PlanEntry::kAnywhere;
+  }
+  KeeperBench bench_;
+};
+
+TEST_F(ReturnedRobots, ArePlannedOnceTheyHaveReported) {
+  ASSERT_FALSE(is_planned(0));
+  const std::uint32_t before = bench_.keeper.version();
+
+  EXPECT_FALSE(clear_all().publish);
+  bench_.report(RobotId(0));
+  bench_.report(RobotId(1));
+  EXPECT_FALSE(bench_.step_after(milliseconds(500)).publish);
+  bench_.report(RobotId(2));
+  EXPECT_TRUE(bench_.step_after(milliseconds(50)).publish);
+
+  EXPECT_EQ(bench_.keeper.version(), before + 1);
+  for (std::uint32_t i = 0; i < 3; ++i) EXPECT_TRUE(is_planned(i)) << i;
+}
+
+TEST_F(ReturnedRobots, AreNotWaitedForLong) {
+  clear_all();
+  bench_.report(RobotId(1));
+  EXPECT_FALSE(bench_.step_after(milliseconds(1000)).publish);
+  EXPECT_TRUE(bench_.step_after(milliseconds(500)).publish);
+
+  EXPECT_FALSE(is_planned(0));
+  EXPECT_TRUE(is_planned(1));
+}
+
+TEST_F(ReturnedRobots, AreNotWaitedForWhenTheyFallSilentAgain) {
+  bench_.step_after(ClearBody{RobotId(0)});
+  EXPECT_TRUE(bench_.step_after(AddBody{.robot = RobotId(0), .shape = {bench_.positions_m[0], 0.3}})
+                  .publish);
+}
+
 }  // namespace
 }  // namespace swarm::planner
