@@ -27,11 +27,14 @@ bool has_updates(std::span<const LocalRobot> robots) {
 /// Groups take turns by their number, so that messages spread over the ticks of a status period.
 void StatusReport::on_tick(const Source& source) {
   // The launcher starts the mission once all robots have the plan: a new plan is reported at once,
-  // as is the presence of the process at its first tick, and a command, which users wait for.
+  // as is the presence of the process at its first tick, and a command, which users wait for. A
+  // process that slept may be about to be killed for its silence.
   const std::uint32_t version = source.inbox.plan_version();
   const std::uint64_t command = source.inbox.command_id();
+  const bool slept = last_tick_ && source.now - *last_tick_ > status_period_;
+  last_tick_ = source.now;
   const bool all_have_updates =
-      ticks_ == 0 || version != plan_reported_ || command != command_reported_;
+      ticks_ == 0 || slept || version != plan_reported_ || command != command_reported_;
   plan_reported_ = version;
   command_reported_ = command;
   for (std::size_t first = 0; first < source.robots.size(); first += kGroup) {

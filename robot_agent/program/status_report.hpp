@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include "robot_agent/inbox.hpp"
@@ -15,11 +16,14 @@
 namespace swarm::agent {
 
 /// Publishes the status of the robots of a process: groups of them in turn, at the mission's rate
-/// and at once whenever a robot changes its mode or comes to rest, or a command is obeyed.
+/// and at once whenever a robot changes its mode or comes to rest, a command is obeyed, or the
+/// process wakes after it slept for longer than a status period.
 class StatusReport {
  public:
   StatusReport(const Mission& mission, link::Writer<link::StatusMessage>& writer)
-      : cadence_(mission.control.rate_hz, mission.link.status_hz), writer_(writer) {}
+      : cadence_(mission.control.rate_hz, mission.link.status_hz),
+        writer_(writer),
+        status_period_(from_seconds(1.0 / mission.link.status_hz)) {}
 
   /// The data of a status message.
   struct Source {
@@ -42,6 +46,8 @@ class StatusReport {
   StatusCadence cadence_;
   link::Writer<link::StatusMessage>& writer_;
   link::StatusMessage message_;  // reused, so that no tick allocates
+  Duration status_period_;
+  std::optional<SteadyTime> last_tick_;
   std::uint64_t ticks_ = 0;
   std::uint32_t plan_reported_ = 0;     // version
   std::uint64_t command_reported_ = 0;  // id

@@ -21,8 +21,8 @@ class StatusReportTest : public ProcessBench {
         .robots = robots_, .inbox = sut_, .state_age = ages_, .now = steady(), .utc_now = utc()};
   }
   /// The first robots of the groups that are reported at the next tick.
-  std::set<std::uint32_t> tick() {
-    receive();
+  std::set<std::uint32_t> tick(Duration later = milliseconds(100)) {
+    receive(later);
     report_.on_tick(source());
     std::set<std::uint32_t> groups;
     for (const link::StatusMessage& m : writer_.take()) groups.insert(m.first_robot_id);
@@ -98,6 +98,14 @@ TEST_F(StatusReportTest, NamesTheNewestCommandAtOnce) {
   send_command(CommandKind::kPause, utc_ns(seconds(60)));  // stale: it is not obeyed
   EXPECT_LE(tick().size(), 1U);
   EXPECT_EQ(sut_.command_id(), started);
+}
+
+// The launcher kills a process that is silent for long.
+TEST_F(StatusReportTest, ReportsAllAtOnceAfterASleepLongerThanAStatusPeriod) {
+  tick();
+  while (!tick(milliseconds(1000)).empty()) {
+  }
+  EXPECT_EQ(tick(milliseconds(1001)), all_);
 }
 
 TEST_F(StatusReportTest, ReportsTheGroupOfARobotThatChangesItsModeAtOnce) {
