@@ -126,7 +126,9 @@ Result<void> PreparedRun::open_to_hosts() {
                            .first_process = first / per_process,
                            .fault = how.fault,
                            .mission_yaml = to_yaml(mission)},
-                 mission.link.status_hz, dir_, how.join_token);
+                 HostTimes{.status_hz = mission.link.status_hz,
+                           .quorum_timeout_s = mission.launcher.quorum_timeout_s},
+                 dir_, how.join_token);
   return {};
 }
 

@@ -91,7 +91,7 @@ bool RemoteHosts::answer(Host& host, std::uint32_t robots) {
   host.processes = (given + per - 1) / per;
   host.watch =
       HostWatch(host.processes * ((std::min(per, given) + kRobotsPerStatus - 1) / kRobotsPerStatus),
-                status_hz_, now_);
+                times_, now_);
   block.first += given;
   block.robots -= given;
   if (block.robots == 0) free_.erase(free_.begin());

@@ -26,12 +26,12 @@ class RemoteHosts {
  public:
   /// `offer`: all robots that are for other hosts. `dir`: the run's directory.
   /// `token`: a host must know it to get robots; empty: none is needed.
-  RemoteHosts(LineServer server, HostOffer offer, double status_hz, std::filesystem::path dir,
+  RemoteHosts(LineServer server, HostOffer offer, HostTimes times, std::filesystem::path dir,
               std::string token = {})
       : server_(std::move(server)),
         offer_(std::move(offer)),
         token_(std::move(token)),
-        status_hz_(status_hz),
+        times_(times),
         dir_(std::move(dir)),
         free_({{0, offer_.robots}}),
         collected_(offer_.robots, false) {}
@@ -63,7 +63,7 @@ class RemoteHosts {
   struct Host {
     LineSocket socket;
     SteadyTime came;
-    HostWatch watch{1, 1.0, came};
+    HostWatch watch{1, {}, came};
     std::uint32_t first_robot = 0, robots = 0;  // none: no request yet
     ProcessIndex first_process{};
     std::uint32_t processes = 0;
@@ -94,7 +94,7 @@ class RemoteHosts {
   LineServer server_;
   HostOffer offer_;
   std::string token_;
-  double status_hz_;
+  HostTimes times_;
   std::filesystem::path dir_;
   std::vector<Host> hosts_;
   std::vector<std::size_t> joined_;  // since the last step: indices of hosts_

@@ -13,7 +13,7 @@ using std::chrono::milliseconds;
 SteadyTime at(int ms) { return SteadyTime(milliseconds(ms)); }
 
 TEST(HostWatch, ReportsOnceThatAHostIsCutOffAndOnceThatItIsBack) {
-  HostWatch sut(50, 1.0, at(0));
+  HostWatch sut(50, {}, at(0));
   EXPECT_FALSE(sut.step(at(5000))) << "one that was never received is not cut off";
 
   sut.on_status(at(5000));
@@ -28,19 +28,25 @@ TEST(HostWatch, ReportsOnceThatAHostIsCutOffAndOnceThatItIsBack) {
 }
 
 TEST(HostWatch, WaitsLongerForOneRobotThanForMany) {
-  HostWatch one(1, 1.0, at(0));
+  HostWatch one(1, {}, at(0));
   one.on_status(at(0));
   EXPECT_FALSE(one.step(at(2400)));
   EXPECT_TRUE(one.step(at(2600)));
-  HostWatch rare(1, 0.2, at(0));
+  HostWatch rare(1, {.status_hz = 0.2}, at(0));
   rare.on_status(at(0));
   EXPECT_FALSE(rare.step(at(12'400)));
   EXPECT_FALSE(rare.lost(at(100'000)));
   EXPECT_TRUE(rare.lost(at(130'000)));
 }
 
-TEST(HostWatch, GivesUpAHostThatNeverReportsTenSecondsAfterItJoined) {
-  HostWatch sut(50, 1.0, at(3000));
+TEST(HostWatch, GivesUpAHostThatDoesNotReportWithinHalfTheTimeOfTheQuorum) {
+  const HostWatch patient(50, {.quorum_timeout_s = 60.0}, at(3000));
+  EXPECT_FALSE(patient.lost(at(33'000)));
+  EXPECT_TRUE(patient.lost(at(33'001)));
+}
+
+TEST(HostWatch, GivesAHostTenSecondsForItsFirstStatusAtLeast) {
+  HostWatch sut(50, {.quorum_timeout_s = 5.0}, at(3000));
   EXPECT_FALSE(sut.lost(at(13'000)));
   EXPECT_TRUE(sut.lost(at(13'001)));
   EXPECT_FALSE(sut.was_received());

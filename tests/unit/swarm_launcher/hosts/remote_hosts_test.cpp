@@ -99,7 +99,7 @@ struct Bench {
                      .robots = 2,
                      .first_process = 2,
                      .mission_yaml = "x"},
-                    1.0,
+                    {.quorum_timeout_s = 10.0},
                     dir,
                     token};
   std::vector<std::string> log;
