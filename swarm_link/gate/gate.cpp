@@ -91,7 +91,12 @@ Checked<void> Gate::heartbeat(const HeartbeatMessage& message, UtcTime now) {
 
 Checked<void> Gate::heartbeat_of(const HeartbeatMessage& message, const Sent& sent) {
   const auto checked = heartbeat(message, sent.received);
-  if (checked) planner_senders_.insert(sent.sender);
+  if (!checked) return checked;
+  // Restarts are few: more senders than this are forged, and the planner's own comes back with its
+  // next heartbeat.
+  constexpr std::size_t kMostSenders = 64;
+  if (planner_senders_.size() >= kMostSenders) planner_senders_.clear();
+  planner_senders_.insert(sent.sender);
   return checked;
 }
 

@@ -138,7 +138,7 @@ class Gate {
   NewestKey<std::uint64_t> scene_;  ///< the newest of each topic
   NewestKey<std::uint64_t> command_{0};
   StatusOwners status_owners_;
-  std::set<std::uint64_t> planner_senders_;            ///< whose heartbeats passed
+  std::set<std::uint64_t> planner_senders_;            ///< whose heartbeats passed, some of them
   std::vector<NewestKey<std::int64_t>> newest_state_;  // by robot, once newer_state() is used
 };
 
