@@ -88,7 +88,7 @@ void Agent::keep_slot(Route& route, const Vec2& position_m) const {
 
 /// The first that applies: a stop holds in any state, and a robot that has arrived stays arrived
 /// when the mission pauses or the planner is silent.
-RobotMode Agent::decide_mode(const AgentInput& input) const {
+[[gnu::hot]] RobotMode Agent::decide_mode(const AgentInput& input) const {
   if (input.phase == MissionPhase::kStopped || !method_.fault().empty()) return RobotMode::kStopped;
   if (!has_route_ || input.phase == MissionPhase::kReady) return RobotMode::kWaiting;
   if (arrived_) return RobotMode::kArrived;
@@ -100,7 +100,8 @@ RobotMode Agent::decide_mode(const AgentInput& input) const {
 
 /// What the control method proposes, bounded by the safety filter. An arrived robot drives, too: it
 /// keeps its slot and makes room. Any other holds its position and lets itself be pushed.
-Vec2 Agent::filtered_velocity(const ControlView& view, const AgentOutput& out, Rng& rng) {
+[[gnu::hot]] Vec2 Agent::filtered_velocity(const ControlView& view, const AgentOutput& out,
+                                           Rng& rng) {
   const bool drives = out.mode == RobotMode::kMoving || out.mode == RobotMode::kArrived;
   const Vec2 desired = drives ? method_.desired_velocity(view, arrived_, rng) : method_.hold(view);
   const bool gives_way =
@@ -110,7 +111,7 @@ Vec2 Agent::filtered_velocity(const ControlView& view, const AgentOutput& out, R
 
 /// Estimates the neighbours, has the control method propose a velocity, bounds it by the safety
 /// filter, and decides whether to publish the new state.
-AgentOutput Agent::tick(const AgentInput& input, Rng& rng) {
+[[gnu::hot]] AgentOutput Agent::tick(const AgentInput& input, Rng& rng) {
   const Neighbourhood neighbourhood = neighbours_.at(input.now, input.position_m, input.silent);
   const ControlView view{.now = input.now,
                          .position_m = input.position_m,

@@ -15,7 +15,7 @@ constexpr double kLeastError_m = 0.01;  // least tolerated error
 
 /// Dead reckoning with triggers in the order of their cost: first state, longest silence, a
 /// follower about to brake, a near neighbour on a degraded link, error of the extrapolation.
-bool SendPolicy::must_send(const SendInput& input) const {
+[[gnu::hot]] bool SendPolicy::must_send(const SendInput& input) const {
   if (!last_) return true;
   const Duration silent = input.now - last_->now;
   if (silent >= options_->interval_max) return true;

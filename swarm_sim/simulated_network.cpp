@@ -33,7 +33,8 @@ SimulatedNetwork::SimulatedNetwork(const Box& bounds_m, double largest_communica
 
 /// Counting sort of the states by cell, row by row, in O(states + cells). Uses the memory of a
 /// forgotten moment.
-void SimulatedNetwork::post(SteadyTime at, std::span<const agent::NeighbourReport> sent) {
+[[gnu::hot]] void SimulatedNetwork::post(SteadyTime at,
+                                         std::span<const agent::NeighbourReport> sent) {
   if (sent.empty()) return;
   Moment moment;
   if (!spare_.empty()) {
@@ -52,7 +53,8 @@ void SimulatedNetwork::post(SteadyTime at, std::span<const agent::NeighbourRepor
   }
   for (std::size_t c = 2; c < moment.begin.size(); ++c) moment.begin[c] += moment.begin[c - 1];
   // Entry c + 1 is the begin of cell c, and after its states its end: the begin of cell c + 1.
-  for (std::size_t i = 0; i < sent.size(); ++i) moment.sent[moment.begin[cells_[i] + 1]++] = sent[i];
+  for (std::size_t i = 0; i < sent.size(); ++i)
+    moment.sent[moment.begin[cells_[i] + 1]++] = sent[i];
   moments_.push_back(std::move(moment));
 }
 

@@ -68,8 +68,8 @@ std::optional<agent::OfferedPlan> Simulation::offered_plan(const Robot& robot) c
 }
 
 /// One tick of one robot, by the loop of a real process.
-void Simulation::tick_robot(std::uint32_t id, const agent::RobotTick& tick,
-                            const Upcoming& upcoming, Collected& collected) {
+[[gnu::hot]] void Simulation::tick_robot(std::uint32_t id, const agent::RobotTick& tick,
+                                         const Upcoming& upcoming, Collected& collected) {
   Robot& robot = robots_[id];
   if (upcoming.next != nullptr) upcoming.next->loop.prefetch_neighbours();
   RobotRecording log(recording_, RobotId(id));
@@ -114,7 +114,7 @@ void Simulation::tick_slot(std::size_t slot) {
 
 /// Sends the published states by the network. Each state is checked once here, instead of by each
 /// of its receivers; the result is the same.
-void Simulation::deliver_published(SteadyTime now) {
+[[gnu::hot]] void Simulation::deliver_published(SteadyTime now) {
   sent_states_.clear();
   for (Collected& collected : collected_) {
     for (const link::RobotStateMessage& state : collected.published) {

@@ -39,7 +39,7 @@ MotionModel& SimulatedRobot::model() {
 
 /// x is drawn before y in statements of their own: the order of evaluation within an expression is
 /// unspecified, and runs are to be reproducible.
-Vec2 SimulatedRobot::draw(double sigma_m) {
+[[gnu::hot]] Vec2 SimulatedRobot::draw(double sigma_m) {
   if (sigma_m == 0.0) return Vec2::Zero();
   const double x = standard_normal(*rng_);
   const double y = standard_normal(*rng_);
@@ -48,7 +48,7 @@ Vec2 SimulatedRobot::draw(double sigma_m) {
 
 /// Moves the body on to `now` in two parts, since its command may have run out in between: the
 /// watchdog stops it then, as in a real driver.
-Measurement SimulatedRobot::measure(SteadyTime now) {
+[[gnu::hot]] Measurement SimulatedRobot::measure(SteadyTime now) {
   MotionModel& body = model();
   Measurement m;
   const SteadyTime until = std::min(now, valid_until_);
@@ -73,7 +73,8 @@ Measurement SimulatedRobot::measure(SteadyTime now) {
   return m;
 }
 
-void SimulatedRobot::command(SteadyTime now, const Vec2& velocity_mps, Duration valid_for) {
+[[gnu::hot]] void SimulatedRobot::command(SteadyTime now, const Vec2& velocity_mps,
+                                          Duration valid_for) {
   command_mps_ = velocity_mps;
   valid_until_ = now + valid_for;
 }

@@ -28,14 +28,14 @@ std::int32_t to_us(Duration d) {
 }  // namespace
 
 /// Index of the goal as recorded.
-std::uint8_t RobotLoop::goal() const {
+[[gnu::hot]] std::uint8_t RobotLoop::goal() const {
   if (!agent_.has_route()) return robot_log::Step::kNoGoal;
   return static_cast<std::uint8_t>(
       std::min(agent_.goal(position_m_), robot_log::Step::kNoGoal - 1U));
 }
 
 /// Measures the body's position, and accepts a new plan from there.
-Measurement RobotLoop::measure(const RobotTick& tick, const RobotParts& parts) {
+[[gnu::hot]] Measurement RobotLoop::measure(const RobotTick& tick, const RobotParts& parts) {
   const Measurement body = parts.driver.measure(tick.now);
   position_m_ = body.position_m;
   if (body.command_expired) {  // the body stopped between two ticks: the log gets a step there
@@ -58,7 +58,8 @@ Measurement RobotLoop::measure(const RobotTick& tick, const RobotParts& parts) {
 
 /// Decides and commands. The command goes to the driver before the step is logged, so that the disk
 /// does not delay it.
-void RobotLoop::decide(const RobotTick& tick, const RobotParts& parts, const Measurement& body) {
+[[gnu::hot]] void RobotLoop::decide(const RobotTick& tick, const RobotParts& parts,
+                                    const Measurement& body) {
   const RobotMode mode_before = output_.mode;
   const bool was_settled = output_.settled;
   output_ = body.is_valid ? agent_.tick({.now = tick.now,
@@ -121,7 +122,8 @@ void RobotLoop::update_fault(bool has_position, const Driver& driver) {
 
 /// Records the true position where the driver knows it (simulated bodies): the audit measures gaps
 /// between bodies, not between measurements.
-void RobotLoop::log_step(const RobotTick& tick, RobotLog& log, const Vec2& true_position_m) const {
+[[gnu::hot]] void RobotLoop::log_step(const RobotTick& tick, RobotLog& log,
+                                      const Vec2& true_position_m) const {
   const TimeTracking tracking = output_.tracking.value_or(TimeTracking{});
   log.append(robot_log::Step{.stamp = tick.utc_now,
                              .position_m = true_position_m,

@@ -48,6 +48,7 @@ struct NeighbourTable::FilterPass {
   std::size_t close_found = 0;
   std::size_t far_found = 0;
   std::vector<Neighbour> neighbours;
+  SilentNeighbours silent;
 };
 
 NeighbourTable::NeighbourTable(Shared<NeighbourOptions> options)
@@ -63,7 +64,7 @@ NeighbourTable::NeighbourTable(Shared<NeighbourOptions> options)
 
 /// The slot of a robot, or the free one where it belongs: Fibonacci hashing and linear probing. At
 /// least three of four slots are free, so that a probe rarely takes a second step.
-NeighbourTable::Slot& NeighbourTable::slot_of(RobotId robot) {
+[[gnu::hot]] NeighbourTable::Slot& NeighbourTable::slot_of(RobotId robot) {
   const std::size_t mask = index_.size() - 1;
   std::size_t at = (robot.value() * 0x9E37'79B1U >> 16U) & mask;
   while (index_[at] != kFree && blocks_[index_[at] / kLanes].robot[index_[at] % kLanes] != robot) {
@@ -96,7 +97,7 @@ std::int32_t NeighbourTable::since_then_us(SteadyTime t) const { return to_us(t 
 
 /// Moves the origin of time and space to `now` and our position once it is 60 s or 100 m away:
 /// floats resolve 8 µm at 100 m, and ages stay within kLongest_us.
-void NeighbourTable::keep_frame(SteadyTime now, const Vec2& own_position_m) {
+[[gnu::hot]] void NeighbourTable::keep_frame(SteadyTime now, const Vec2& own_position_m) {
   const Vec2 by_m = own_position_m - here_m_;
   if (now - then_ <= kFrameFor && by_m.squaredNorm() <= kFrame_m * kFrame_m) return;
   const std::int32_t by_us = to_us(now - then_);
@@ -132,7 +133,7 @@ void NeighbourTable::count_lost(const LaneBlock& block, std::size_t lane,
 /// Updates the moving averages of loss rate and latency with the messages since the last at(): n of
 /// them weigh n/(64 + n). The link is degraded above kPoor until the loss rate is below kClean, or
 /// while the mean latency exceeds 1.5 control periods.
-void NeighbourTable::update_link_quality() {
+[[gnu::hot]] void NeighbourTable::update_link_quality() {
   if (tally_.updates == 0) return;
   const auto share_of_all = [](std::uint32_t count) { return count / (kUpdates + count); };
   const double late_s = in_s(tally_.late_us) / tally_.updates;
@@ -147,8 +148,9 @@ void NeighbourTable::update_link_quality() {
 
 /// Amortised O(1). A robot unknown so far, or silent for forget_after, is taken with any sequence
 /// number: its process may have been restarted and counts from the beginning.
-NeighbourTable::Outcome NeighbourTable::take(const NeighbourReport& report,
-                                             const Vec2& own_position_m, Duration late) {
+[[gnu::hot]] NeighbourTable::Outcome NeighbourTable::take(const NeighbourReport& report,
+                                                          const Vec2& own_position_m,
+                                                          Duration late) {
   keep_frame(report.as_of, own_position_m);
   Slot& slot = slot_of(report.robot);
   const bool is_known = slot != kFree;
@@ -204,7 +206,8 @@ void NeighbourTable::FilterPass::make_room(std::size_t count) {
 /// received again. All quantities are floats relative to here_m_ and then_. On a good link a silent
 /// robot is where dead reckoning has it (see SendPolicy), so that its information is only as old as
 /// messages are late; on a degraded one it is as old as the state.
-void NeighbourTable::filter(std::int32_t now_us, const Vec2& own_position_m, FilterPass& pass) {
+[[gnu::hot]] void NeighbourTable::filter(std::int32_t now_us, const Vec2& own_position_m,
+                                         FilterPass& pass) {
   // reach_now_m: the reach for information of age 0.
   const auto keep_m = static_cast<float>(options_->communication_radius_m);
   const auto growth_mps = static_cast<float>(options_->reach_growth_mps);
@@ -266,8 +269,8 @@ void NeighbourTable::filter(std::int32_t now_us, const Vec2& own_position_m, Fil
 
 /// The estimate of one robot within reach: extrapolated position, radius, age of the information
 /// and the time for which the robot may have been stopped.
-void NeighbourTable::estimate(std::size_t known, const Vec2& own_position_m, const FilterPass& pass,
-                              Neighbour& n) const {
+[[gnu::hot]] void NeighbourTable::estimate(std::size_t known, const Vec2& own_position_m,
+                                           const FilterPass& pass, Neighbour& n) const {
   const LaneBlock& block = blocks_[known / kLanes];
   const FilterPass::LaneBlock& filtered = pass.blocks[known / kLanes];
   const std::size_t lane = known % kLanes;
@@ -300,11 +303,10 @@ void NeighbourTable::estimate(std::size_t known, const Vec2& own_position_m, con
 
 /// Whether the disc of a silent robot replaces what the filter pass has extrapolated.
 bool NeighbourTable::is_silent(std::size_t known, const FilterPass& pass,
-                               const SilentRobots* silent) const {
-  if (silent == nullptr) return false;
+                               const SilentRobots& silent) const {
   const std::size_t lane = known % kLanes;
   return pass.blocks[known / kLanes].age_us[lane] > silence_us_ &&
-         silent->covers(blocks_[known / kLanes].robot[lane]);
+         silent.covers(blocks_[known / kLanes].robot[lane]);
 }
 
 /// Removes the lanes of gone robots, in order, and builds the index again. O(known robots).
@@ -335,33 +337,37 @@ void NeighbourTable::sweep() {
 
 /// Order of results: close robots first, both groups in the order in which robots became known and
 /// then the silent ones, so that equal reports give equal neighbours.
-Neighbourhood NeighbourTable::at(SteadyTime now, const Vec2& own_position_m,
-                                 const SilentRobots* silent) {
+[[gnu::hot]] Neighbourhood NeighbourTable::at(SteadyTime now, const Vec2& own_position_m,
+                                              const SilentRobots* silent) {
   update_link_quality();
   keep_frame(now, own_position_m);
   static thread_local FilterPass pass;
   filter(since_then_us(now), own_position_m, pass);
-  static thread_local SilentNeighbours of_silent;
-  find_silent_neighbours(silent, *options_, own_position_m, of_silent);
+  SilentNeighbours& of_silent = pass.silent;
+  of_silent.clear();
+  if (silent != nullptr) {
+    find_silent_neighbours(*silent, *options_, own_position_m, of_silent);
+  }
   const std::size_t room =
       pass.close_found + pass.far_found + of_silent.close.size() + of_silent.far.size();
   if (pass.neighbours.size() < room) pass.neighbours.resize(2 * room);
-  Neighbour* next = pass.neighbours.data();
-  for (std::size_t i = 0; i < pass.close_found; ++i) {
-    if (is_silent(pass.close[i], pass, silent)) continue;
-    estimate(pass.close[i], own_position_m, pass, *next++);
-  }
-  next = std::copy(of_silent.close.begin(), of_silent.close.end(), next);
-  const Neighbour* const end_of_close = next;
-  for (std::size_t i = 0; i < pass.far_found; ++i) {
-    if (is_silent(pass.far[i], pass, silent)) continue;
-    estimate(pass.far[i], own_position_m, pass, *next++);
-  }
-  next = std::copy(of_silent.far.begin(), of_silent.far.end(), next);
+  const auto append = [&](std::span<const std::uint32_t> found, const std::vector<Neighbour>& discs,
+                          Neighbour* to) {
+    for (const std::uint32_t known : found) {
+      if (silent != nullptr && is_silent(known, pass, *silent)) continue;
+      estimate(known, own_position_m, pass, *to++);
+    }
+    return std::copy(discs.begin(), discs.end(), to);
+  };
+  Neighbour* const begin = pass.neighbours.data();
+  Neighbour* const end_of_close =
+      append(std::span(pass.close).first(pass.close_found), of_silent.close, begin);
+  Neighbour* const end =
+      append(std::span(pass.far).first(pass.far_found), of_silent.far, end_of_close);
   // Last: sweeping renumbers the robots that the filter pass has listed.
   if (gone_ >= kSweepAt) sweep();
-  const std::span<const Neighbour> all(pass.neighbours.data(), next);
-  return {.all = all, .close = {all.data(), end_of_close}, .is_within_silent = of_silent.is_within};
+  return {
+      .all = {begin, end}, .close = {begin, end_of_close}, .is_within_silent = of_silent.is_within};
 }
 
 }  // namespace swarm::agent

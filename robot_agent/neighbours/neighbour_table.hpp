@@ -123,7 +123,7 @@ class NeighbourTable {
   void filter(std::int32_t now_us, const Vec2& own_position_m, FilterPass& pass);
   void estimate(std::size_t known, const Vec2& own_position_m, const FilterPass& pass,
                 Neighbour& n) const;
-  bool is_silent(std::size_t known, const FilterPass& pass, const SilentRobots* silent) const;
+  bool is_silent(std::size_t known, const FilterPass& pass, const SilentRobots& silent) const;
   void sweep();
 
   Shared<NeighbourOptions> options_;

@@ -13,18 +13,14 @@ constexpr double kOnSurface_m = 0.05;
 
 }  // namespace
 
-void find_silent_neighbours(const SilentRobots* robots, const NeighbourOptions& options,
+void find_silent_neighbours(const SilentRobots& robots, const NeighbourOptions& options,
                             const Vec2& own_position_m, SilentNeighbours& found) {
-  found.close.clear();
-  found.far.clear();
-  found.is_within = false;
-  if (robots == nullptr) return;
-  for (const SilentRobot& silent : robots->all()) {
+  found.clear();
+  for (const SilentRobot& silent : robots.all()) {
     const Vec2 offset_m = own_position_m - silent.centre_m;
     const double distance_m = offset_m.norm();
     if (distance_m < silent.radius_m + options.radius_m - options.scale * kOnSurface_m) {
-      found.close.clear();
-      found.far.clear();
+      found.clear();
       found.is_within = true;
       return;
     }

@@ -19,11 +19,17 @@ struct SilentNeighbours {
   /// The robot is within a disc and stands (see SilentRobots); it retreats from no other, and the
   /// lists are empty.
   bool is_within = false;
+
+  void clear() {
+    close.clear();
+    far.clear();
+    is_within = false;
+  }
 };
 
-/// Finds them for a robot at `own_position_m`; none if `robots` is null. The lists of `found` are
-/// buffers; it does not allocate once warm. O(silent robots).
-void find_silent_neighbours(const SilentRobots* robots, const NeighbourOptions& options,
+/// Finds them for a robot at `own_position_m`. The lists of `found` are buffers; it does not
+/// allocate once warm. O(silent robots).
+void find_silent_neighbours(const SilentRobots& robots, const NeighbourOptions& options,
                             const Vec2& own_position_m, SilentNeighbours& found);
 
 }  // namespace swarm::agent

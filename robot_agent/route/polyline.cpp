@@ -23,7 +23,7 @@ Polyline::Polyline(const std::vector<Vec2>& vertices_m) {
 
 /// Linear search from `near`: successive queries are close to each other, so a few steps are
 /// enough.
-Polyline::Segment Polyline::segment(double s_m, std::size_t near) const {
+[[gnu::hot]] Polyline::Segment Polyline::segment(double s_m, std::size_t near) const {
   if (vertices_.size() == 1) return {.begin_m = vertices_.front(), .end_m = vertices_.front()};
   std::size_t i = std::min(near, arc_.size() - 2);
   while (i + 2 < arc_.size() && arc_[i + 1] <= s_m) ++i;
@@ -31,12 +31,18 @@ Polyline::Segment Polyline::segment(double s_m, std::size_t near) const {
   return {i, vertices_[i], vertices_[i + 1], arc_[i], arc_[i + 1]};
 }
 
+[[gnu::hot]] Vec2 Polyline::Segment::point_m(double s_m) const {
+  const double length_m = end_s_m - begin_s_m;
+  if (length_m <= 0.0) return begin_m;
+  const double t = (std::clamp(s_m, begin_s_m, end_s_m) - begin_s_m) / length_m;
+  return (1.0 - t) * begin_m + t * end_m;
+}
+
 /// A path of one vertex has no direction: its tangent is 0.
-Polyline::Position Polyline::Segment::position(double s_m) const {
+[[gnu::hot]] Polyline::Position Polyline::Segment::position(double s_m) const {
   const double length_m = end_s_m - begin_s_m;
   if (length_m <= 0.0) return {begin_m, Vec2::Zero()};
-  const double t = (std::clamp(s_m, begin_s_m, end_s_m) - begin_s_m) / length_m;
-  return {(1.0 - t) * begin_m + t * end_m, (end_m - begin_m) / length_m};
+  return {point_m(s_m), (end_m - begin_m) / length_m};
 }
 
 }  // namespace swarm::agent

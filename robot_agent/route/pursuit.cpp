@@ -50,7 +50,7 @@ std::size_t Pursuit::piece_of(double s_m) const {
 }
 
 /// Least planned clearance between two arc lengths. O(pieces between them).
-double Pursuit::planned_clearance_m(double from_s_m, double to_s_m) const {
+[[gnu::hot]] double Pursuit::planned_clearance_m(double from_s_m, double to_s_m) const {
   const std::size_t last = piece_of(to_s_m);
   float least_m = clearance_m_[piece_of(from_s_m)];
   for (std::size_t i = piece_of(from_s_m) + 1; i <= last; ++i) {
@@ -59,7 +59,7 @@ double Pursuit::planned_clearance_m(double from_s_m, double to_s_m) const {
   return static_cast<double>(least_m);
 }
 
-void Pursuit::move_to(double s_m) {
+[[gnu::hot]] void Pursuit::move_to(double s_m) {
   s_m_ = s_m;
   if (!segment_.holds(s_m)) segment_ = path_.segment(s_m, segment_.index);
   here_ = segment_.position(s_m);
@@ -67,7 +67,7 @@ void Pursuit::move_to(double s_m) {
 
 /// Moves progress on past all points that count as passed: nearer than passed_m, or beside the path
 /// and behind the robot. An aim that was reached by a short cut is progress at once.
-void Pursuit::advance(const Vec2& position_m) {
+[[gnu::hot]] void Pursuit::advance(const Vec2& position_m) {
   if (aim_s_m_ > s_m_ && (aim_m_ - position_m).norm() < scaled(kReached_m)) move_to(aim_s_m_);
   const double length = path_.length_m();
   while (s_m_ < length) {
@@ -83,7 +83,7 @@ void Pursuit::advance(const Vec2& position_m) {
 
 /// Describes the present aim. Where progress has reached the aim before the path's end, past_m is
 /// how far the robot is past the carrot along the tangent.
-Pursuit::Aim Pursuit::aim(const Vec2& position_m) const {
+[[gnu::hot]] Pursuit::Aim Pursuit::aim(const Vec2& position_m) const {
   Aim aim{.point_m = aim_m_,
           .left_m = (aim_m_ - position_m).norm() + path_.length_m() - aim_s_m_,
           .rest_m = std::max(0.0, carrot_m_ - aim_s_m_),
@@ -96,7 +96,8 @@ Pursuit::Aim Pursuit::aim(const Vec2& position_m) const {
 }
 
 /// Lines of sight are the cost of a pursuit: they are checked every look_every ticks only.
-Pursuit::Aim Pursuit::update(const Vec2& position_m, const World& world, double carrot_m) {
+[[gnu::hot]] Pursuit::Aim Pursuit::update(const Vec2& position_m, const World& world,
+                                          double carrot_m) {
   carrot_m_ = std::min(carrot_m, path_.length_m());
   advance(position_m);
   // Between two looks the last visible aim is kept, while it is well ahead or at the carrot.

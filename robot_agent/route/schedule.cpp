@@ -41,12 +41,13 @@ std::size_t Schedule::segment_at(double plan_time_s) const {
   return i;
 }
 
-double Schedule::at_m(double plan_time_s) const {
+[[gnu::hot]] double Schedule::at_m(double plan_time_s) const {
   if (entries_.size() == 1) return entries_.front().at_m;
-  const std::size_t i = segment_at(plan_time_s);
-  near_ = i;
-  const Entry& a = entries_[i];
-  const Entry& b = entries_[i + 1];
+  const bool is_near =
+      entries_[near_].time_s <= plan_time_s && plan_time_s < entries_[near_ + 1].time_s;
+  if (!is_near) near_ = segment_at(plan_time_s);
+  const Entry& a = entries_[near_];
+  const Entry& b = entries_[near_ + 1];
   return interpolate(plan_time_s, a.time_s, b.time_s, a.at_m, b.at_m);
 }
 

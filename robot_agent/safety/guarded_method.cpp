@@ -47,11 +47,11 @@ void GuardedMethod::begin(const FlowPlan& plan, const Route& route, const World&
   });
 }
 
-bool GuardedMethod::has_arrived(const ControlView& view) {
+[[gnu::hot]] bool GuardedMethod::has_arrived(const ControlView& view) {
   return guarded(false, [&](ControlMethod& m) { return m.has_arrived(view); });
 }
 
-Vec2 GuardedMethod::desired_velocity(const ControlView& view, bool arrived, Rng& rng) {
+[[gnu::hot]] Vec2 GuardedMethod::desired_velocity(const ControlView& view, bool arrived, Rng& rng) {
   return checked(guarded<Vec2>(
       Vec2::Zero(), [&](ControlMethod& m) { return m.desired_velocity(view, arrived, rng); }));
 }
@@ -60,11 +60,11 @@ Vec2 GuardedMethod::hold(const ControlView& view) {
   return checked(guarded<Vec2>(Vec2::Zero(), [&](ControlMethod& m) { return m.hold(view); }));
 }
 
-std::uint32_t GuardedMethod::goal(const Vec2& position_m) const {
+[[gnu::hot]] std::uint32_t GuardedMethod::goal(const Vec2& position_m) const {
   return guarded(0U, [&](const ControlMethod& m) { return m.goal(position_m); });
 }
 
-std::optional<TimeTracking> GuardedMethod::tracking() const {
+[[gnu::hot]] std::optional<TimeTracking> GuardedMethod::tracking() const {
   auto tracking =
       guarded(std::optional<TimeTracking>{}, [](const ControlMethod& m) { return m.tracking(); });
   if (tracking && !(std::isfinite(tracking->plan_time_s) && tracking->reference_m.allFinite())) {
@@ -78,7 +78,7 @@ double GuardedMethod::lag_s() const {
   return checked(guarded(0.0, [](const ControlMethod& m) { return m.lag_s(); }), "lag");
 }
 
-double GuardedMethod::remaining_m() const {
+[[gnu::hot]] double GuardedMethod::remaining_m() const {
   return checked(guarded(0.0, [](const ControlMethod& m) { return m.remaining_m(); }),
                  "remaining length");
 }

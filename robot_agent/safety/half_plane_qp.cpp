@@ -47,8 +47,9 @@ std::optional<Vec2> nearest_on_line(const Vec2& desired_velocity,
 
 /// Seidel: adds one half-plane at a time. While the optimum so far lies within it, nothing changes;
 /// otherwise the new optimum lies on its line, a problem in one dimension.
-std::optional<Vec2> nearest_velocity(const Vec2& desired_mps,
-                                     std::span<const HalfPlane> constraints, double speed_max_mps) {
+[[gnu::hot]] std::optional<Vec2> nearest_velocity(const Vec2& desired_mps,
+                                                  std::span<const HalfPlane> constraints,
+                                                  double speed_max_mps) {
   const double desired = desired_mps.norm();
   Vec2 best = desired > speed_max_mps ? Vec2(desired_mps * (speed_max_mps / desired)) : desired_mps;
   for (std::size_t i = 0; i < constraints.size(); ++i) {

@@ -90,7 +90,7 @@ double Gaussian::min_sigma_m() const {
 double Gaussian::max_sigma_m() const { return std::sqrt(max_variance_m2(covariance_m2_)); }
 
 // d'Σ⁻¹d with the inverse written out as adjugate over determinant.
-double Gaussian::mahalanobis_squared(const Vec2& point_m) const {
+[[gnu::hot]] double Gaussian::mahalanobis_squared(const Vec2& point_m) const {
   const Vec2 d = point_m - mean_m_;
   return (covariance_m2_(1, 1) * d.x() * d.x() - 2.0 * covariance_m2_(0, 1) * d.x() * d.y() +
           covariance_m2_(0, 0) * d.y() * d.y()) /

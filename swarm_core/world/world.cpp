@@ -270,7 +270,7 @@ SignedDistance World::signed_distance(const Vec2& point_m) const {
 
 // Cheaper than signed_distance() where only near obstacles matter: the bound is known from the
 // start.
-double World::distance_up_to_m(const Vec2& point_m, double most_m) const {
+[[gnu::hot]] double World::distance_up_to_m(const Vec2& point_m, double most_m) const {
   double least_m = most_m;
   boxes_.for_each_within({point_m, point_m}, most_m, [&](std::uint32_t i) {
     least_m = std::min(least_m, obstacle_distance(obstacles_[i], point_m).distance_m);
@@ -280,7 +280,7 @@ double World::distance_up_to_m(const Vec2& point_m, double most_m) const {
 
 // An obstacle is farther than the clearance if and only if all its convex parts are, and distances
 // to parts are cheaper because their edges are precomputed.
-bool World::is_clear(const Vec2& point_m, double clearance_m) const {
+[[gnu::hot]] bool World::is_clear(const Vec2& point_m, double clearance_m) const {
   return !convex_boxes_.any_within({point_m, point_m}, clearance_m, [&](std::uint32_t i) {
     return convex_obstacles_[i].signed_distance(point_m).distance_m <= clearance_m;
   });

@@ -42,6 +42,8 @@ class Polyline {
     bool holds(double s_m) const { return begin_s_m <= s_m && s_m < end_s_m; }
     /// The point at an arc length [m]; for an s outside of the segment its begin or end.
     Position position(double s_m) const;
+    /// The same without the tangent, which costs two divisions.
+    Vec2 point_m(double s_m) const;
   };
   /// The segment that holds an arc length, or the first or last one for an s outside [0, length].
   /// O(segments between the `near`-th one and the answer), does not allocate.
@@ -50,9 +52,7 @@ class Polyline {
   /// \pre the path is not empty; not checked
   Segment segment(double s_m, std::size_t near = 0) const;
   /// The position at an arc length [m]; cost and precondition as of segment().
-  Vec2 at(double s_m, std::size_t near = 0) const {
-    return segment(s_m, near).position(s_m).point_m;
-  }
+  Vec2 at(double s_m, std::size_t near = 0) const { return segment(s_m, near).point_m(s_m); }
 
  private:
   std::vector<Vec2> vertices_;

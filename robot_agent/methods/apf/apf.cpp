@@ -22,12 +22,12 @@ void Apf::begin(const Route& route, const World& world) {
   escape_.forget();
 }
 
-bool Apf::has_arrived(const ControlView& view) {
+[[gnu::hot]] bool Apf::has_arrived(const ControlView& view) {
   return watch_.has_arrived(view.now, view.position_m);
 }
 
 /// The repulsive part w₂U_rep of eq. 14, of neighbours and of the nearest obstacle.
-Vec2 Apf::repulsion(const ControlView& view) const {
+[[gnu::hot]] Vec2 Apf::repulsion(const ControlView& view) const {
   return neighbour_repulsion(view.position_m, view.close, options_->neighbour_repulsion) +
          obstacle_repulsion(view.position_m, view.world, options_->obstacle_repulsion);
 }
@@ -48,7 +48,7 @@ Vec2 Apf::attraction_to(const Vec2& escape_m, const ControlView& view) const {
 
 /// Attraction that keeps the plan's time: aims at most at the carrot c = l*(τ + τ̇T), at the speed
 /// that pace.hpp gives. Its arc length s is c less the distance still to drive to the carrot.
-Vec2 Apf::attraction_in_time(const ControlView& view, bool arrived, Rng& rng) {
+[[gnu::hot]] Vec2 Apf::attraction_in_time(const ControlView& view, bool arrived, Rng& rng) {
   const PaceOptions& pace = options_->pace;
   const Pace::Now now = pace_.at(*view.plan_time, pace);
   const Pursuit::Aim aim = pursuit_.update(view.position_m, view.world, now.carrot_m);
@@ -83,7 +83,7 @@ Vec2 Apf::attraction_at_will(const ControlView& view, bool arrived, Rng& rng) {
          attraction_to_density(view, arrived);
 }
 
-Vec2 Apf::desired_velocity(const ControlView& view, bool arrived, Rng& rng) {
+[[gnu::hot]] Vec2 Apf::desired_velocity(const ControlView& view, bool arrived, Rng& rng) {
   const bool keeps_time = options_->keeps_time && view.plan_time;
   return (keeps_time ? attraction_in_time(view, arrived, rng)
                      : attraction_at_will(view, arrived, rng)) +
@@ -96,7 +96,7 @@ Vec2 Apf::hold(const ControlView& view) {
   return repulsion(view);
 }
 
-std::optional<TimeTracking> Apf::tracking() const {
+[[gnu::hot]] std::optional<TimeTracking> Apf::tracking() const {
   if (!in_time_) return std::nullopt;
   return TimeTracking{.plan_time_s = in_time_->time.plan_time_s,
                       .reference_m = pursuit_.point_m(in_time_->reference_m)};

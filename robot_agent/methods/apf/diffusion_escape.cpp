@@ -35,8 +35,8 @@ Vec2 DiffusionEscape::diffuse(const ControlView& view, Rng& rng) const {
                            rng);
 }
 
-std::optional<Vec2> DiffusionEscape::update(const ControlView& view, double progress_m,
-                                            bool wants_to_move, Rng& rng) {
+[[gnu::hot]] std::optional<Vec2> DiffusionEscape::update(const ControlView& view, double progress_m,
+                                                         bool wants_to_move, Rng& rng) {
   if (!wants_to_move) {
     forget();
     return std::nullopt;

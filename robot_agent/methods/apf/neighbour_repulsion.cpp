@@ -7,8 +7,8 @@
 namespace swarm::agent {
 
 /// The sum of the pushes p (1 − gap/d₀), at most p each, also where bodies overlap.
-Vec2 neighbour_repulsion(const Vec2& position_m, std::span<const Neighbour> neighbours,
-                         const NeighbourRepulsionOptions& options) {
+[[gnu::hot]] Vec2 neighbour_repulsion(const Vec2& position_m, std::span<const Neighbour> neighbours,
+                                      const NeighbourRepulsionOptions& options) {
   const double gap_m = std::max(options.gap_m, 1e-9);
   const double per_m = 1.0 / gap_m;
   Vec2 push = Vec2::Zero();
