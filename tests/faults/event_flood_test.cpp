@@ -7,7 +7,7 @@
 
 #include "swarm_launcher/supervision/event_throttle.hpp"
 #include "swarm_link/topics.hpp"
-#include "tests/system/intruder.hpp"
+#include "tests/system/hostile/intruder.hpp"
 
 namespace swarm::test {
 namespace {

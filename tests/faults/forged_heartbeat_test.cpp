@@ -5,7 +5,7 @@
 #include <thread>
 
 #include "swarm_link/topics.hpp"
-#include "tests/system/intruder.hpp"
+#include "tests/system/hostile/intruder.hpp"
 
 namespace swarm::test {
 namespace {

@@ -13,7 +13,7 @@
 #include <sstream>
 
 #include "swarm_link/topics.hpp"
-#include "tests/system/intruder.hpp"
+#include "tests/system/hostile/intruder.hpp"
 
 namespace swarm::test {
 namespace {

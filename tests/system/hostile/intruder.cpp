@@ -12,6 +12,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include "swarm_core/base/clock.hpp"
 #include "swarm_link/adapters/cyclone/cyclone_participant.hpp"
 #include "swarm_link/adapters/fastdds/fastdds_participant.hpp"
 #include "swarm_link/cdr/codec.hpp"
@@ -26,7 +27,14 @@ using namespace swarm::link;
 
 constexpr std::uint32_t kStrength = 1000;  // more than the planner's
 
-Result<std::unique_ptr<Participant>> join(const shell::RunInfo& run, pid_t launcher) {
+}  // namespace
+
+std::int64_t utc_ns() { return utc_now().time_since_epoch().count(); }
+
+Result<std::unique_ptr<Participant>> intrude(const FlownRun& flown) {
+  const auto info = shell::read_run_info(flown.dir());
+  if (!info) return tl::unexpected(info.error());
+  const shell::RunInfo& run = *info;
   if (run.channel == Channel::kTopics) {
     return make_fastdds_participant({.name = "hostile",
                                      .domain = run.domain,
@@ -35,19 +43,17 @@ Result<std::unique_ptr<Participant>> join(const shell::RunInfo& run, pid_t launc
                                      .ownership_strength = kStrength});
   }
   CycloneOptions options{.name = "hostile", .domain = run.domain, .ownership_strength = kStrength};
-  options.peer_ports = udp_ports_of(launcher);
-  for (const Child& child : children_of(launcher)) {
+  options.peer_ports = udp_ports_of(flown.launcher().pid());
+  for (const Child& child : children_of(flown.launcher().pid())) {
     const auto ports = udp_ports_of(child.pid);
     options.peer_ports.insert(options.peer_ports.end(), ports.begin(), ports.end());
   }
   return make_cyclone_participant(options);
 }
 
-}  // namespace
-
 Intruder::Intruder(const FlownRun& run) {
   run_ = shell::read_run_info(run.dir()).value();
-  auto joined = join(run_, run.launcher().pid());
+  auto joined = intrude(run);
   if (!joined) {
     ADD_FAILURE() << joined.error().message;
     return;

@@ -17,10 +17,17 @@
 
 namespace swarm::test {
 
-/// A participant that is no part of the run: it sends whatever it is given to all processes of a
-/// run, and receives statuses, heartbeats and commands. With a discovery server it joins like any
-/// other, with Fast DDS; else with Cyclone DDS, which it points at every UDP port of the processes,
-/// and it sends states to the groups, too.
+/// Now, as messages have it.
+std::int64_t utc_ns();
+
+/// A participant on the bus of a run that is no part of it, and outranks the run's planner. With a
+/// discovery server it joins like any other, with Fast DDS; else with Cyclone DDS, which it points
+/// at every UDP port of the processes.
+Result<std::unique_ptr<link::Participant>> intrude(const FlownRun& run);
+
+/// Such a participant that sends whatever it is given to all processes of a
+/// run, and receives statuses, heartbeats and commands. Without a discovery server it sends states
+/// to the groups, too.
 class Intruder {
  public:
   /// Fails the test if it cannot join.
