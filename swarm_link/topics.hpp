@@ -55,8 +55,9 @@ inline Topic<CommandMessage> command_topic() {
            .depth = 32}};
 }
 
-/// Exclusive: of two planners only the one with the higher strength is received. Depth 1: only the
-/// newest plan counts.
+/// Exclusive: a planner that was restarted has a higher strength than the one before it, whose
+/// samples are not delivered any more. Which of two living planners leads is decided by their
+/// heartbeats (RulingPlanner). Depth 1: only the newest plan counts.
 inline Topic<PlanMessage> plan_topic() {
   return {"swarm/plan",
           {.reliability = Reliability::kReliable,

@@ -110,7 +110,8 @@ class Page {
 
   std::string text_ =
       "<!-- Made by `swarm_launcher keys`: edit the tables in the code, not this file. "
-      "-->\n# Keys of a mission file\n\nThe keys that have a single value. A section or key that "
+      "-->\n# Keys of a mission file\n\nThe keys that have a single value; the others are in "
+      "[mission-file.md](mission-file.md). A section or key that "
       "is left out has its default. Keys of components that the mission does not choose are "
       "allowed. `swarm_launcher --check MISSION.yaml` lists all errors in a file.\n";
   bool has_table_ = false;

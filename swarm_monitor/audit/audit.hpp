@@ -77,7 +77,6 @@ struct Audit {
   std::vector<RobotAudit> by_robot;  ///< not part of the JSON document
   /// The outcome: every robot arrived, none touched anything, and all criteria of the mission are
   /// met.
-
   bool ok() const { return reasons.empty(); }
 };
 

@@ -35,8 +35,8 @@ struct TappedSample {
   std::span<const unsigned char> bytes{};
 };
 
-/// Receives everything of a run in progress as it is on the bus, without being discovered by
-/// agents.
+/// Receives everything of a run in progress as it is on the bus. On groups agents do not discover
+/// it; on topics it reads their cell topics.
 class BusTap {
  public:
   using Sink = std::function<void(const TappedSample&)>;

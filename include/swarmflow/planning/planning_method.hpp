@@ -58,8 +58,7 @@ class PlanningMethod {
 
   /// Plans the flow from request.start to request.goal.
   ///
-  /// The program publishes no heartbeat meanwhile: robots follow their last plan for
-  /// `timing.planner_silence_s` and then hold until the next heartbeat.
+  /// Heartbeats go on meanwhile, from a thread of their own: robots follow their last plan.
   /// \param request start, goal and map
   /// \param context random generator and clock
   /// \return kInfeasible where there is no such flow; the message states why, and which key of the
