@@ -1,7 +1,9 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-// A stranger sends heartbeats as a planner that has started just now.
+// A stranger sends heartbeats as another planner.
 #include <chrono>
+#include <cstdint>
+#include <string>
 #include <thread>
 
 #include "swarm_link/topics.hpp"
@@ -10,16 +12,13 @@
 namespace swarm::test {
 namespace {
 
-// Were the newest epoch to lead, the swarm would hold for good, without a plan of that epoch.
-TEST(ForgedHeartbeat, OfALaterEpochDoesNotLockThePlannerOut) {
-  FlownRun run({"--channel", "topics"});
-  ASSERT_TRUE(run.mission_started()) << run.launcher().err();
+/// Twenty heartbeats of a planner that began `after_s` seconds after now, within two seconds.
+void forge(const FlownRun& run, std::int64_t after_s) {
   const auto participant = intrude(run);
   ASSERT_TRUE(participant) << participant.error().message;
   const auto beats = (*participant)->make_writer(link::heartbeat_topic()).value();
   ASSERT_TRUE(eventually([&] { return beats->matched() >= 12; }));
-
-  const auto epoch = static_cast<std::uint64_t>(utc_ns());
+  const auto epoch = static_cast<std::uint64_t>(utc_ns() + after_s * 1'000'000'000);
   for (std::uint64_t i = 1; i <= 20; ++i) {
     beats->write({.phase = link::MissionPhase::kRunning,
                   .version = 1,
@@ -28,10 +27,35 @@ TEST(ForgedHeartbeat, OfALaterEpochDoesNotLockThePlannerOut) {
                   .stamp_utc_ns = utc_ns()});
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
   }
+}
 
+void expect_all_arrive(FlownRun& run) {
   EXPECT_EQ(run.launcher().wait(), 0) << run.launcher().err();
   EXPECT_EQ(run.summary()["arrived"], 12);
   EXPECT_EQ(run.summary()["collisions_robot"], 0);
+}
+
+// Were the newest epoch to lead, the swarm would hold for good, without a plan of that epoch.
+TEST(ForgedHeartbeat, OfALaterEpochDoesNotLockThePlannerOut) {
+  FlownRun run({"--channel", "topics"});
+  ASSERT_TRUE(run.mission_started()) << run.launcher().err();
+
+  forge(run, 0);
+
+  expect_all_arrive(run);
+}
+
+// Of two planners the one that began first leads, so the run's own one stands down; it leads again
+// when the other falls silent.
+TEST(ForgedHeartbeat, OfAnEarlierEpochIsOutlived) {
+  FlownRun run({"--channel", "topics"});
+  ASSERT_TRUE(run.mission_started()) << run.launcher().err();
+
+  forge(run, -3600);
+
+  expect_all_arrive(run);
+  EXPECT_TRUE(has_event(run.dir(), "planner-standby"));
+  EXPECT_TRUE(has_event(run.dir(), "planner-takeover"));
 }
 
 }  // namespace
