@@ -142,12 +142,14 @@ void Supervisor::keep_bodies(std::vector<Action>& actions) {
 // Starts the mission when all robots are ready. After the quorum time-out it starts with those that
 // are ready, if they are enough; otherwise the run ends.
 void Supervisor::gather(SteadyTime now, std::vector<Action>& actions) {
+  const auto is_known = [](const Robot& r) { return r.received && r.report.has_plan; };
+  const bool discovered = std::ranges::all_of(robots_, is_known);
   std::vector<RobotId> missing;
-  bool discovered = true;
   for (std::uint32_t i = 0; i < robots_.size(); ++i) {
-    const bool known = robots_[i].received && robots_[i].report.has_plan;
-    discovered = discovered && known;
-    if (!known || !robots_[i].report.receives_neighbours) missing.emplace_back(i);
+    Robot& r = robots_[i];
+    r.received_neighbours |= discovered && r.report.receives_neighbours;
+    const bool has_neighbours = r.received_neighbours || r.report.receives_neighbours;
+    if (!is_known(r) || !has_neighbours) missing.emplace_back(i);
   }
   const double waited_s = to_seconds(now - last_start_);
   if (discovered && discovery_s_ < 0.0) discovery_s_ = waited_s;

@@ -193,7 +193,10 @@ class Supervisor {
     RobotReport report;
     bool has_stopped = false;  ///< confirmed the emergency stop, which is final
     bool received = false;     ///< since the last start of its process
-    bool absent = false;       ///< not received when the mission started
+    /// All its neighbours, at some status since all robots are known. Robots that wait make room
+    /// for each other, so that those at the rim of the communication radius come and go.
+    bool received_neighbours = false;
+    bool absent = false;  ///< not received when the mission started
     bool lost = false;
     bool cleared = false;                      ///< by a user, since it fell silent
     std::optional<SteadyTime> silent_since{};  // its body is an obstacle

@@ -43,6 +43,7 @@ void Supervisor::on_exit(ProcessIndex process, const ProcessExit& exit, SteadyTi
   for (std::uint32_t r = first.value(); r < first.value() + count; ++r) {
     robots_[r].received = false;
     robots_[r].report = {};
+    robots_[r].received_neighbours = false;
     robots_[r].has_stopped = false;
     robots_[r].hindrance.clear();
   }

@@ -105,6 +105,38 @@ TEST(Supervisor, WaitsUntilEveryRobotReceivesItsNeighbours) {
   EXPECT_GE(bench.sut->neighbour_discovery_s(), 0.9);
 }
 
+// Neighbours at the rim of the communication radius come and go, as robots that wait make room.
+TEST(Supervisor, TakesARobotForReadyThatHasReceivedAllNeighboursOnce) {
+  SupervisorBench bench(3);
+  bench.run_for(seconds(1));
+  const auto report = [&](std::uint32_t without) {
+    for (std::uint32_t i = 0; i < 3; ++i) {
+      bench.sut->on_status(RobotId(i), {true, i != without, RobotMode::kWaiting, false});
+    }
+    bench.run_for(seconds(1));
+  };
+  report(0);
+  EXPECT_TRUE(bench.commands.empty());
+  report(1);
+
+  EXPECT_EQ(bench.commands.size(), 1U);
+}
+
+// While others are not known yet, a robot seems to have no neighbours.
+TEST(Supervisor, DoesNotCountNeighboursBeforeAllRobotsAreKnown) {
+  SupervisorBench bench(3);
+  bench.run_for(seconds(1));
+  bench.sut->on_status(RobotId(0), {true, true, RobotMode::kWaiting, false});
+  bench.run_for(seconds(1));
+
+  for (std::uint32_t i = 0; i < 3; ++i) {
+    bench.sut->on_status(RobotId(i), {true, i != 0, RobotMode::kWaiting, false});
+  }
+  bench.run_for(seconds(1));
+
+  EXPECT_TRUE(bench.commands.empty());
+}
+
 TEST(Supervisor, GoesOnWithAQuorumAfterTheTimeOut) {
   SupervisorBench bench(5);
   bench.options.launcher.quorum_share = 0.8;
