@@ -12,20 +12,17 @@ robots=${ROBOTS:-100}
 seeds=${SEEDS:-1 2}
 out=$(mktemp -d)
 echo "runs in $out" >&2
-launcher=
-joined=
-netns=
 failed=0
+# shellcheck source=tests/bench/host_pair.sh
+. "$root/tests/bench/host_pair.sh"
 
 clean() {
   # shellcheck disable=SC2086
   kill -CONT $launcher 2>/dev/null || true
   # shellcheck disable=SC2086
   kill $launcher $joined 2>/dev/null || true
-  exec 3>&-
-  for ns in $netns; do ip netns del "$ns" 2>/dev/null || true; done
+  remove_hosts
 }
-exec 3>/dev/null
 trap clean EXIT
 trap 'exit 130' INT TERM
 
@@ -36,21 +33,13 @@ some() {
   children "$2" | shuf -n "$1" --random-source="$out/random"
 }
 
-# await_start: until the mission has started
-await_start() {
-  until grep -qs '"text":"start"' "$run/events.jsonl"; do
-    kill -0 "$launcher"
-    sleep 0.2
-  done
-}
-
 # fly MISSION [OPTIONS …]: in the background, until its mission has started
 fly() {
   file=$missions/$1
   shift
   "$bin/swarm_launcher" run "$file" --robots "$robots" --seed "$seed" --out "$run" --json "$@" >/dev/null 2>"$run.log" &
   launcher=$!
-  await_start
+  await_start "$run"
 }
 
 # finish LIVING: waits for it; that many robots are to arrive
@@ -74,38 +63,12 @@ freeze() {
   kill -CONT "$@" 2>/dev/null || true  # it may have been killed meanwhile
 }
 
-two_hosts() {
-  a=swarmflow-a-$$
-  b=swarmflow-b-$$
-  netns="$a $b"
-  ip netns add "$a"
-  ip netns add "$b"
-  mkfifo "$run.loss" "$run.ready"
-  "$root/tests/bench/lossy_cable.py" "$a" cable-a "$b" cable-b 0 5 <"$run.loss" >"$run.ready" &
-  exec 3>"$run.loss" # the cable ends when this is closed
-  read -r _ <"$run.ready"
-  for end in "$a cable-a 10.77.0.1" "$b cable-b 10.77.0.2"; do
-    # shellcheck disable=SC2086
-    set -- $end
-    ip -n "$1" link set lo up
-    ip -n "$1" addr add "$3/24" dev "$2"
-    ip -n "$1" link set "$2" up
-  done
-  ip netns exec "$a" "$bin/swarm_launcher" run "$missions/swarmprm_standin.yaml" --robots "$robots" --seed "$seed" --out "$run" --json \
-    --interface 10.77.0.1 --remote $((robots / 2)) --join-port 7000 >/dev/null 2>"$run.log" &
-  launcher=$!
-  until grep -qs 'swarm_launcher join' "$run.log"; do
-    kill -0 "$launcher"
-    sleep 0.2
-  done
-  ip netns exec "$b" "$bin/swarm_launcher" join 10.77.0.1:7000 --robots $((robots / 2)) --out "$run-b" 2>"$run-b.log" &
-  joined=$!
-  await_start
-}
-
 # The robots of a host that is dropped are lost; both halves keep apart all the same.
 cut_host() {
-  two_hosts
+  mkdir "$run.hosts"
+  make_hosts "$run.hosts" 0 5
+  fly_on_both "$missions/swarmprm_standin.yaml" "$run" --seed "$seed"
+  await_start "$run"
   sleep 50
   echo 1 >&3
   sleep 30
@@ -113,9 +76,7 @@ cut_host() {
   finish $((robots / 2))
   wait "$joined" || true
   joined=
-  exec 3>/dev/null
-  for ns in $netns; do ip netns del "$ns"; done
-  netns=
+  remove_hosts
 }
 
 for case in ${*:-agents narrow launcher server planner gateway descriptors host}; do

@@ -9,53 +9,20 @@ bin=${SWARM_BIN:-$root/build/release/bin}
 mission=$root/deploy/missions/swarmprm_standin.yaml
 robots=${ROBOTS:-100}
 out=$(mktemp -d)
-a=swarmflow-a-$$
-b=swarmflow-b-$$
 echo "runs in $out" >&2
-
-launcher=
-joined=
 failed=0
+# shellcheck source=tests/bench/host_pair.sh
+. "$root/tests/bench/host_pair.sh"
 
 clean() {
-  exec 3>&-
   # shellcheck disable=SC2086
   kill $launcher $joined 2>/dev/null || true
-  ip netns del "$a" 2>/dev/null || true
-  ip netns del "$b" 2>/dev/null || true
+  remove_hosts
 }
 trap clean EXIT
 trap 'exit 130' INT TERM
 
-# host NAMESPACE INTERFACE ADDRESS
-host() {
-  ip -n "$1" link set lo up
-  ip -n "$1" addr add "$3/24" dev "$2"
-  ip -n "$1" link set "$2" up
-}
-
-ip netns add "$a"
-ip netns add "$b"
-mkfifo "$out/loss" "$out/ready"
-"$root/tests/bench/lossy_cable.py" "$a" cable-a "$b" cable-b 0.05 20 <"$out/loss" >"$out/ready" &
-exec 3>"$out/loss" # the cable ends when this is closed
-read -r _ <"$out/ready"
-host "$a" cable-a 10.77.0.1
-host "$b" cable-b 10.77.0.2
-
-# fly NAME: half of the robots on each host, in the background
-fly() {
-  ip netns exec "$a" "$bin/swarm_launcher" run "$mission" --robots "$robots" --out "$out/$1" --json \
-    --interface 10.77.0.1 --remote $((robots / 2)) --join-port 7000 >/dev/null 2>"$out/$1.log" &
-  launcher=$!
-  until grep -qs 'swarm_launcher join' "$out/$1.log"; do
-    kill -0 "$launcher"
-    sleep 0.2
-  done
-  ip netns exec "$b" "$bin/swarm_launcher" join 10.77.0.1:7000 --robots $((robots / 2)) --out "$out/$1-b" \
-    2>"$out/$1-b.log" &
-  joined=$!
-}
+make_hosts "$out" 0.05 20
 
 # finish NAME
 finish() {
@@ -71,12 +38,9 @@ finish() {
 }
 
 for case in ${*:-lossy cut}; do
-  fly "$case"
+  fly_on_both "$mission" "$out/$case"
   if [ "$case" = cut ]; then
-    until grep -qs '"text":"start"' "$out/$case/events.jsonl"; do
-      kill -0 "$launcher"
-      sleep 0.2
-    done
+    await_start "$out/$case"
     sleep 60
     echo 1 >&3
     sleep 10
