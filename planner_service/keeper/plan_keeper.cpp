@@ -105,7 +105,9 @@ Result<Replan> PlanKeeper::plan_around_bodies(UtcTime utc, std::span<const Repor
 }
 
 /// Plans for the present scene and publishes the result. If planning fails the last plan stays in
-/// force; the failure is reported once per scene.
+/// force; the failure is reported once per scene. The last plan of a planner that has just been
+/// restarted is the mission's first one: robots that wait for a plan of this planner would hold for
+/// good.
 void PlanKeeper::try_again(SteadyTime now, UtcTime utc, Step& step) {
   std::vector<ReportedRobot> robots;
   if (is_in_flight(now)) {
@@ -117,6 +119,7 @@ void PlanKeeper::try_again(SteadyTime now, UtcTime utc, Step& step) {
   tried_at_ = now;
   auto planned = plan_around_bodies(utc, robots, step);
   if (!planned) {
+    if (version_ == 0 && !scene_.goal) publish(now, 0, step);
     if (failed_scene_ == scene_.version) return;
     failed_scene_ = scene_.version;
     step.notices.push_back(
@@ -128,7 +131,7 @@ void PlanKeeper::try_again(SteadyTime now, UtcTime utc, Step& step) {
   if (newest_.planned.excess.by_m > 0.0) {
     step.notices.push_back({true, "plan-excess", describe(newest_.planned.excess)});
   }
-  publish(now, step);
+  publish(now, scene_.version, step);
 }
 
 /// Decides whether to plan now: on a new scene, periodically while obstacles move or the last
@@ -139,7 +142,7 @@ void PlanKeeper::keep_planned(SteadyTime now, UtcTime utc, Step& step) {
   const bool published = version_ > 0;
   if (phase_ != MissionPhase::kReady && !published && is_waiting_for_robots(now)) return;
   if (scene_.version == 0 && !published && !is_in_flight_elsewhere(now)) {
-    publish(now, step);
+    publish(now, scene_.version, step);
     tried_at_ = now;
     return;
   }
@@ -169,8 +172,8 @@ void PlanKeeper::avoid_jams(SteadyTime now, UtcTime utc, Step& step) {
   try_again(now, utc, step);
 }
 
-/// A new version: its clock starts at 0.
-void PlanKeeper::publish(SteadyTime now, Step& step) {
+/// A new version, made for a scene: its clock starts at 0.
+void PlanKeeper::publish(SteadyTime now, std::uint64_t scene_version, Step& step) {
   step.publish = true;
   ++version_;
   governor_.issue(version_, now);
@@ -178,7 +181,7 @@ void PlanKeeper::publish(SteadyTime now, Step& step) {
   for (const PlanWarning& warning : newest_.planned.warnings) {
     step.notices.push_back({true, warning.code, warning.text});
   }
-  planned_scene_ = scene_.version;
+  planned_scene_ = scene_version;
 }
 
 PlanKeeper::Step PlanKeeper::step(SteadyTime now, UtcTime utc) {

@@ -84,7 +84,7 @@ class PlanKeeper {
   std::vector<ReportedRobot> placed(std::vector<ReportedRobot> robots) const;
   Result<Replan> plan_anew(const World& world, std::span<const ReportedRobot> robots);
   Result<Replan> plan_around_bodies(UtcTime utc, std::span<const ReportedRobot> robots, Step& step);
-  void publish(SteadyTime now, Step& step);
+  void publish(SteadyTime now, std::uint64_t scene_version, Step& step);
   void keep_clock(SteadyTime now, UtcTime utc, Step& step);
   void catch_up(SteadyTime now);
   bool reports_lag(const ReportedRobot& robot) const;

@@ -97,6 +97,43 @@ TEST(PlanKeeperScene, KeepsThePlanInForceWhereThereIsNoneForTheScene) {
   EXPECT_TRUE(bench.step_after(GoTo{.goal = bench.mission.goal}).publish) << "and forgotten then";
 }
 
+/// An obstacle on a goal, so that there is no plan for the scene.
+AddObstacle on_the_goal(const KeeperBench& bench) {
+  return {.shape = Circle{bench.mission.goal.components()[0].gaussian.mean_m(), 0.5}};
+}
+
+// Robots whose planner was killed wait for a plan of the next one.
+TEST(PlanKeeperScene, PublishesTheFirstPlanInFlightWhereThereIsNoneForTheScene) {
+  KeeperBench bench;  // of a planner that has just been restarted
+  bench.keeper.set_phase(MissionPhase::kRunning);
+  bench.robots_version = 3;
+  bench.report_all();
+  const std::uint64_t first = bench.keeper.newest().planned.plan.digest();
+
+  const auto step = bench.step_after(on_the_goal(bench));
+
+  EXPECT_TRUE(step.publish);
+  EXPECT_TRUE(test::has(step.notices, "replan-failed"));
+  EXPECT_EQ(bench.keeper.newest().planned.plan.digest(), first);
+  EXPECT_EQ(bench.keeper.planned_scene(), 0U);
+  bench.run_for(5.0);
+  EXPECT_EQ(bench.published, 1) << "once";
+
+  EXPECT_TRUE(bench.step_after(RemoveObstacle{bench.scene.obstacles.at(0).id}).publish);
+}
+
+TEST(PlanKeeperScene, DoesNotLeadRobotsBackToAnEarlierGoal) {
+  KeeperBench bench;
+  bench.keeper.set_phase(MissionPhase::kRunning);
+  bench.robots_version = 3;
+  bench.scene =
+      after(bench.scene, GoTo{.goal = bench.mission.start}, bench.mission.world, bench.utc).value();
+  bench.report_all();
+  const Vec2 goal_m = bench.mission.start.components()[0].gaussian.mean_m();
+
+  EXPECT_FALSE(bench.step_after(AddObstacle{.shape = Circle{goal_m, 0.5}}).publish);
+}
+
 /// Three robots in flight fell silent; their bodies are cleared again, and the scene is as at
 /// first.
 class ReturnedRobots : public testing::Test {
