@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <map>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -77,14 +78,24 @@ class HostProcesses {
     while (const auto child = reap_child()) {
       const auto known = children_.find(child->pid);
       if (known == children_.end()) continue;
-      if (!ending_ && deaths_[known->second]++ < respawns_) waiting_.push_back(known->second);
+      const std::uint32_t robot = known->second;
       children_.erase(known);
+      if (ending_) continue;
+      ProcessExit exit = child->exit;
+      exit.is_restarted = deaths_[robot]++ < respawns_;
+      if (exit.is_restarted) waiting_.push_back(robot);
+      exits_.emplace_back(robot / offer_.per_process, exit);
     }
     if (ending_ || waiting_.empty() || now() < next_start_) return {};
     next_start_ = now() + kStartEvery;
     const std::uint32_t robot = waiting_.front();
     waiting_.erase(waiting_.begin());
     return start(robot);
+  }
+
+  // Numbers of the processes that have ended since the last call, counted from our first.
+  std::vector<std::pair<std::uint32_t, ProcessExit>> take_exits() {
+    return std::exchange(exits_, {});
   }
 
   // From the first signal on no process is started or restarted.
@@ -130,6 +141,7 @@ class HostProcesses {
   std::vector<std::uint32_t> waiting_;  // first robot of each process, counted from our first
   std::map<pid_t, std::uint32_t> children_;
   std::map<std::uint32_t, std::uint32_t> deaths_;
+  std::vector<std::pair<std::uint32_t, ProcessExit>> exits_;
   SteadyTime next_start_;
   bool ending_ = false;
 };
@@ -160,6 +172,13 @@ Result<void> fly(HostProcesses& processes, LineSocket& socket, Progress& progres
     if (signalled >= 0 && signalled < 2 && now() - signalled_at > kGrace)
       signal_processes(signalled + 1);
     if (auto stepped = processes.step(); !stepped) return stepped;
+    for (const auto& [process, exit] : processes.take_exits()) {
+      socket.send(nlohmann::json{{"exit", process},
+                                 {"code", exit.code},
+                                 {"signal", exit.signal},
+                                 {"restarts", exit.is_restarted}}
+                      .dump());
+    }
     progress.show("flying", fmt::format("{} processes", processes.living()));
   }
   return {};

@@ -101,9 +101,23 @@ bool RemoteHosts::answer(Host& host, std::uint32_t robots) {
   return true;
 }
 
-/// The first line must be a request; then "over" (the processes have ended), "box" (a robot log
-/// follows) and "bye". The peer is not trusted: a log is accepted for its own robots only and up to
-/// a size limit.
+/// A process of the host has ended: its number on the host, exit code, signal, and whether the host
+/// restarts it.
+bool RemoteHosts::take_exit(Host& host, const nlohmann::json& line) {
+  const auto process = number(line, "exit", host.processes - 1);
+  const auto code = number(line, "code", 255);
+  const auto signal = number(line, "signal", 64);
+  if (!process || !code || !signal) return false;
+  const ProcessIndex index(host.first_process.value() + static_cast<std::uint32_t>(*process));
+  host.exits.emplace_back(index, ProcessExit{.code = static_cast<int>(*code),
+                                             .signal = static_cast<int>(*signal),
+                                             .is_restarted = line.value("restarts", false)});
+  return true;
+}
+
+/// The first line must be a request; then "exit" (a process has ended), "over" (all have), "box" (a
+/// robot log follows) and "bye". The peer is not trusted: a log is accepted for its own robots only
+/// and up to a size limit.
 bool RemoteHosts::take_line(Host& host, const std::string& line) {
   const auto json = nlohmann::json::parse(line, nullptr, false);
   if (!json.is_object()) return false;
@@ -116,6 +130,7 @@ bool RemoteHosts::take_line(Host& host, const std::string& line) {
     return answer(host,
                   static_cast<std::uint32_t>(std::min<std::uint64_t>(*wanted, offer_.robots)));
   }
+  if (json.contains("exit")) return take_exit(host, json);
   if (json.contains("over")) {
     host.over = true;
     return true;
@@ -192,10 +207,23 @@ std::vector<LogEvent> RemoteHosts::step(Supervisor& supervisor, SteadyTime now) 
   }
   cut_ = false;
   for (Host& host : hosts_) {
-    if (host.robots > 0 && !host.counted) watch(host, supervisor, now, log);
+    if (host.robots == 0 || host.counted) continue;
+    report_exits(host, supervisor, now);
+    watch(host, supervisor, now, log);
   }
   pause_or_resume(cut_, supervisor, now);
   return log;
+}
+
+// A process may end again before the last step, so that the order counts. One that is restarted has
+// another sender.
+void RemoteHosts::report_exits(Host& host, Supervisor& supervisor, SteadyTime now) {
+  for (const auto& [process, exit] : std::exchange(host.exits, {})) {
+    if (host.gone.contains(process)) continue;
+    if (!exit.is_restarted) host.gone.insert(process);
+    supervisor.on_exit(process, exit, now);
+    ended_.push_back(process);
+  }
 }
 
 // Reachability of a host. A host that is over counts as ended processes; before the start its
@@ -223,8 +251,10 @@ void RemoteHosts::watch(Host& host, Supervisor& supervisor, SteadyTime now,
   if (!host.over) return;
   host.counted = true;
   for (std::uint32_t i = 0; i < host.processes; ++i) {
-    ended_.emplace_back(host.first_process.value() + i);
-    supervisor.on_exit(ended_.back(), {}, now);
+    const ProcessIndex process(host.first_process.value() + i);
+    if (host.gone.contains(process)) continue;
+    ended_.push_back(process);
+    supervisor.on_exit(process, {}, now);
   }
   if (!begun_) free_.push_back({host.first_robot - offer_.first_robot, host.robots});
   log.push_back({.warning = supervisor.stage() != Supervisor::Stage::kEnding,

@@ -5,9 +5,12 @@
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
+
+#include <nlohmann/json_fwd.hpp>
 
 #include "swarm_launcher/hosts/host_watch.hpp"
 #include "swarm_launcher/hosts/line_socket.hpp"
@@ -71,6 +74,10 @@ class RemoteHosts {
     bool over = false;     // its processes have ended
     bool counted = false;  // the supervisor was informed of that
     bool left = false;     // it has left, or the connection is lost
+    // Processes that have ended: those that the supervisor does not know of yet, and those that
+    // will not come back.
+    std::vector<std::pair<ProcessIndex, ProcessExit>> exits{};
+    std::set<ProcessIndex> gone{};
     std::ofstream log_file{};
     std::uint32_t log_robot = 0;
     std::uint64_t log_bytes = 0;  // not received yet
@@ -85,6 +92,8 @@ class RemoteHosts {
   bool take_line(Host& host, const std::string& line);
   bool answer(Host& host, std::uint32_t robots);
   bool refuse(Host& host, const char* why);
+  bool take_exit(Host& host, const nlohmann::json& line);
+  void report_exits(Host& host, Supervisor& supervisor, SteadyTime now);
   void watch(Host& host, Supervisor& supervisor, SteadyTime now, std::vector<LogEvent>& log);
   void take_log(Host& host);
   void drop(Host& host);

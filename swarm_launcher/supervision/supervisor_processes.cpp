@@ -34,7 +34,8 @@ void Supervisor::on_joined(ProcessIndex first, std::uint32_t count, SteadyTime n
 }
 
 // In this order: the run is ending; a remote process before the start, which another host may
-// replace; restart; given up. What the robots of the process reported does not hold any more.
+// replace; a remote process that its host restarts; restart; given up. What the robots of the
+// process reported does not hold any more.
 void Supervisor::on_exit(ProcessIndex process, const ProcessExit& exit, SteadyTime now) {
   Process& p = processes_.at(process.value());
   p.alive = false;
@@ -47,8 +48,12 @@ void Supervisor::on_exit(ProcessIndex process, const ProcessExit& exit, SteadyTi
     robots_[r].has_stopped = false;
     robots_[r].hindrance.clear();
   }
+  if (exit.is_restarted) {
+    p.alive = true;
+    p.silence.on_start(now);
+  }
   if (is_remote(process) && stage_ != Stage::kRunning) {
-    p.started = false;
+    p.started = exit.is_restarted;
     return;
   }
   if (process == kPlanner) ended_epoch_ = planner_epoch_;
@@ -59,6 +64,7 @@ void Supervisor::on_exit(ProcessIndex process, const ProcessExit& exit, SteadyTi
   pending_log_.push_back({.warning = true,
                           .code = is_planner ? "planner-exit" : "agent-exit",
                           .text = fmt::format("{} {}", who, describe(exit))});
+  if (exit.is_restarted) return;
   // These exit codes mean that planning itself failed: a restart would fail in the same manner.
   const bool hopeless = is_planner && exit.signal == 0 &&
                         (exit.code == static_cast<int>(ExitCode::kCriteriaNotMet) ||

@@ -133,6 +133,48 @@ TEST(RemoteHosts, GivesTheRobotsOfOneThatFailedAtTheStartToTheNext) {
   EXPECT_TRUE(bench.supervisor.lost().empty());
 }
 
+TEST(RemoteHosts, AProcessThatItsHostDoesNotRestartIsLost) {
+  Bench bench;
+  LineSocket host = bench.join(2);
+  bench.start_mission();
+
+  host.send(R"({"exit": 1, "code": 0, "signal": 9, "restarts": false})");
+
+  EXPECT_TRUE(bench.until([&] { return !bench.supervisor.lost().empty(); }));
+  EXPECT_EQ(bench.supervisor.lost(), std::vector{RobotId(3)});
+  EXPECT_EQ(bench.hosts.take_ended(), std::vector{ProcessIndex(4)});
+  bench.step();
+  EXPECT_EQ(bench.supervisor.stage(), Supervisor::Stage::kRunning);
+}
+
+TEST(RemoteHosts, AProcessThatItsHostRestartsIsWaitedFor) {
+  Bench bench;
+  LineSocket host = bench.join(2);
+  bench.start_mission();
+
+  host.send(R"({"exit": 0, "code": 2, "signal": 0, "restarts": true})");
+
+  EXPECT_TRUE(bench.until([&] { return !bench.supervisor.silent().empty(); }));
+  EXPECT_TRUE(bench.supervisor.lost().empty());
+  EXPECT_EQ(bench.supervisor.silent(), std::vector{RobotId(2)});
+  EXPECT_EQ(bench.hosts.take_ended(), std::vector{ProcessIndex(3)}) << "another sender follows";
+  bench.supervisor.on_status(RobotId(2), {.has_plan = true,
+                                          .receives_neighbours = true,
+                                          .mode = RobotMode::kMoving,
+                                          .sent_at = bench.now});
+  EXPECT_TRUE(bench.supervisor.silent().empty());
+}
+
+TEST(RemoteHosts, OneThatReportsAProcessItDoesNotHaveIsDropped) {
+  for (const char* line : {R"({"exit": 2, "code": 0, "signal": 9})", R"({"exit": 0})",
+                           R"({"exit": 0, "code": -1, "signal": 0})"}) {
+    Bench bench;
+    LineSocket host = bench.join(2);
+    host.send(line);
+    EXPECT_TRUE(bench.is_dropped(host)) << line;
+  }
+}
+
 TEST(RemoteHosts, OneThatDisconnectsAtOnceDelaysNoOther) {
   Bench bench;
   {
