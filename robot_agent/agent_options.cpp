@@ -18,15 +18,6 @@
 namespace swarm::agent {
 namespace {
 
-/// The largest speed of any robot of the mission.
-double fastest_mps(const RobotsSpec& robots) {
-  double fastest = robots.speed_max_mps;
-  for (const RobotGroupSpec& group : robots.groups) {
-    fastest = std::max(fastest, group.speed_max_mps);
-  }
-  return fastest;
-}
-
 /// Distance beyond which a robot matters neither to the safety filter, nor to forces of contact,
 /// nor to when a state is published [m].
 double close_m(const Mission& mission, const BodySpec& body, double press_gap_m) {
@@ -39,7 +30,7 @@ double close_m(const Mission& mission, const BodySpec& body, double press_gap_m)
   // For this long a follower drives on behind a robot that stopped unnoticed: the silence allowed
   // to it, the two periods that a command lasts, and the lag.
   const double unnoticed_s = 2.0 * period_s + lag_s + mission.link.send_interval_max_s;
-  const double follows_m = margin_m + fastest_mps(mission.robots) * unnoticed_s;
+  const double follows_m = margin_m + largest_speed_mps(mission.robots) * unnoticed_s;
   const double pressing_m = std::max(press_gap_m, room_gap_m(mission, body));
   return body.radius_m + largest_radius_m(mission.robots) +
          std::max({brake_m, follows_m, mission.link.send_near_m, pressing_m});

@@ -72,7 +72,7 @@ std::int32_t to_us(Duration d) {
                                          .planned_density = tick.planned_density,
                                          .silent = tick.silent},
                                         parts.rng)
-                          : without_position();
+                          : without_position(tick.phase);
   if (output_.mode == RobotMode::kStopped) {
     parts.driver.stop(tick.now, StopKind::kHold);
   } else {
@@ -95,10 +95,12 @@ std::int32_t to_us(Duration d) {
                       .text = std::string(to_string(output_.mode))});
 }
 
-/// A robot that does not know where it is brakes, and does not publish a position.
-AgentOutput RobotLoop::without_position() const {
+/// A robot that does not know where it is brakes, and does not publish a position. It obeys an
+/// emergency stop all the same.
+AgentOutput RobotLoop::without_position(MissionPhase phase) const {
   AgentOutput out;
-  out.mode = output_.mode == RobotMode::kStopped || output_.mode == RobotMode::kWaiting
+  out.mode = phase == MissionPhase::kStopped ? RobotMode::kStopped
+             : output_.mode == RobotMode::kStopped || output_.mode == RobotMode::kWaiting
                  ? output_.mode
                  : RobotMode::kHolding;
   out.nearest_gap_m = std::numeric_limits<double>::infinity();

@@ -109,7 +109,7 @@ class RobotLoop {
  private:
   Measurement measure(const RobotTick& tick, const RobotParts& parts);
   void decide(const RobotTick& tick, const RobotParts& parts, const Measurement& body);
-  AgentOutput without_position() const;
+  AgentOutput without_position(MissionPhase phase) const;
   void update_fault(bool has_position, const Driver& driver);
   void log_step(const RobotTick& tick, RobotLog& log, const Vec2& true_position_m) const;
   std::uint8_t goal() const;

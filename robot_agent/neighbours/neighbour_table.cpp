@@ -146,8 +146,8 @@ void NeighbourTable::count_lost(const LaneBlock& block, std::size_t lane,
   tally_ = {};
 }
 
-/// Amortised O(1). A robot unknown so far, or silent for forget_after, is taken with any sequence
-/// number: its process may have been restarted and counts from the beginning.
+/// Amortised O(1). A robot unknown so far, or silent for longer than expected, is taken with any
+/// sequence number: its process may have been restarted and counts from the beginning.
 [[gnu::hot]] NeighbourTable::Outcome NeighbourTable::take(const NeighbourReport& report,
                                                           const Vec2& own_position_m,
                                                           Duration late) {
@@ -158,13 +158,13 @@ void NeighbourTable::count_lost(const LaneBlock& block, std::size_t lane,
   if (is_known) {
     const LaneBlock& block = blocks_[slot / kLanes];
     const std::size_t lane = slot % kLanes;
-    if (as_of_us - block.as_of_us[lane] < forget_after_us_) {
+    const std::int32_t since_us = as_of_us - block.as_of_us[lane];
+    if (since_us < forget_after_us_) {
       if (report.sequence == block.sequence[lane]) return Outcome::kDuplicate;
       // Sequence numbers wrap: what lies in the half circle behind is older.
-      if (static_cast<std::int32_t>(report.sequence - block.sequence[lane]) < 0) {
-        return Outcome::kStale;
-      }
-      count_lost(block, lane, report, as_of_us, own_position_m);
+      const bool is_older = static_cast<std::int32_t>(report.sequence - block.sequence[lane]) < 0;
+      if (is_older && since_us < silence_us_) return Outcome::kStale;
+      if (!is_older) count_lost(block, lane, report, as_of_us, own_position_m);
     }
   }
   // A known robot that reports from outside of the communication radius is not kept any longer.

@@ -58,7 +58,8 @@ WhereaboutsOptions whereabouts_options(const Mission& mission, std::uint64_t run
           .launcher_silence = from_seconds(mission.timing.launcher_silence_s),
           // The last status may have been sent just before the robot was cut off, the beat that
           // lists it follows up to a period later, and may wait in a socket for up to a gap.
-          .healthy_after = kStatusSilence + from_seconds(1.0 / mission.link.status_hz) + 4 * beat};
+          .healthy_after = reported_silence(mission.link.status_hz) +
+                           from_seconds(1.0 / mission.link.status_hz) + 4 * beat};
 }
 
 }  // namespace swarm::agent

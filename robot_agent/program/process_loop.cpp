@@ -32,7 +32,8 @@ MotionPermit::Options permit_options(const Mission& mission) {
   return {.period = period,
           .full_interval = from_seconds(mission.link.send_interval_max_s) + 2 * period,
           .cut_off_after = from_seconds(mission.timing.planner_silence_s),
-          .rejoin_interval = kStatusSilence + from_seconds(1.0 / mission.link.status_hz) +
+          .rejoin_interval = reported_silence(mission.link.status_hz) +
+                             from_seconds(1.0 / mission.link.status_hz) +
                              from_seconds(2.0 / kBeatHz)};
 }
 
@@ -99,7 +100,8 @@ void ProcessLoop::find_silent(SteadyTime now) {
   silent_.update(now, whereabouts_);
 }
 
-/// Whether the robots may move at all.
+/// Whether the robots may move at all. None does before the start: processes are still starting,
+/// and a robot that makes room for another could touch one that is not received yet.
 bool ProcessLoop::may_move(SteadyTime now, UtcTime utc_now) {
   const StandReason reason = permit_.update({.now = now,
                                              .planner = inbox_.mission().planner_received_at(),
@@ -108,7 +110,7 @@ bool ProcessLoop::may_move(SteadyTime now, UtcTime utc_now) {
                                              .is_obstacle = is_obstacle(),
                                              .lacks_files = bus_.states->lacks_files()});
   events_.on_permit(now, utc_now, reason);
-  return reason == StandReason::kNone;
+  return reason == StandReason::kNone && inbox_.mission().phase() != MissionPhase::kReady;
 }
 
 /// Whether the launcher has made a robot of the process an obstacle, as it does not receive it.
@@ -149,8 +151,9 @@ void ProcessLoop::tick(const Time& time) {
                .silent = &silent_},
               new_plan);
   // Cell topics are joined only after the plan: discovery of all endpoints at once takes several
-  // times as long, and no robot moves without a plan.
-  if (inbox_.plan_version() > 0) {
+  // times as long, and no robot moves without a plan. One that was restarted in flight has
+  // others around it at once.
+  if (inbox_.plan_version() > 0 || local_.any_is_underway) {
     bus_.states->publish(published_);
     bus_.states->listen_around(positions_m_);
   }

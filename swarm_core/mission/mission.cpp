@@ -30,6 +30,14 @@ double largest_radius_m(const RobotsSpec& robots) {
   return grouped < robots.count ? std::max(largest_m, robots.radius_m) : largest_m;
 }
 
+double largest_speed_mps(const RobotsSpec& robots) {
+  double largest = robots.speed_max_mps;
+  for (const RobotGroupSpec& group : robots.groups) {
+    largest = std::max(largest, group.speed_max_mps);
+  }
+  return largest;
+}
+
 // A radius of 0 stands for the mission's own radius, so taking the maximum needs no special case.
 double largest_communication_radius_m(const Mission& mission) {
   double largest_m = mission.robots.communication_radius_m;

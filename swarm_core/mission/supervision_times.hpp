@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 
 #include "swarmflow/core/time.hpp"
@@ -9,8 +10,11 @@
 /// Times that launcher and robots must agree on.
 namespace swarm {
 
-/// Without a status for this long, the launcher reports a process of robots as silent.
-inline constexpr Duration kStatusSilence = std::chrono::seconds(3);
+/// Without a message for this long, the launcher reports a process as silent that publishes
+/// `rate_hz` times a second: 3 s, and at least three periods.
+inline Duration reported_silence(double rate_hz) {
+  return std::max<Duration>(std::chrono::seconds(3), from_seconds(3.0 / rate_hz));
+}
 
 /// Rate of the launcher's beats.
 inline constexpr double kBeatHz = 2.0;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "swarm_core/mission/supervision_times.hpp"
 #include "swarmflow/core/time.hpp"
 
 namespace swarm::launcher {
@@ -17,9 +18,8 @@ struct SilenceLimits {
   /// Of a process that publishes `rate_hz` times a second: those above, and at least three and ten
   /// periods.
   static SilenceLimits of(double rate_hz) {
-    const Duration period = from_seconds(1.0 / rate_hz);
-    const SilenceLimits least;
-    return {std::max(least.reported, 3 * period), std::max(least.ended, 10 * period)};
+    return {reported_silence(rate_hz),
+            std::max(SilenceLimits{}.ended, from_seconds(10.0 / rate_hz))};
   }
 };
 

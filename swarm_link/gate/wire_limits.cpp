@@ -19,7 +19,7 @@ WireLimits wire_limits(const Mission& mission) {
   return {
       .robots = mission.robots.count,
       .bounds_m = mission.world.bounds_m(),
-      .speed_max_mps = mission.robots.speed_max_mps,
+      .speed_max_mps = largest_speed_mps(mission.robots),
       .clock_skew_warn = from_seconds(mission.timing.clock_skew_warn_s),
       .clock_skew_refuse = from_seconds(mission.timing.clock_skew_refuse_s),
       .planner_takeover = from_seconds(kBeatsMissed / mission.timing.heartbeat_hz),

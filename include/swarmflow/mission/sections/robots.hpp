@@ -74,5 +74,7 @@ inline constexpr auto kRobotsKeys = std::to_array<SectionKey<RobotsSpec>>({
 const BodySpec& body_of(const RobotsSpec& robots, RobotId robot);
 /// The largest radius of any robot [m]. O(groups).
 double largest_radius_m(const RobotsSpec& robots);
+/// The largest speed of any robot [m/s].
+double largest_speed_mps(const RobotsSpec& robots);
 
 }  // namespace swarm

@@ -64,6 +64,39 @@ class LoneRobot : public ::testing::Test {
   TestBus bus_;
 };
 
+/// A body whose position is not known.
+struct LostDriver final : Driver {
+  Measurement measure(SteadyTime) override {
+    Measurement lost;
+    lost.is_valid = false;
+    return lost;
+  }
+  void command(SteadyTime, const Vec2&, Duration) override { ++commands; }
+  void stop(SteadyTime, StopKind) override { ++stops; }
+  int commands = 0;
+  int stops = 0;
+};
+
+TEST_F(LoneRobot, ObeysAnEmergencyStopWithoutAPosition) {
+  LostDriver driver;
+  const auto tick_in = [&](MissionPhase phase) {
+    now_ += kPeriod;
+    loop_.step({.now = now_,
+                .utc_now = UtcTime(now_.time_since_epoch()),
+                .period = kPeriod,
+                .phase = phase,
+                .planner_alive = true},
+               {.driver = driver, .rng = rng_, .log = log_}, bus_);
+  };
+  tick_in(MissionPhase::kRunning);
+  EXPECT_EQ(driver.commands, 1);
+
+  tick_in(MissionPhase::kStopped);
+
+  EXPECT_EQ(driver.stops, 1);
+  EXPECT_EQ(loop_.mode(), RobotMode::kStopped);
+}
+
 TEST_F(LoneRobot, RecordsEachTickAndItsFirstMode) {
   tick();
   tick();

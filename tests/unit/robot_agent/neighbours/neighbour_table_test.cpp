@@ -153,6 +153,15 @@ TEST(NeighbourTable, LetsARestartedRobotStartOver) {
   EXPECT_EQ(sut.take(report(3, 1, 1500, {2, 0}), Vec2::Zero()), NeighbourTable::Outcome::kTaken);
 }
 
+// Longer than a robot may be silent, but not forgotten yet: a process restarts within a second.
+TEST(NeighbourTable, LetsARobotStartOverThatWasSilentForLongerThanExpected) {
+  auto sut = table();
+  sut.take(report(3, 500, 0, {1, 0}), Vec2::Zero());
+
+  EXPECT_EQ(sut.take(report(3, 1, 650, {2, 0}), Vec2::Zero()), NeighbourTable::Outcome::kStale);
+  EXPECT_EQ(sut.take(report(3, 1, 750, {2, 0}), Vec2::Zero()), NeighbourTable::Outcome::kTaken);
+}
+
 TEST(NeighbourTable, PositionsAreExactToMicrometresFarAwayAndLateInAMission) {
   auto sut = table();
   const Vec2 far_m(40'000.123456, -70'000.654321);

@@ -53,7 +53,8 @@ MotionPermit::Options permit(const Mission& mission) {
           .full_interval =
               from_seconds(mission.link.send_interval_max_s) + milliseconds(2 * kPeriod_ms),
           .cut_off_after = from_seconds(mission.timing.planner_silence_s),
-          .rejoin_interval = kStatusSilence + milliseconds(kStatusEvery_ms + 2 * kBeatEvery_ms)};
+          .rejoin_interval = reported_silence(1000.0 / kStatusEvery_ms) +
+                             milliseconds(kStatusEvery_ms + 2 * kBeatEvery_ms)};
 }
 
 }  // namespace
@@ -223,7 +224,8 @@ void SilentSwarm::launch() {
   if (now_ms_ % kBeatEvery_ms != 0) return;
   std::vector<RobotId> silent;
   for (const auto& robot : robots_) {
-    const bool is_silent = milliseconds(now_ms_ - robot->status_ms) > kStatusSilence;
+    const bool is_silent =
+        milliseconds(now_ms_ - robot->status_ms) > reported_silence(1000.0 / kStatusEvery_ms);
     if (is_silent) silent.push_back(robot->id);
     if (is_silent == has_body(scene_, robot->id)) continue;
     const SceneChange change = is_silent ? SceneChange(AddBody{robot->id, fallen(*robot)})
