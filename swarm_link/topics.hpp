@@ -52,7 +52,7 @@ inline Topic<CommandMessage> command_topic() {
   return {"swarm/command",
           {.reliability = Reliability::kReliable,
            .durability = Durability::kTransientLocal,
-           .depth = 32}};
+           .depth = 1024}};
 }
 
 /// Exclusive: a planner that was restarted has a higher strength than the one before it, whose

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "swarm_core/base/one_line.hpp"
 #include "swarm_core/mission_file/scene_change_file.hpp"
 #include "swarm_launcher/flight/process_commands.hpp"
 
@@ -16,6 +17,8 @@ namespace {
 
 // More often is hard to read, and describing the swarm sums over all robots.
 constexpr Duration kShowEvery = std::chrono::milliseconds(250);
+// Exit code of a process that could not be started, as a shell has it.
+constexpr int kNotStarted = 127;
 
 SupervisorOptions supervision_of(const FlightOptions& options) {
   return {.robots = options.mission.robots.count,
@@ -58,12 +61,14 @@ Result<void> FlightLoop::step(const FlightTime& now) {
   }
   serve_requests(now);
   for (const Action& action : supervisor_.step(now.steady)) {
-    if (auto done = act(action, now.utc); !done) return done;
+    if (auto done = act(action, now); !done) return done;
   }
   send_stop(now);
   for (const LogEvent& event : ports_.helpers.step(now.steady)) ports_.log.log(now.utc, event);
   if (ports_.beats != nullptr) {
-    ports_.beats->step(now.steady, supervisor_, !ports_.helpers.is_gateway_down());
+    const bool lists_all =
+        supervisor_.knows_silent(now.steady) && !ports_.helpers.is_gateway_down();
+    ports_.beats->step(now.steady, supervisor_, lists_all);
   }
   if (const auto message = ports_.helpers.message()) ports_.display.print(*message);
   if (ports_.observer != nullptr) ports_.observer->on_step(*this, now.steady);
@@ -97,23 +102,32 @@ void FlightLoop::release(ProcessIndex process, UtcTime now) {
   }
 }
 
-// Everything that fails here is logged, except for the start of a process.
-Result<void> FlightLoop::act(const Action& action, UtcTime now) {
-  if (const auto* to_start = std::get_if<StartProcess>(&action)) return start(to_start->process);
+// Everything that fails here is logged, except for the start of a process before the mission: one
+// in flight counts as an end of that process, which is tried again.
+Result<void> FlightLoop::act(const Action& action, const FlightTime& now) {
+  if (const auto* to_start = std::get_if<StartProcess>(&action)) {
+    const auto started = start(to_start->process);
+    if (started || supervisor_.stage() != Supervisor::Stage::kRunning) return started;
+    ports_.log.log(now.utc, LogEvent{.warning = true,
+                                     .code = "start-failed",
+                                     .text = one_line(started.error().message)});
+    supervisor_.on_exit(to_start->process, {.code = kNotStarted}, now.steady);
+    return {};
+  }
   if (const auto* command = std::get_if<SendCommand>(&action)) {
-    send(command->kind, now);
+    send(command->kind, now.utc);
   } else if (const auto* scene = std::get_if<ChangeScene>(&action)) {
-    if (const auto changed = change(scene->change, now); !changed) {
+    if (const auto changed = change(scene->change, now.utc); !changed) {
       ports_.display.print("the script's change was refused: " + changed.error().message);
     }
   } else if (const auto* to_signal = std::get_if<SignalProcess>(&action)) {
     signal(*to_signal);
   } else if (const auto* fallen = std::get_if<AddBodies>(&action)) {
-    fallen_.add(fallen->robots, now);
+    fallen_.add(fallen->robots, now.utc);
   } else if (const auto* risen = std::get_if<ClearBodies>(&action)) {
-    fallen_.clear(risen->robots, now);
+    fallen_.clear(risen->robots, now.utc);
   } else if (const auto* event = std::get_if<LogEvent>(&action)) {
-    ports_.log.log(now, *event);
+    ports_.log.log(now.utc, *event);
   }
   return {};
 }

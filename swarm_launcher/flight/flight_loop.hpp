@@ -67,7 +67,7 @@ class FlightLoop {
   void read_stops(SteadyTime now);
   void report_refusals(const FlightTime& now);
   void serve_requests(const FlightTime& now);
-  Result<void> act(const Action& action, UtcTime now);
+  Result<void> act(const Action& action, const FlightTime& now);
   void show(SteadyTime now);
 
   void on_status(const link::StatusMessage& status, const FlightTime& now);

@@ -18,7 +18,7 @@ Result<void> GatewayKeeper::start(SteadyTime now) {
   if (!pid) return tl::unexpected(pid.error());
   pid_ = *pid;
   is_killed_ = false;
-  sign_of_life_ = now;
+  started_at_ = sign_of_life_ = now;
   restarts_.on_start(now);
   return {};
 }
@@ -26,7 +26,7 @@ Result<void> GatewayKeeper::start(SteadyTime now) {
 std::optional<LogEvent> GatewayKeeper::on_exit(pid_t pid, SteadyTime now) {
   if (pid_ == 0 || pid != pid_) return std::nullopt;
   pid_ = 0;
-  is_up_ = false;
+  is_up_ = is_connected_ = false;
   return wait_for_restart("the gateway ended, see logs/gateway.log", now);
 }
 
@@ -48,8 +48,9 @@ std::optional<LogEvent> GatewayKeeper::watch(SteadyTime now) {
     is_up_ = true;
     sign_of_life_ = now;
   }
+  is_connected_ = is_up_ && now - started_at_ >= kReconnect;
   if (is_killed_ || now - sign_of_life_ <= (is_up_ ? kSilence : kFirstBeat)) return std::nullopt;
-  is_up_ = false;
+  is_up_ = is_connected_ = false;
   is_killed_ = true;
   means_.kill(pid_);
   return LogEvent{.warning = true,

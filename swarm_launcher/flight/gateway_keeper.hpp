@@ -46,8 +46,10 @@ class GatewayKeeper {
   std::optional<LogEvent> on_exit(pid_t pid, SteadyTime now);
   /// Starts the gateway again if that is due, and kills it if it hangs: an event of that, too.
   std::optional<LogEvent> step(SteadyTime now);
-  /// Whether it runs and has sent a beat since its start, as of the last step().
-  bool is_up() const { return is_up_; }
+  /// Robots behind a restarted gateway were matched with it again after 11 s, in a flight of 60.
+  static constexpr Duration kReconnect = std::chrono::seconds(20);
+  /// Whether it runs, and for long enough to be matched with all robots, as of the last step().
+  bool is_connected() const { return is_connected_; }
 
  private:
   LogEvent wait_for_restart(const std::string& reason, SteadyTime now);
@@ -55,9 +57,11 @@ class GatewayKeeper {
 
   Means means_;
   RestartPolicy restarts_;
-  pid_t pid_ = 0;  ///< 0: it does not run
-  bool is_up_ = false;
+  pid_t pid_ = 0;       ///< 0: it does not run
+  bool is_up_ = false;  ///< it has sent a beat since its start
+  bool is_connected_ = false;
   bool is_killed_ = false;
+  SteadyTime started_at_{};
   SteadyTime sign_of_life_{};  ///< its start, or its last beat
   std::optional<SteadyTime> restart_at_;
 };

@@ -50,7 +50,10 @@ Circle circle_of_fallen(const LastKnown& known, UtcTime silent_since, const Miss
   Circle circle{.center_m = known.position_m, .radius_m = body.radius_m};
   if (known.at_rest) return circle;
   if (!known.command_mps || age_s > kPeriodsOfATick * period_s) {
-    const double moving_s = std::min(age_s, 1.0 / mission.link.status_hz);
+    // The log of a robot on this host ends where the robot did. One that is known from its statuses
+    // alone may be cut off and drive on until it holds.
+    const double holds_s = known.command_mps ? 0.0 : mission.timing.planner_silence_s;
+    const double moving_s = std::min(age_s, 1.0 / mission.link.status_hz + holds_s);
     const double fastest_mps = body.speed_max_mps;
     circle.radius_m += fastest_mps * moving_s + travel_m(body, fastest_mps, fastest_mps, command_s);
   } else if (body.model == "single_integrator") {

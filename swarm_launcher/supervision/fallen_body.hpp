@@ -29,7 +29,8 @@ std::optional<LastKnown> last_known(std::span<const robot_log::Step> steps, cons
 /// it. `silent_since`: when its silence began. A command is valid for two control periods;
 /// then the robot brakes. The less is known, the larger is the circle: with the command of the last
 /// period it covers the motion under that command only; otherwise every direction at the largest
-/// speed for the age of the information, at most a period of its statuses.
+/// speed for the age of the information, at most a period of its statuses, and without its log also
+/// the time after which a robot that is cut off holds.
 Circle circle_of_fallen(const LastKnown& known, UtcTime silent_since, const Mission& mission,
                         RobotId robot);
 

@@ -38,8 +38,9 @@ struct SupervisorOptions {
 
 /// How a process ended.
 struct ProcessExit {
-  int code = 0;    ///< exit code; meaningless if signal != 0
-  int signal = 0;  ///< signal that killed it, 0 if it ended by itself
+  int code = 0;               ///< exit code; meaningless if signal != 0
+  int signal = 0;             ///< signal that killed it, 0 if it ended by itself
+  bool is_restarted = false;  ///< by the host on which it ran
 };
 
 /// The part of a robot's status that the supervisor uses.
@@ -167,6 +168,8 @@ class Supervisor {
   /// Robots that are not received, no status has come yet or none since they fell silent, but for
   /// those that a user has cleared. Ascending.
   std::vector<RobotId> silent() const;
+  /// Whether these are all: not right after this launcher was suspended itself.
+  bool knows_silent(SteadyTime now) const;
 
   /// Time [s] from the last start of a process until every robot was received and had the plan;
   /// negative if that never happened.
@@ -265,7 +268,8 @@ class Supervisor {
   std::uint64_t planner_epoch_ = 0;    ///< of the last heartbeat
   std::uint64_t ended_epoch_ = 0;      ///< of the last planner that ended
   std::optional<SteadyTime> stepped_at_{};
-  std::uint32_t next_start_ = 0;  ///< first process that was never started
+  std::optional<SteadyTime> suspended_at_{};  ///< end of its last suspension
+  std::uint32_t next_start_ = 0;              ///< first process that was never started
   SteadyTime begun_;
   SteadyTime last_start_;
   SteadyTime started_at_;  // of the mission

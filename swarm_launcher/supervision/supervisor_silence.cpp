@@ -36,6 +36,7 @@ void Supervisor::on_heartbeat(std::uint64_t epoch) {
 void Supervisor::watch_silence(SteadyTime now, std::vector<Action>& actions) {
   const bool was_suspended = stepped_at_ && now - *stepped_at_ > kOwnGap;
   stepped_at_ = now;
+  if (was_suspended) suspended_at_ = now;
   for (std::uint32_t i = 0; i < processes(); ++i) {
     Process& p = processes_[i];
     if (!p.alive) continue;  // its end has been reported
@@ -54,6 +55,11 @@ void Supervisor::watch_silence(SteadyTime now, std::vector<Action>& actions) {
     if (is_silent) assume_still(ProcessIndex(i), now);
   }
   end_silent(now, actions);
+}
+
+// All silences count anew from there.
+bool Supervisor::knows_silent(SteadyTime now) const {
+  return !suspended_at_ || now - *suspended_at_ > options_.agent_silence.reported;
 }
 
 // The process may be frozen: its robots are obstacles until they are received again.

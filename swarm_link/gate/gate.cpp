@@ -172,6 +172,10 @@ Checked<void> Gate::order(const StatusMessage& message, UtcTime now) const {
   }
   if (is_after(message.stamp_utc_ns, latest)) return refuse(RefusalReason::kClockSkew);
   if (!is_stamp(message.stamp_utc_ns)) return refuse(RefusalReason::kOutOfRange);
+  // The states of a robot whose clock is as far behind are refused as well: it is not well.
+  const bool is_old =
+      now - UtcTime(Duration(message.stamp_utc_ns)) > options_.limits.clock_skew_refuse;
+  if (is_old && options_.stamps == Stamps::kLive) return refuse(RefusalReason::kClockSkew);
   return {};
 }
 

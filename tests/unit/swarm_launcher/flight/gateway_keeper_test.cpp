@@ -92,30 +92,39 @@ TEST_F(GatewayKeeperTest, TriesAgainWhenItCannotBeStarted) {
   EXPECT_EQ(sut->step(now + milliseconds(900))->code, "gateway-restarted");
 }
 
-TEST_F(GatewayKeeperTest, IsUpFromItsFirstBeatToItsEnd) {
+// It is matched with the robots some seconds after its first beat.
+TEST_F(GatewayKeeperTest, IsConnectedFromAWhileAfterEachStartToItsEnd) {
   ASSERT_TRUE(sut->start(now));
-  sut->step(now);
-  EXPECT_FALSE(sut->is_up());
   step_with_beat(now);
-  EXPECT_TRUE(sut->is_up());
+  EXPECT_FALSE(sut->is_connected());
+  now += GatewayKeeper::kReconnect;
+  step_with_beat(now - milliseconds(1));
+  EXPECT_FALSE(sut->is_connected());
+  step_with_beat(now);
+  EXPECT_TRUE(sut->is_connected());
   sut->on_exit(pid, now);
-  EXPECT_FALSE(sut->is_up());
-  ASSERT_TRUE(sut->step(now + milliseconds(300)));
-  EXPECT_FALSE(sut->is_up()) << "it joins";
-  step_with_beat(now + milliseconds(400));
-  EXPECT_TRUE(sut->is_up());
+  EXPECT_FALSE(sut->is_connected());
+  now += milliseconds(300);
+  ASSERT_TRUE(sut->step(now));
+  step_with_beat(now + GatewayKeeper::kReconnect - milliseconds(1));
+  EXPECT_FALSE(sut->is_connected()) << "its restart counts";
+}
+
+TEST_F(GatewayKeeperTest, IsNotConnectedBeforeItsFirstBeat) {
+  ASSERT_TRUE(sut->start(now));
+  sut->step(now + GatewayKeeper::kReconnect);
+  EXPECT_FALSE(sut->is_connected());
 }
 
 TEST_F(GatewayKeeperTest, KillsOneThatHangsOnceAndStartsItAgain) {
   ASSERT_TRUE(sut->start(now));
   step_with_beat(now);
   EXPECT_FALSE(sut->step(now + GatewayKeeper::kSilence));
-  EXPECT_TRUE(sut->is_up());
   now += GatewayKeeper::kSilence + milliseconds(1);
   const auto silent = sut->step(now);
   ASSERT_TRUE(silent);
   EXPECT_EQ(silent->code, "gateway-silent");
-  EXPECT_FALSE(sut->is_up());
+  EXPECT_FALSE(sut->is_connected());
   EXPECT_FALSE(sut->step(now + seconds(5))) << "once";
   EXPECT_EQ(killed, std::vector{pid});
 

@@ -86,7 +86,9 @@ TEST(CircleOfFallen, GrowsWithTheAgeOfAStatusAndNotForGood) {
   };
 
   EXPECT_NEAR(radius_m(0.5), 0.2 + 1.5 * (0.5 + 0.2), 1e-9);
-  EXPECT_NEAR(radius_m(30.0), 0.2 + 1.5 * (1.0 + 0.2), 1e-9) << "a period of its statuses";
+  const double holds_s = mission.timing.planner_silence_s;
+  EXPECT_NEAR(radius_m(30.0), 0.2 + 1.5 * (1.0 + holds_s + 0.2), 1e-9)
+      << "a period of its statuses, and until a robot that is cut off holds";
   EXPECT_NEAR(radius_m(-3.0), 0.2 + 1.5 * 0.2, 1e-9) << "a clock that is ahead of ours";
 }
 
