@@ -107,11 +107,14 @@ bool RemoteHosts::take_exit(Host& host, const nlohmann::json& line) {
   const auto process = number(line, "exit", host.processes - 1);
   const auto code = number(line, "code", 255);
   const auto signal = number(line, "signal", 64);
-  if (!process || !code || !signal) return false;
+  const auto restarts = line.find("restarts");
+  if (!process || !code || !signal || restarts == line.end() || !restarts->is_boolean()) {
+    return false;
+  }
   const ProcessIndex index(host.first_process.value() + static_cast<std::uint32_t>(*process));
   host.exits.emplace_back(index, ProcessExit{.code = static_cast<int>(*code),
                                              .signal = static_cast<int>(*signal),
-                                             .is_restarted = line.value("restarts", false)});
+                                             .is_restarted = restarts->get<bool>()});
   return true;
 }
 

@@ -166,8 +166,10 @@ TEST(RemoteHosts, AProcessThatItsHostRestartsIsWaitedFor) {
 }
 
 TEST(RemoteHosts, OneThatReportsAProcessItDoesNotHaveIsDropped) {
-  for (const char* line : {R"({"exit": 2, "code": 0, "signal": 9})", R"({"exit": 0})",
-                           R"({"exit": 0, "code": -1, "signal": 0})"}) {
+  for (const char* line :
+       {R"({"exit": 2, "code": 0, "signal": 9, "restarts": false})",
+        R"({"exit": 0, "code": -1, "signal": 0, "restarts": false})",
+        R"({"exit": 0, "code": 0, "signal": 0, "restarts": "yes"})", R"({"exit": 0})"}) {
     Bench bench;
     LineSocket host = bench.join(2);
     host.send(line);
