@@ -7,6 +7,22 @@
 #include "swarm_core/mission/scene_bodies.hpp"
 
 namespace swarm::monitor {
+namespace {
+
+/// Where the log of a dead robot lacks its end, as the disk was full, the launcher knows more: the
+/// last status. Its circle covers the end of every complete log.
+void end_where_it_fell(const FallenBody& body, double fallen_s, Track& track) {
+  const TrackPoint& last = track.points.back();
+  const bool is_covered = (last.position_m - body.shape.center_m).norm() <= body.shape.radius_m;
+  if (track.body_until_s <= 0.0 || fallen_s <= last.time_s || is_covered) return;
+  TrackPoint fell = last;
+  fell.time_s = fallen_s;
+  fell.position_m = body.shape.center_m;
+  track.points.push_back(fell);
+  ++track.lost;
+}
+
+}  // namespace
 
 /// Times are those of the tracks, since RecordedRun::begin. A body lies until the end of the run
 /// unless a scene cleared it.
@@ -20,8 +36,10 @@ void lay_fallen_bodies(RecordedRun& run) {
   }
   for (const FallenBody& body : bodies_of(run.scenes)) {
     const std::uint32_t robot = body.robot.value();
-    if (robot >= run.tracks.size() || !body.cleared) continue;
+    if (robot >= run.tracks.size() || run.tracks[robot].points.empty()) continue;
     Track& track = run.tracks[robot];
+    end_where_it_fell(body, to_seconds(body.from - run.begin), track);
+    if (!body.cleared) continue;
     const double cleared_s = to_seconds(*body.cleared - run.begin);
     // A body of an earlier incarnation was cleared when the robot came back: its log continues
     // after that, and the robot is its own body.

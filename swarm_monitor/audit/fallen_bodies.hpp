@@ -9,7 +9,8 @@ namespace swarm::monitor {
 /// Sets Track::body_until_s of dead robots: a robot whose log ends without "exit" stays at its
 /// last point until the end of the run, or until a scene records that its body was cleared. A robot
 /// whose log continues has been respawned: its body is the track itself, also between two
-/// incarnations. O(robots + scenes · bodies).
+/// incarnations. Where the last point is outside of the circle of a scene, the log lacks its end,
+/// which is counted: the body is at the centre of that circle. O(robots + scenes · bodies).
 void lay_fallen_bodies(RecordedRun& run);
 
 }  // namespace swarm::monitor

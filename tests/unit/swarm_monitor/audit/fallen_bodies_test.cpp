@@ -51,6 +51,29 @@ TEST(FallenBodies, LieAlsoIfNoSceneRecordedThem) {
   EXPECT_EQ(run.tracks[1].body_until_s, 30.0);
 }
 
+// A full disk: the launcher has received the robot after the end of its log.
+TEST(FallenBodies, LieWhereTheLauncherHasThemIfTheLogLacksItsEnd) {
+  const AddBody falls_elsewhere{RobotId(1), Circle{{3, 4}, 2.0}};
+  const RecordedRun run =
+      run_with({track_of(0, {0, 30}, true), track_of(1, {0, 5}, false)}, {{7.0, falls_elsewhere}});
+
+  const Track& track = run.tracks[1];
+  ASSERT_EQ(track.points.size(), 3U);
+  EXPECT_NEAR(track.points.back().time_s, 7.0, 1e-9);
+  EXPECT_EQ(track.points.back().position_m, Vec2(3, 4));
+  EXPECT_EQ(track.lost, 1U);
+  EXPECT_EQ(track.body_until_s, 30.0);
+}
+
+TEST(FallenBodies, OfARobotThatCameBackLeaveItsTrackAsItIs) {
+  const AddBody falls_elsewhere{RobotId(1), Circle{{3, 4}, 2.0}};
+  const RecordedRun run = run_with({track_of(0, {0, 30}, true), track_of(1, {0, 5, 20}, false)},
+                                   {{7.0, falls_elsewhere}, {9.0, is_cleared(1)}});
+
+  EXPECT_EQ(run.tracks[1].points.size(), 3U);
+  EXPECT_EQ(run.tracks[1].lost, 0U);
+}
+
 TEST(FallenBodies, LieUntilTheyAreCleared) {
   const RecordedRun run = run_with({track_of(0, {0, 30}, true), track_of(1, {0, 5}, false)},
                                    {{7.0, falls(1)}, {12.5, is_cleared(1)}});
