@@ -18,8 +18,8 @@ struct LauncherSpec {
   double quorum_share = 1.0;       ///< share of robots that is enough after the timeout
   double quorum_timeout_s = 30.0;  ///< until then all are waited for; missing ones are reported
   double time_limit_s = 600.0;     ///< longest mission time
-  std::uint32_t respawn_planner_max = 3;                  ///< most restarts of the planner
-  std::uint32_t respawn_agent_max = 0;                    ///< most restarts of each agent process
+  std::uint32_t respawn_planner_max = 3;                  ///< deaths in a row, see below
+  std::uint32_t respawn_agent_max = 0;                    ///< the same, of each agent process
   LauncherLoss on_launcher_loss = LauncherLoss::kFinish;  ///< when its beats stop
 };
 
