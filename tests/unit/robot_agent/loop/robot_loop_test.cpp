@@ -42,14 +42,16 @@ class LoneRobot : public ::testing::Test {
  protected:
   LoneRobot() { mission_.robots.count = 2; }
 
-  void tick(Duration lateness = {}) {
+  void tick(Duration lateness = {}) { tick(body_, MissionPhase::kReady, lateness); }
+  void tick(Driver& driver, MissionPhase phase, Duration lateness = {}) {
     now_ += kPeriod;
     loop_.step({.now = now_,
                 .utc_now = UtcTime(now_.time_since_epoch()),
                 .lateness = lateness,
                 .period = kPeriod,
+                .phase = phase,
                 .planner_alive = true},
-               {.driver = body_, .rng = rng_, .log = log_, .state_ages = &ages_}, bus_);
+               {.driver = driver, .rng = rng_, .log = log_, .state_ages = &ages_}, bus_);
   }
 
   Mission mission_;
@@ -79,19 +81,10 @@ struct LostDriver final : Driver {
 
 TEST_F(LoneRobot, ObeysAnEmergencyStopWithoutAPosition) {
   LostDriver driver;
-  const auto tick_in = [&](MissionPhase phase) {
-    now_ += kPeriod;
-    loop_.step({.now = now_,
-                .utc_now = UtcTime(now_.time_since_epoch()),
-                .period = kPeriod,
-                .phase = phase,
-                .planner_alive = true},
-               {.driver = driver, .rng = rng_, .log = log_}, bus_);
-  };
-  tick_in(MissionPhase::kRunning);
+  tick(driver, MissionPhase::kRunning);
   EXPECT_EQ(driver.commands, 1);
 
-  tick_in(MissionPhase::kStopped);
+  tick(driver, MissionPhase::kStopped);
 
   EXPECT_EQ(driver.stops, 1);
   EXPECT_EQ(loop_.mode(), RobotMode::kStopped);

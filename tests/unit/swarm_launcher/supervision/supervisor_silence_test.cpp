@@ -133,6 +133,21 @@ TEST(SupervisorSilence, StartsAllClocksAnewAfterAGapOfItsOwn) {
   EXPECT_FALSE(bench.logged("silent"));
 }
 
+// A robot that froze meanwhile is found only once its silence has been counted anew.
+TEST(SupervisorSilence, DoesNotKnowWhoIsSilentRightAfterAGapOfItsOwn) {
+  SilenceBench bench;
+  bench.fly();
+  EXPECT_TRUE(bench.sut->knows_silent(bench.now));
+  bench.freeze(2);
+  bench.now += milliseconds(1200);
+  bench.run_for(milliseconds(2900));
+  EXPECT_FALSE(bench.sut->knows_silent(bench.now));
+  EXPECT_TRUE(bench.sut->silent().empty());
+  bench.run_for(milliseconds(300));
+  EXPECT_TRUE(bench.sut->knows_silent(bench.now));
+  EXPECT_EQ(bench.sut->silent(), std::vector{RobotId(2)});
+}
+
 TEST(SupervisorSilence, EndsNoProcessWhileMostOfThemAreSilent) {
   SilenceBench bench;
   bench.fly();

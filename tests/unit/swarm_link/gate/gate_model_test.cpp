@@ -196,5 +196,17 @@ TEST(WireLimits, AreThoseOfTheMission) {
   EXPECT_EQ(of_mission.bounds_m.max_m, Vec2(30.0, 40.0));
 }
 
+TEST(WireLimits, HaveTheSpeedOfTheFastestGroup) {
+  Mission mission;
+  mission.robots.count = 7;
+  mission.robots.speed_max_mps = 1.0;
+  RobotGroupSpec fast;
+  fast.count = 2;
+  fast.speed_max_mps = 4.0;
+  mission.robots.groups = {fast};
+
+  EXPECT_EQ(wire_limits(mission).speed_max_mps, 4.0);
+}
+
 }  // namespace
 }  // namespace swarm::link

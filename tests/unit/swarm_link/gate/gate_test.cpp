@@ -263,6 +263,18 @@ TEST_F(GateTest, RefusesStatusesOfTheFuture) {
   EXPECT_TRUE(counted(RefusalReason::kForged));
 }
 
+// A host that was suspended goes on with the clock of before: its states are refused, too.
+TEST_F(GateTest, RefusesStatusesThatAreTooOldUnlessTheyAreRecorded) {
+  StatusMessage status{.stamp_utc_ns = ns(kNow - kRefuse), .robots = {{.robot_id = 1}}};
+  EXPECT_TRUE(sut.status(status, kNow));
+  --status.stamp_utc_ns;
+  EXPECT_FALSE(sut.status(status, kNow));
+  EXPECT_TRUE(counted(RefusalReason::kClockSkew));
+
+  Gate recorded{{.limits = limits(), .stamps = Stamps::kRecorded}};
+  EXPECT_TRUE(recorded.status(status, kNow));
+}
+
 constexpr std::uint64_t kRobots = 11, kPlanner = 12, kForger = 13;
 
 TEST_F(GateTest, TakesStatusesOfARobotFromItsOwnSender) {
