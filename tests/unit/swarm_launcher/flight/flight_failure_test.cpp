@@ -139,6 +139,25 @@ TEST_F(FlightLoopFailure, FailsAndKillsItsProcessesWhenOneCannotBeStarted) {
   EXPECT_EQ(spawner.children.front().signals, std::vector{EndSignal::kKill});
 }
 
+// The kernel may have killed the planner for lack of memory, which a new process lacks as well.
+TEST_F(FlightLoopFailure, TriesAgainWhenThePlannerCannotBeStartedInFlight) {
+  ASSERT_TRUE(run_to_phase(MissionPhase::kRunning));
+  spawner.starts_left = spawner.children.size();
+  spawner.end(spawner.planner(), kCrash);
+  run_for(seconds(2));
+  EXPECT_TRUE(is_logged("start-failed"));
+  EXPECT_TRUE(error.empty()) << error;
+  EXPECT_EQ(spawner.count_running(), kRobots);
+
+  spawner.starts_left = 100;
+  run_for(seconds(10));
+
+  EXPECT_EQ(spawner.count_running(), kRobots + 1);
+  arrive();
+  ASSERT_TRUE(run_to_the_end());
+  EXPECT_EQ(outcome(), Outcome::kCompleted);
+}
+
 TEST_F(FlightLoopFailure, LogsAHelperThatEndsAndFliesOn) {
   ASSERT_TRUE(run_to_phase(MissionPhase::kRunning));
   spawner.end_other(FakeHelpers::kPid, {});
