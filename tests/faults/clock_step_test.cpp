@@ -89,7 +89,7 @@ class ClockStep : public testing::TestWithParam<const char*> {
 // Commands, plans, scenes and heartbeats of before a step do not outrank those after it.
 TEST_P(ClockStep, ChangesNothingInFlight) {
   FlownRun run({"--channel", GetParam()});
-  ASSERT_TRUE(run.mission_started()) << run.launcher().err();
+  ASSERT_TRUE(run.mission_started()) << run.outcome();
   const auto command = [&](const std::vector<std::string>& arguments) {
     std::vector<std::string> line = {"command", run.dir().string()};
     line.insert(line.end(), arguments.begin(), arguments.end());
@@ -110,7 +110,7 @@ TEST_P(ClockStep, ChangesNothingInFlight) {
     command({"add_obstacle", "circle_m: {center: [10, 19], radius: 0.3}"});
   }
 
-  EXPECT_EQ(run.launcher().wait(), 0) << run.launcher().err();
+  EXPECT_EQ(run.launcher().wait(), 0) << run.outcome();
 
   const auto summary = run.summary();
   EXPECT_EQ(summary["arrived"], 12);
@@ -136,7 +136,7 @@ TEST_P(ClockStep, ChangesNothingInFlight) {
 // A stop is obeyed whatever its stamp: also the hosts' clocks may differ.
 TEST_P(ClockStep, DelaysNoEmergencyStop) {
   FlownRun run({"--channel", GetParam()});
-  ASSERT_TRUE(run.mission_started()) << run.launcher().err();
+  ASSERT_TRUE(run.mission_started()) << run.outcome();
   set_clock_s(-20);
 
   Program stop("swarm_launcher", {"command", run.dir().string(), "stop"});

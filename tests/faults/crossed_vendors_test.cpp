@@ -14,7 +14,7 @@ class CrossedVendors : public testing::TestWithParam<const char*> {};
 TEST_P(CrossedVendors, FlyTheSameMission) {
   FlownRun run({"--channel", "groups", "--dds", GetParam()});
 
-  EXPECT_EQ(run.launcher().wait(), 0) << run.launcher().err();
+  EXPECT_EQ(run.launcher().wait(), 0) << run.outcome();
 
   const auto summary = run.summary();
   EXPECT_EQ(summary["arrived"], 12);

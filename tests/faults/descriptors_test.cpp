@@ -32,7 +32,7 @@ TEST(Descriptors, ARobotThatCannotReceiveItsCellsStandsAndRecovers) {
   std::this_thread::sleep_for(std::chrono::seconds(3));
   limit_files(agents[5], 1024);
 
-  EXPECT_EQ(run.launcher().wait(), 0) << run.launcher().err();
+  EXPECT_EQ(run.launcher().wait(), 0) << run.outcome();
   EXPECT_EQ(run.summary()["arrived"], 12);
   EXPECT_EQ(run.summary()["collisions_robot"], 0);
   EXPECT_TRUE(has_event(run.dir(), "moves-again"));

@@ -19,7 +19,7 @@ TEST(DuplicateId, IsRefusedInTheSameRunDirectory) {
 
   EXPECT_EQ(second.wait(), 3) << "bad input";
   EXPECT_NE(second.err().find("another process moves robot 3"), std::string::npos) << second.err();
-  EXPECT_EQ(run.launcher().wait(), 0) << run.launcher().err();
+  EXPECT_EQ(run.launcher().wait(), 0) << run.outcome();
   EXPECT_EQ(run.summary()["collisions_robot"], 0);
 
   Program late("robot_agent", {"--run", run.dir().string(), "--ids", "3"});
@@ -45,7 +45,7 @@ TEST(DuplicateId, IsReportedByTheRobotWhoseIdItIs) {
   }
   run.launcher().wait();
   EXPECT_NE(run.launcher().err().find("receives states under an id of its own"), std::string::npos)
-      << run.launcher().err();
+      << run.outcome();
 }
 
 }  // namespace

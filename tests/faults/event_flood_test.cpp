@@ -21,7 +21,7 @@ std::size_t count(const std::string& text, const std::string& part) {
 TEST(EventFlood, FillsNeitherTheLogNorTheDisk) {
   using launcher::EventThrottle;
   FlownRun run({"--channel", "topics"});
-  ASSERT_TRUE(run.mission_started()) << run.launcher().err();
+  ASSERT_TRUE(run.mission_started()) << run.outcome();
   const auto participant = intrude(run);
   ASSERT_TRUE(participant) << participant.error().message;
   const auto events = (*participant)->make_writer(link::event_topic()).value();
@@ -36,7 +36,7 @@ TEST(EventFlood, FillsNeitherTheLogNorTheDisk) {
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
 
-  EXPECT_EQ(run.launcher().wait(), 0) << run.launcher().err();
+  EXPECT_EQ(run.launcher().wait(), 0) << run.outcome();
   const double lasted_s = to_seconds(std::chrono::steady_clock::now() - begin);
   const auto logged = count(read_text(run.dir() / "events.jsonl"), "\"flood\"");
   EXPECT_GE(static_cast<double>(logged), EventThrottle::kBurst) << "it is no flood";

@@ -30,7 +30,7 @@ void forge(const FlownRun& run, std::int64_t after_s) {
 }
 
 void expect_all_arrive(FlownRun& run) {
-  EXPECT_EQ(run.launcher().wait(), 0) << run.launcher().err();
+  EXPECT_EQ(run.launcher().wait(), 0) << run.outcome();
   EXPECT_EQ(run.summary()["arrived"], 12);
   EXPECT_EQ(run.summary()["collisions_robot"], 0);
 }
@@ -38,7 +38,7 @@ void expect_all_arrive(FlownRun& run) {
 // Were the newest epoch to lead, the swarm would hold for good, without a plan of that epoch.
 TEST(ForgedHeartbeat, OfALaterEpochDoesNotLockThePlannerOut) {
   FlownRun run({"--channel", "topics"});
-  ASSERT_TRUE(run.mission_started()) << run.launcher().err();
+  ASSERT_TRUE(run.mission_started()) << run.outcome();
 
   forge(run, 0);
 
@@ -49,7 +49,7 @@ TEST(ForgedHeartbeat, OfALaterEpochDoesNotLockThePlannerOut) {
 // when the other falls silent.
 TEST(ForgedHeartbeat, OfAnEarlierEpochIsOutlived) {
   FlownRun run({"--channel", "topics"});
-  ASSERT_TRUE(run.mission_started()) << run.launcher().err();
+  ASSERT_TRUE(run.mission_started()) << run.outcome();
 
   forge(run, -3600);
 

@@ -28,7 +28,7 @@ TEST_P(FrozenAgents, AreNotTouchedAndArriveAfterTheyWake) {
   std::this_thread::sleep_for(std::chrono::seconds(2));
   for (const std::size_t i : {1U, 4U, 9U}) ::kill(agents[i], SIGCONT);
 
-  EXPECT_EQ(run.launcher().wait(), 0) << run.launcher().err();
+  EXPECT_EQ(run.launcher().wait(), 0) << run.outcome();
   const auto summary = run.summary();
   EXPECT_EQ(summary["arrived"], 12);
   EXPECT_EQ(summary["collisions_robot"], 0);
@@ -48,7 +48,7 @@ TEST(FrozenLauncher, IsReportedAndRobotsFlyOn) {
   std::this_thread::sleep_for(std::chrono::seconds(6));
   run.launcher().signal(SIGCONT);
 
-  EXPECT_EQ(run.launcher().wait(), 0) << run.launcher().err();
+  EXPECT_EQ(run.launcher().wait(), 0) << run.outcome();
   EXPECT_EQ(run.summary()["collisions_robot"], 0);
   EXPECT_TRUE(has_event(run.dir(), "launcher-silent"));
   EXPECT_TRUE(has_event(run.dir(), "launcher-back"));

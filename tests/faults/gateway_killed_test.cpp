@@ -11,7 +11,7 @@ namespace {
 
 TEST(KilledGateway, IsStartedAgainAndTheSwarmArrives) {
   FlownRun run({"--channel", "groups", "--by-gateway", "1"});
-  ASSERT_TRUE(run.mission_started()) << run.launcher().err();
+  ASSERT_TRUE(run.mission_started()) << run.outcome();
   std::set<pid_t> killed;
   for (int kills = 0; kills < 2; ++kills) {
     pid_t gateway = 0;
@@ -24,7 +24,7 @@ TEST(KilledGateway, IsStartedAgainAndTheSwarmArrives) {
     ::kill(gateway, SIGKILL);
   }
 
-  EXPECT_EQ(run.launcher().wait(), 0) << run.launcher().err();
+  EXPECT_EQ(run.launcher().wait(), 0) << run.outcome();
   EXPECT_TRUE(has_event(run.dir(), "gateway-exit"));
   EXPECT_TRUE(has_event(run.dir(), "gateway-restarted"));
   EXPECT_EQ(run.summary()["arrived"], 12);
@@ -32,12 +32,12 @@ TEST(KilledGateway, IsStartedAgainAndTheSwarmArrives) {
 
 TEST(FrozenGateway, IsStartedAgainAndNoRobotsTouch) {
   FlownRun run({"--channel", "groups", "--by-gateway", "3"});
-  ASSERT_TRUE(run.mission_started()) << run.launcher().err();
+  ASSERT_TRUE(run.mission_started()) << run.outcome();
   const auto gateways = children_of(run.launcher().pid(), "swarm_launcher");
   ASSERT_EQ(gateways.size(), 1U);
   ::kill(gateways.front(), SIGSTOP);
 
-  EXPECT_EQ(run.launcher().wait(), 0) << run.launcher().err();
+  EXPECT_EQ(run.launcher().wait(), 0) << run.outcome();
   EXPECT_TRUE(has_event(run.dir(), "gateway-silent"));
   EXPECT_TRUE(has_event(run.dir(), "gateway-restarted"));
   EXPECT_EQ(run.summary()["arrived"], 12);

@@ -21,7 +21,7 @@ TEST(HangingPlanner, IsNamedKilledAndRestarted) {
     const auto planners = run.planners();
     return planners.size() == 1 && planners.front() != hanging;
   }));
-  EXPECT_EQ(run.launcher().wait(), 0) << run.launcher().err();
+  EXPECT_EQ(run.launcher().wait(), 0) << run.outcome();
   EXPECT_TRUE(has_event(run.dir(), "planner-silent"));
   EXPECT_TRUE(has_event(run.dir(), "respawn"));
   EXPECT_EQ(run.summary()["arrived"], 12);

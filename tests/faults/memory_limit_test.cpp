@@ -72,7 +72,7 @@ TEST(MemoryLimit, EndsChildrenAndNotTheLauncher) {
 
   EXPECT_TRUE(eventually([&] {
     return read_text(run.dir() / "events.jsonl").find("killed by signal 9") != std::string::npos;
-  })) << run.launcher().err();
+  })) << run.outcome();
   run.launcher().signal(SIGINT);
 
   EXPECT_LT(run.launcher().wait(), 128) << "it ends by itself, with a summary";

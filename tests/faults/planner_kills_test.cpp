@@ -25,7 +25,7 @@ TEST(KilledPlanner, ComesBackEachTimeAndTheSwarmArrives) {
     ::kill(planner, SIGKILL);
   }
 
-  EXPECT_EQ(run.launcher().wait(), 0) << run.launcher().err();
+  EXPECT_EQ(run.launcher().wait(), 0) << run.outcome();
   EXPECT_EQ(run.summary()["arrived"], 12);
   EXPECT_EQ(run.summary()["collisions_robot"], 0);
 }

@@ -12,7 +12,7 @@ class ReceptionCut : public testing::TestWithParam<const char*> {};
 TEST_P(ReceptionCut, OfThreeRobotsEndsWithoutContact) {
   FlownRun run({"--channel", GetParam(), "--fault", "loss=1,robots=3-5,from=10,to=16"});
 
-  EXPECT_EQ(run.launcher().wait(), 0) << run.launcher().err();
+  EXPECT_EQ(run.launcher().wait(), 0) << run.outcome();
 
   EXPECT_TRUE(has_event(run.dir(), "planner-silent"));
   const auto summary = run.summary();
@@ -26,7 +26,7 @@ TEST_P(ReceptionCut, DuplicatesAreHarmless) {
   FlownRun run(
       {"--channel", GetParam(), "--fault", "duplicate=0.5,delay-ms=20,jitter-ms=20,launcher=1"});
 
-  EXPECT_EQ(run.launcher().wait(), 0) << run.launcher().err();
+  EXPECT_EQ(run.launcher().wait(), 0) << run.outcome();
 
   EXPECT_EQ(run.summary()["arrived"], 12);
   EXPECT_EQ(run.summary()["collisions_robot"], 0);

@@ -14,7 +14,7 @@ constexpr const char* kToken = "a-secret";
 TEST(SilentHost, IsDroppedAndAnotherOneFliesItsRobots) {
   FlownRun run({"--remote", "4", "--join-token", kToken});
   const std::string address = join_address(run.launcher());
-  ASSERT_NE(address, "") << run.launcher().err();
+  ASSERT_NE(address, "") << run.outcome();
   auto hog = launcher::LineSocket::connect(*launcher::parse_host_port(address));
   ASSERT_TRUE(hog);
   hog->send(R"({"join":4,"token":"a-secret"})");
@@ -25,7 +25,7 @@ TEST(SilentHost, IsDroppedAndAnotherOneFliesItsRobots) {
   Program host("swarm_launcher", {"join", address, "--robots", "4", "--join-token", kToken, "--out",
                                   (theirs.path() / "run").string()});
 
-  EXPECT_EQ(run.launcher().wait(), 0) << run.launcher().err();
+  EXPECT_EQ(run.launcher().wait(), 0) << run.outcome();
   EXPECT_EQ(host.wait(), 0) << host.err();
   EXPECT_EQ(run.summary()["arrived"], 12);
 }
@@ -33,7 +33,7 @@ TEST(SilentHost, IsDroppedAndAnotherOneFliesItsRobots) {
 TEST(SilentHost, IsRefusedWithoutTheToken) {
   FlownRun run({"--remote", "4", "--join-token", kToken});
   const std::string address = join_address(run.launcher());
-  ASSERT_NE(address, "") << run.launcher().err();
+  ASSERT_NE(address, "") << run.outcome();
 
   Program stranger("swarm_launcher", {"join", address, "--robots", "4"});
 

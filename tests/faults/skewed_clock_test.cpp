@@ -15,7 +15,7 @@ TEST(SkewedClock, OfAHostThatJoinsChangesNothing) {
   const TemporaryFolder theirs;
   FlownRun run({"--remote", "6"});
   const std::string address = join_address(run.launcher());
-  ASSERT_NE(address, "") << run.launcher().err();
+  ASSERT_NE(address, "") << run.outcome();
   const auto clock = launcher::SteppedClock::make(theirs.path() / "offset");
   if (!clock) GTEST_SKIP() << clock.error().message;
   (*clock)->step(-20);
@@ -23,7 +23,7 @@ TEST(SkewedClock, OfAHostThatJoinsChangesNothing) {
   Program host("swarm_launcher",
                {"join", address, "--robots", "6", "--out", (theirs.path() / "run").string()});
 
-  EXPECT_EQ(run.launcher().wait(), 0) << run.launcher().err();
+  EXPECT_EQ(run.launcher().wait(), 0) << run.outcome();
   EXPECT_EQ(host.wait(), 0) << host.err();
   const auto summary = run.summary();
   EXPECT_EQ(summary["arrived"], 12);

@@ -15,7 +15,7 @@ namespace {
 // than a driver obeys a command, and shorter than the silence after which a robot is reported.
 TEST(StarvedAgents, TouchNothingAndArrive) {
   FlownRun run;
-  ASSERT_TRUE(run.mission_started()) << run.launcher().err();
+  ASSERT_TRUE(run.mission_started()) << run.outcome();
   const std::vector<pid_t> agents = run.agents();
   ASSERT_EQ(agents.size(), 12U);
   std::this_thread::sleep_for(std::chrono::seconds(3));  // they are under way
@@ -27,7 +27,7 @@ TEST(StarvedAgents, TouchNothingAndArrive) {
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
   }
 
-  EXPECT_EQ(run.launcher().wait(), 0) << run.launcher().err();
+  EXPECT_EQ(run.launcher().wait(), 0) << run.outcome();
   const auto summary = run.summary();
   EXPECT_EQ(summary["arrived"], 12);
   EXPECT_EQ(summary["collisions_robot"], 0);

@@ -11,7 +11,7 @@ namespace {
 
 TEST(TwoPlanners, TheFirstLeadsAndTheSecondTakesOverWhenItIsFrozen) {
   FlownRun run({"--channel", "topics"});
-  ASSERT_TRUE(run.mission_started()) << run.launcher().err();
+  ASSERT_TRUE(run.mission_started()) << run.outcome();
   Program second("planner_service", {"--run", run.dir().string()});
   ASSERT_TRUE(eventually([&] { return has_event(run.dir(), "planner-standby"); }));
   EXPECT_FALSE(has_event(run.dir(), "planner-takeover")) << "the first one leads on";
@@ -22,7 +22,7 @@ TEST(TwoPlanners, TheFirstLeadsAndTheSecondTakesOverWhenItIsFrozen) {
   EXPECT_TRUE(eventually([&] { return has_event(run.dir(), "planner-takeover"); }));
   ::kill(first, SIGCONT);
 
-  EXPECT_EQ(run.launcher().wait(), 0) << run.launcher().err();
+  EXPECT_EQ(run.launcher().wait(), 0) << run.outcome();
   const auto summary = run.summary();
   EXPECT_EQ(summary["arrived"], 12);
   EXPECT_EQ(summary["collisions_robot"], 0);
@@ -33,13 +33,13 @@ TEST(TwoPlanners, TheFirstLeadsAndTheSecondTakesOverWhenItIsFrozen) {
 // Each planner of a run on groups serves the robots' discovery at the same ports.
 TEST(TwoPlanners, OnGroupsTheSecondIsRefused) {
   FlownRun run({"--channel", "groups"});
-  ASSERT_TRUE(run.mission_started()) << run.launcher().err();
+  ASSERT_TRUE(run.mission_started()) << run.outcome();
 
   Program second("planner_service", {"--run", run.dir().string()});
 
   EXPECT_NE(second.wait(), 0);
   EXPECT_FALSE(second.err().empty());
-  EXPECT_EQ(run.launcher().wait(), 0) << run.launcher().err();
+  EXPECT_EQ(run.launcher().wait(), 0) << run.outcome();
   EXPECT_EQ(run.summary()["arrived"], 12);
 }
 

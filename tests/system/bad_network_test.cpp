@@ -10,13 +10,13 @@ namespace {
 
 TEST(BadNetwork, IsFlownThrough) {
   FlownRun run({"--channel", "groups", "--fault", "loss=0.2,delay-ms=150,jitter-ms=50"});
-  ASSERT_TRUE(run.mission_started()) << run.launcher().err();
+  ASSERT_TRUE(run.mission_started()) << run.outcome();
   const auto planners = run.planners();
   ASSERT_EQ(planners.size(), 1U);
 
   ::kill(planners[0], SIGKILL);
 
-  EXPECT_EQ(run.launcher().wait(), 0) << run.launcher().err();
+  EXPECT_EQ(run.launcher().wait(), 0) << run.outcome();
   const auto summary = run.summary();
   EXPECT_EQ(summary["arrived"], 12);
   EXPECT_EQ(summary["collisions_robot"], 0);
@@ -30,7 +30,7 @@ TEST(BadNetwork, RefusesAnInvalidDescription) {
 
   EXPECT_EQ(run.launcher().wait(), 3);
   EXPECT_NE(run.launcher().err().find("'loss=2' is not in 0 to 1"), std::string::npos)
-      << run.launcher().err();
+      << run.outcome();
 }
 
 }  // namespace

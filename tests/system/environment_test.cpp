@@ -53,7 +53,7 @@ TEST(Environment, OfRosChangesNothing) {
   EXPECT_EQ(inherited.find("ROS_DISCOVERY_SERVER"), std::string::npos);
   EXPECT_NE(inherited.find("ROS_DOMAIN_ID"), std::string::npos) << "a driver may use it";
 
-  EXPECT_EQ(run.launcher().wait(), 0) << run.launcher().err();
+  EXPECT_EQ(run.launcher().wait(), 0) << run.outcome();
   EXPECT_NE(run.launcher().err().find("ROS_DISCOVERY_SERVER, ROS_DOMAIN_ID"), std::string::npos);
 }
 
@@ -73,7 +73,7 @@ TEST(Environment, OfOtherDdsProgramsIsNamedWhereItTakesAPort) {
   EXPECT_EQ(run.launcher().wait(), 2);
   EXPECT_NE(run.launcher().err().find(fmt::format("UDP port {}", 7412 + 250 * domain)),
             std::string::npos)
-      << run.launcher().err();
+      << run.outcome();
   ::close(fd);
 }
 
@@ -86,7 +86,7 @@ TEST(Environment, EndsARunWithItsTerminal) {
   run.launcher().signal(SIGHUP);  // by the kernel
   run.launcher().signal(SIGHUP);  // by the shell
 
-  EXPECT_EQ(run.launcher().wait(), 1) << run.launcher().err();
+  EXPECT_EQ(run.launcher().wait(), 1) << run.outcome();
   for (const Child& child : children) EXPECT_NE(::kill(child.pid, 0), 0) << child.program;
   EXPECT_EQ(run.summary()["outcome"], "interrupted");
 }
@@ -98,7 +98,7 @@ TEST(Environment, OfNohupKeepsARunFlying) {
 
   run.launcher().signal(SIGHUP);
 
-  EXPECT_EQ(run.launcher().wait(), 0) << run.launcher().err();
+  EXPECT_EQ(run.launcher().wait(), 0) << run.outcome();
 }
 
 TEST(Environment, WithoutItsLauncherARunIsARecording) {

@@ -38,6 +38,14 @@ class FlownRun {
   std::vector<pid_t> agents() const { return children_of(launcher_->pid(), "robot_agent"); }
   std::vector<pid_t> planners() const { return children_of(launcher_->pid(), "planner_service"); }
 
+  /// For the message of a failed check: the summary's reasons, then what the launcher printed.
+  std::string outcome() const {
+    const nlohmann::json all = summary();
+    return "reasons: " +
+           (all.is_object() ? all.value("reasons", nlohmann::json()).dump() : "no summary") + "\n" +
+           launcher_->err();
+  }
+
   nlohmann::json summary() const {
     return nlohmann::json::parse(read_text(dir() / "summary.json"), nullptr, false);
   }

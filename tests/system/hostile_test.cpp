@@ -130,7 +130,7 @@ TEST(HostileBus, ACommandWithAHugeIdLocksNoOtherSenderOut) {
   EXPECT_EQ(resume.wait(), 0) << resume.err();
   EXPECT_TRUE(eventually(is_running));
 
-  EXPECT_EQ(run.launcher().wait(), 0) << run.launcher().err();
+  EXPECT_EQ(run.launcher().wait(), 0) << run.outcome();
   EXPECT_EQ(run.summary()["arrived"], 12);
 }
 
@@ -207,7 +207,7 @@ TEST(HostileBus, RubbishIsRefusedCountedAndHarmless) {
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
   }
 
-  EXPECT_EQ(run.launcher().wait(), 0) << run.launcher().err();
+  EXPECT_EQ(run.launcher().wait(), 0) << run.outcome();
   const auto summary = run.summary();
   EXPECT_EQ(summary["arrived"], 12);
   EXPECT_EQ(summary["collisions_robot"], 0);

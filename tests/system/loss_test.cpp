@@ -21,7 +21,7 @@ TEST(Loss, KilledRobotsAreNamedAndOthersAreNotDisturbed) {
   ::kill(agents[3], SIGKILL);
   ::kill(agents[8], SIGKILL);
 
-  EXPECT_EQ(run.launcher().wait(), 1) << run.launcher().err();
+  EXPECT_EQ(run.launcher().wait(), 1) << run.outcome();
   const auto summary = run.summary();
   EXPECT_EQ(summary["lost"], nlohmann::json({3, 8}));
   EXPECT_EQ(summary["arrived"], 10);
@@ -62,7 +62,7 @@ TEST(Loss, KilledRobotsLeaveBodiesThatCanBeCleared) {
                                     "robot: 2, circle_m: {center: [9, 9], radius: 1}"});
   EXPECT_EQ(forged.wait(), 1);
 
-  EXPECT_EQ(run.launcher().wait(), 1) << run.launcher().err();
+  EXPECT_EQ(run.launcher().wait(), 1) << run.outcome();
   const auto changes = scene_changes(run.dir());
   ASSERT_EQ(changes.size(), 4U);
   for (const std::size_t i : {0U, 1U, 2U}) {
@@ -96,7 +96,7 @@ TEST(Loss, TheBodyOfARespawnedRobotIsNoObstacleAnyMore) {
   ::kill(agents[3], SIGKILL);
   ::kill(agents[8], SIGKILL);
 
-  EXPECT_EQ(run.launcher().wait(), 0) << run.launcher().err();
+  EXPECT_EQ(run.launcher().wait(), 0) << run.outcome();
   const auto changes = scene_changes(run.dir());
   EXPECT_EQ(count(changes, "add_body"), 2U);
   EXPECT_EQ(count(changes, "clear"), 2U);
@@ -120,7 +120,7 @@ TEST(Loss, ARestartedPlannerLeadsAlsoWithoutWritingItsFiles) {
   EXPECT_TRUE(eventually([&] { return has_event(run.dir(), "disk-fails"); }));
   std::filesystem::remove_all(plan);
   std::filesystem::rename(saved, plan);
-  EXPECT_EQ(run.launcher().wait(), 0) << run.launcher().err();
+  EXPECT_EQ(run.launcher().wait(), 0) << run.outcome();
   EXPECT_EQ(run.summary()["arrived"], 12);
 }
 
@@ -132,7 +132,7 @@ TEST(Loss, TheSwarmOutlivesItsPlanner) {
 
   ::kill(planners[0], SIGKILL);
 
-  EXPECT_EQ(run.launcher().wait(), 0) << run.launcher().err();
+  EXPECT_EQ(run.launcher().wait(), 0) << run.outcome();
   EXPECT_TRUE(has_event(run.dir(), "respawn"));
   EXPECT_EQ(run.summary()["collisions_robot"], 0);
 }
@@ -147,7 +147,7 @@ TEST(Loss, AFrozenPlannerMakesTheSwarmHoldAndItsReturnMakesItGoOn) {
   EXPECT_TRUE(eventually([&] { return has_event(run.dir(), "planner-silent"); }));
   ::kill(planners[0], SIGCONT);
 
-  EXPECT_EQ(run.launcher().wait(), 0) << run.launcher().err();
+  EXPECT_EQ(run.launcher().wait(), 0) << run.outcome();
 }
 
 TEST(Loss, NoOrphansWhenTheLauncherIsKilled) {

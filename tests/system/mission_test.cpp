@@ -11,7 +11,7 @@ namespace {
 TEST(Mission, FliesAndIsAudited) {
   FlownRun run;
 
-  ASSERT_EQ(run.launcher().wait(), 0) << run.launcher().err();
+  ASSERT_EQ(run.launcher().wait(), 0) << run.outcome();
 
   const auto summary = run.summary();
   EXPECT_EQ(summary["outcome"], "ok");
@@ -46,7 +46,7 @@ TEST(Mission, FliesAndIsAudited) {
 TEST(Mission, IsFlownByMoreCycloneProcessesThanItsDefaultsAllow) {
   FlownRun run({"--channel", "groups", "--dds", "cyclonedds"});
 
-  ASSERT_EQ(run.launcher().wait(), 0) << run.launcher().err();
+  ASSERT_EQ(run.launcher().wait(), 0) << run.outcome();
 
   const auto summary = run.summary();
   EXPECT_EQ(summary["processes"], 12);
@@ -60,13 +60,13 @@ TEST(Mission, IsFlownWithRobotsOfAnotherMakeBehindAGateway) {
   ASSERT_TRUE(eventually([&] {
     gateways = children_of(run.launcher().pid(), "swarm_launcher");
     return gateways.size() == 1;
-  })) << run.launcher().err();
+  })) << run.outcome();
 
   // A restarted gateway is discovered again: the mission starts only when every robot receives its
   // neighbours.
   ::kill(gateways[0], SIGKILL);
 
-  EXPECT_EQ(run.launcher().wait(), 0) << run.launcher().err();
+  EXPECT_EQ(run.launcher().wait(), 0) << run.outcome();
   EXPECT_TRUE(has_event(run.dir(), "gateway-exit"));
   EXPECT_EQ(run.summary()["arrived"], 12);
   EXPECT_EQ(run.summary()["collisions_robot"], 0);
@@ -74,7 +74,7 @@ TEST(Mission, IsFlownWithRobotsOfAnotherMakeBehindAGateway) {
 
 TEST(Mission, AuditOfItsDirectoryAgreesWithTheSummary) {
   FlownRun run({"--robots", "6"});
-  ASSERT_EQ(run.launcher().wait(), 0) << run.launcher().err();
+  ASSERT_EQ(run.launcher().wait(), 0) << run.outcome();
 
   Program audit("swarm_monitor", {"audit", run.dir().string(), "--json"});
 
@@ -89,7 +89,7 @@ TEST(Mission, AuditOfItsDirectoryAgreesWithTheSummary) {
 TEST(Mission, PacksSeveralRobotsIntoAProcess) {
   FlownRun run({"--per-process", "5"});
 
-  ASSERT_EQ(run.launcher().wait(), 0) << run.launcher().err();
+  ASSERT_EQ(run.launcher().wait(), 0) << run.outcome();
 
   EXPECT_EQ(run.summary()["processes"], 3);
   EXPECT_EQ(run.summary()["arrived"], 12);
@@ -98,7 +98,7 @@ TEST(Mission, PacksSeveralRobotsIntoAProcess) {
 TEST(Mission, FliesOnMulticastGroups) {
   FlownRun run({"--channel", "groups"});
 
-  ASSERT_EQ(run.launcher().wait(), 0) << run.launcher().err();
+  ASSERT_EQ(run.launcher().wait(), 0) << run.outcome();
 
   EXPECT_EQ(run.summary()["channel"], "groups");
   EXPECT_EQ(run.summary()["arrived"], 12);

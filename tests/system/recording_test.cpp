@@ -49,7 +49,7 @@ std::uint64_t steps_in_logs(const std::filesystem::path& run_dir) {
 
 TEST(Recording, OfAFlightIsReplayedWithTheSameMessagesAndJudgedAlike) {
   FlownRun run({"--channel", "groups", "--record"});
-  ASSERT_EQ(run.launcher().wait(), 0) << run.launcher().err();
+  ASSERT_EQ(run.launcher().wait(), 0) << run.outcome();
   const auto merged = merge(run.dir());
   EXPECT_EQ(merged["boxes"], 12);
   EXPECT_EQ(merged["recordings"], 1);
@@ -94,7 +94,7 @@ TEST(Recording, SurvivesKilledRecordersAndRobots) {
   ::kill(recorders.front(), SIGKILL);
   ::kill(run.agents().front(), SIGKILL);
 
-  EXPECT_EQ(run.launcher().wait(), 1) << run.launcher().err();  // a robot is lost
+  EXPECT_EQ(run.launcher().wait(), 1) << run.outcome();  // a robot is lost
 
   EXPECT_EQ(run.summary()["arrived"], 11);
   EXPECT_TRUE(has_event(run.dir(), "monitor-exit"));

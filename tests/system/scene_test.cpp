@@ -32,7 +32,7 @@ void expect_good(const nlohmann::json& summary, int robots) {
 TEST(Scene, ChangesByScriptAndTheSwarmFollows) {
   FlownRun run({}, kChanging);
 
-  ASSERT_EQ(run.launcher().wait(), 0) << run.launcher().err();
+  ASSERT_EQ(run.launcher().wait(), 0) << run.outcome();
 
   expect_good(run.summary(), 12);
   // Robots per component of the new goal: 3 and 9 by its weights, within two.
@@ -64,7 +64,7 @@ TEST(Scene, ChangesByCommandAndReportsWhatItMadeOfIt) {
   EXPECT_NE(command({"risk", "alpha: 7"}).second.find("alpha is 7; must be"), std::string::npos);
   EXPECT_EQ(command({"jump"}).first, 3) << "no such command";
 
-  EXPECT_EQ(run.launcher().wait(), 0) << run.launcher().err();
+  EXPECT_EQ(run.launcher().wait(), 0) << run.outcome();
   expect_good(run.summary(), 12);
 }
 
@@ -75,7 +75,7 @@ TEST(Scene, OutlivesThePlanner) {
 
   ::kill(run.planners().at(0), SIGKILL);
 
-  EXPECT_EQ(run.launcher().wait(), 0) << run.launcher().err();
+  EXPECT_EQ(run.launcher().wait(), 0) << run.outcome();
   EXPECT_TRUE(has_event(run.dir(), "respawn"));
   expect_good(run.summary(), 12);
 }

@@ -11,7 +11,7 @@ namespace swarm::test {
 namespace {
 
 void expect_all_gone_and_summarised(FlownRun& run, const std::vector<Child>& children) {
-  EXPECT_EQ(run.launcher().wait(), 1) << run.launcher().err();
+  EXPECT_EQ(run.launcher().wait(), 1) << run.outcome();
   for (const Child& child : children) {
     EXPECT_NE(::kill(child.pid, 0), 0) << child.program << " " << child.pid;
   }
@@ -137,7 +137,7 @@ TEST(Command, PausesAndResumes) {
   Program resume("swarm_launcher", {"command", run.dir().string(), "resume"});
   EXPECT_EQ(resume.wait(), 0) << resume.err();
 
-  EXPECT_EQ(run.launcher().wait(), 0) << run.launcher().err();
+  EXPECT_EQ(run.launcher().wait(), 0) << run.outcome();
 }
 
 }  // namespace

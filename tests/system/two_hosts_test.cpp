@@ -12,14 +12,14 @@ namespace {
 TEST(TwoHosts, FlyOneMission) {
   FlownRun run({"--remote", "6"});
   const std::string address = join_address(run.launcher());
-  ASSERT_NE(address, "") << run.launcher().err();
+  ASSERT_NE(address, "") << run.outcome();
   TemporaryFolder theirs;
   Program first("swarm_launcher",
                 {"join", address, "--robots", "4", "--out", (theirs.path() / "first").string()});
   Program second("swarm_launcher",
                  {"join", address, "--robots", "4", "--out", (theirs.path() / "second").string()});
 
-  EXPECT_EQ(run.launcher().wait(), 0) << run.launcher().err();
+  EXPECT_EQ(run.launcher().wait(), 0) << run.outcome();
   EXPECT_EQ(first.wait(), 0) << first.err();
   EXPECT_EQ(second.wait(), 0) << second.err();
   const auto summary = run.summary();
@@ -31,11 +31,11 @@ TEST(TwoHosts, FlyOneMission) {
 TEST(TwoHosts, AHostThatGoesTakesItsRobotsWithIt) {
   FlownRun run({"--remote", "4"});
   const std::string address = join_address(run.launcher());
-  ASSERT_NE(address, "") << run.launcher().err();
+  ASSERT_NE(address, "") << run.outcome();
   TemporaryFolder theirs;
   Program host("swarm_launcher",
                {"join", address, "--robots", "4", "--out", (theirs.path() / "run").string()});
-  ASSERT_TRUE(run.mission_started()) << run.launcher().err();
+  ASSERT_TRUE(run.mission_started()) << run.outcome();
   const auto agents = children_of(host.pid(), "robot_agent");
   EXPECT_EQ(agents.size(), 4U);
 

@@ -212,7 +212,7 @@ TEST_P(HostileFlightOn, GoesOnUnchanged) {
   std::vector<std::string> options = GetParam().options;
   options.emplace_back("--view");
   FlownRun run(options, mission());
-  ASSERT_TRUE(run.mission_started()) << run.launcher().err();
+  ASSERT_TRUE(run.mission_started()) << run.outcome();
   // A real scene, so that older ones are stale; and time for what follows.
   ASSERT_EQ(command(run, {"add_obstacle", "circle_m: {center: [35, 25], radius: 1}"}), 0)
       << answer_;
@@ -226,14 +226,14 @@ TEST_P(HostileFlightOn, GoesOnUnchanged) {
   EXPECT_EQ(intruder.robots_in(RobotMode::kMoving), 0);
   EXPECT_EQ(intruder.robots_in(RobotMode::kStopped), 0);
   const std::uint16_t port = view_port(run.launcher().err());
-  EXPECT_GT(metric(port, "swarm_messages_refused_total"), 20.0) << run.launcher().err();
+  EXPECT_GT(metric(port, "swarm_messages_refused_total"), 20.0) << run.outcome();
   EXPECT_EQ(metric(port, "swarm_phase"), 2.0);
 
   ASSERT_EQ(command(run, {"resume"}), 0) << answer_;
   std::set<std::string> reported_before;
   attack(intruder, reported_before);  // while the robots move
 
-  EXPECT_EQ(run.launcher().wait(), 0) << run.launcher().err();
+  EXPECT_EQ(run.launcher().wait(), 0) << run.outcome();
   const auto summary = run.summary();
   EXPECT_EQ(summary["arrived"], kRobots);
   EXPECT_EQ(summary["collisions_robot"], 0);
@@ -258,7 +258,7 @@ INSTANTIATE_TEST_SUITE_P(Buses, HostileFlightOn,
 // A frozen robot has not stopped, whatever others publish in its name.
 TEST_F(HostileFlight, AForgedStatusConfirmsNoStop) {
   FlownRun run({"--channel", "topics"}, mission());
-  ASSERT_TRUE(run.mission_started()) << run.launcher().err();
+  ASSERT_TRUE(run.mission_started()) << run.outcome();
   Intruder intruder(run);
   ASSERT_TRUE(eventually([&] { return intruder.is_in(kRobots); }));
   ASSERT_EQ(run.agents().size(), static_cast<std::size_t>(kRobots));
