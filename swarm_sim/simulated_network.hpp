@@ -48,10 +48,12 @@ class SimulatedNetwork {
       const Duration delay = faulty ? faults_.delay : Duration::zero();
       const Duration jitter = faulty ? faults_.jitter : Duration::zero();
       if (moment.at + delay + jitter < from || moment.at + delay - jitter >= until) continue;
-      for (int y = y0; y <= y1; ++y) {
+      const bool few = moment.sent.size() <= kFew;  // all are tested, as if they were in one row
+      for (int y = few ? y1 : y0; y <= y1; ++y) {
         const std::size_t row = static_cast<std::size_t>(y) * static_cast<std::size_t>(columns_);
-        const std::size_t first = moment.begin[row + static_cast<std::size_t>(x0)];
-        const std::size_t last = moment.begin[row + static_cast<std::size_t>(x1) + 1];
+        const std::size_t first = few ? 0 : moment.begin[row + static_cast<std::size_t>(x0)];
+        const std::size_t last =
+            few ? moment.sent.size() : moment.begin[row + static_cast<std::size_t>(x1) + 1];
         for (std::size_t i = first; i < last; i += kAtOnce) {
           // Which senders are in range is unpredictable: they are found without a branch.
           std::array<std::uint32_t, kAtOnce> near;
@@ -73,6 +75,8 @@ class SimulatedNetwork {
  private:
   /// Senders tested before those in range are handed over: a small list that stays in the cache.
   static constexpr std::size_t kAtOnce = 64;
+  /// So few states are tested one by one faster than their cells are looked up.
+  static constexpr std::size_t kFew = 16;
 
   /// The states sent at one moment, sorted by cell.
   struct Moment {

@@ -218,12 +218,18 @@ void NeighbourTable::FilterPass::make_room(std::size_t count) {
   const auto own_y_m = static_cast<float>(own_position_m.y() - here_m_.y());
   const Int4 late_us =
       all(link_.poor ? kLongest_us : static_cast<std::int32_t>(1e6 * link_.late_s));
-  if (pass.blocks.size() < blocks_.size()) pass.make_room(2 * blocks_.size());
+  // In registers: the compiler has to read members again after every store.
+  const std::size_t blocks = blocks_.size();
+  if (pass.blocks.size() < blocks) pass.make_room(2 * blocks);
+  LaneBlock* const known = blocks_.data();
+  FilterPass::LaneBlock* const extrapolated = pass.blocks.data();
+  const Int4 forget_after_us = all(forget_after_us_);
+  const Int4 healthy_us = all(silence_us_ - period_us_);
   std::uint32_t* next_close = pass.close.data();
   std::uint32_t* next_far = pass.far.data();
   Int4 gone = all(0);
-  for (std::uint32_t i = 0; i < blocks_.size(); ++i) {
-    LaneBlock& f = blocks_[i];
+  for (std::uint32_t i = 0; i < blocks; ++i) {
+    LaneBlock& f = known[i];
     // Dead reckoning at constant velocity.
     const Int4 age_us = max(now_us - f.as_of_us, all(0));
     const Float4 age_s = 1e-6F * to_float(age_us);
@@ -235,36 +241,29 @@ void NeighbourTable::FilterPass::make_room(std::size_t count) {
     // A state that arrived late keeps its lateness. Beyond the expected silence less one period the
     // age grows with time on any link: the robot should have published.
     const Int4 known_us = min(age_us, max(f.late_us, late_us));
-    const Int4 information_age_us = max(known_us, age_us - (silence_us_ - period_us_));
+    const Int4 information_age_us = max(known_us, age_us - healthy_us);
     const Float4 information_age_s = max(1e-6F * to_float(information_age_us), all(period_s));
     const Float4 reach_m = reach_now_m + growth_mps * information_age_s;
     // Masks are −1 (all bits) where true, so that subtracting one counts.
-    const Int4 is_gone = (away_squared > keep_m * keep_m) | (age_us > forget_after_us_);
+    const Int4 is_gone = (away_squared > keep_m * keep_m) | (age_us > forget_after_us);
     const Int4 in_reach = ~is_gone & (away_squared <= reach_m * reach_m);
     const Float4 close_m = reach_m - beyond_close_m;
     const Int4 is_close = in_reach & (away_squared <= close_m * close_m);
     const Int4 is_far = in_reach & ~is_close;
     gone -= is_gone;
     // Stores only where a robot has just gone: written cache lines are costly.
-    const Int4 left = is_gone & (f.as_of_us != all(kGone));
-    if ((left[0] | left[1] | left[2] | left[3]) != 0)
+    if (bits_of(is_gone & (f.as_of_us != all(kGone))) != 0) {
       f.as_of_us = is_gone ? all(kGone) : f.as_of_us;
-    pass.blocks[i] = {x_m, y_m, age_us};
-    // Stream compaction without branches: each number is written, and the end of a list moves on
-    // only if the mask is set.
-#pragma GCC unroll 4
-    for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
-      *next_close = kLanes * i + lane;
-      next_close -= is_close[lane];
-      *next_far = kLanes * i + lane;
-      next_far -= is_far[lane];
     }
+    extrapolated[i] = {x_m, y_m, age_us};
+    next_close = write_set(bits_of(is_close), kLanes * i, next_close);
+    next_far = write_set(bits_of(is_far), kLanes * i, next_far);
   }
   pass.close_found = static_cast<std::size_t>(next_close - pass.close.data());
   pass.far_found = static_cast<std::size_t>(next_far - pass.far.data());
   // The empty lanes behind the last robot are marked as gone, but are no robots.
-  gone_ = static_cast<std::size_t>(gone[0] + gone[1] + gone[2] + gone[3]) -
-          (kLanes * blocks_.size() - count_);
+  gone_ =
+      static_cast<std::size_t>(gone[0] + gone[1] + gone[2] + gone[3]) - (kLanes * blocks - count_);
 }
 
 /// The estimate of one robot within reach: extrapolated position, radius, age of the information

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "swarm_core/base/lanes.hpp"
+
 namespace swarm::agent {
 namespace {
 
@@ -51,12 +53,13 @@ std::size_t Pursuit::piece_of(double s_m) const {
 
 /// Least planned clearance between two arc lengths. O(pieces between them).
 [[gnu::hot]] double Pursuit::planned_clearance_m(double from_s_m, double to_s_m) const {
-  const std::size_t last = piece_of(to_s_m);
-  float least_m = clearance_m_[piece_of(from_s_m)];
-  for (std::size_t i = piece_of(from_s_m) + 1; i <= last; ++i) {
-    least_m = std::min(least_m, clearance_m_[i]);
-  }
-  return static_cast<double>(least_m);
+  const float* const last = clearance_m_.data() + piece_of(to_s_m);
+  const float* piece = clearance_m_.data() + piece_of(from_s_m);
+  Float4 least_m = all(*piece);
+  for (; last - piece >= kLanes; piece += kLanes) least_m = min(least_m, load(piece));
+  for (; piece <= last; ++piece) least_m[0] = std::min(least_m[0], *piece);
+  return static_cast<double>(
+      std::min(std::min(least_m[0], least_m[1]), std::min(least_m[2], least_m[3])));
 }
 
 [[gnu::hot]] void Pursuit::move_to(double s_m) {
