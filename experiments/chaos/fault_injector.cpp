@@ -2,16 +2,43 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "experiments/chaos/fault_injector.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <csignal>
 #include <fstream>
+#include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "swarm_core/robot_log/robot_log_file.hpp"
 #include "swarm_launcher/processes/child_process.hpp"
 
 namespace swarm::launcher {
+namespace {
+
+// Until the scene with a new obstacle has reached the robots, on a loaded machine, and what a robot
+// drives meanwhile, with the radius of the obstacle.
+constexpr Duration kCommandTime = std::chrono::seconds(3);
+constexpr double kAway_m = 5.0;
+// Places that are tried for an obstacle. Irrational steps spread them over the map.
+constexpr int kPlaces = 16;
+constexpr double kNextX = 0.6180339887;
+constexpr double kNextY = 0.4142135624;
+
+}  // namespace
+
+bool is_clear_of_robots(const std::filesystem::path& run_dir, const Vec2& at_m, double distance_m) {
+  const auto folder = robot_log::file_of(run_dir, RobotId(0)).parent_path();
+  std::error_code none;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, none)) {
+    const auto steps = robot_log::last_steps(entry.path());
+    if (!steps || steps->empty()) continue;
+    if ((steps->back().position_m - at_m).norm() < distance_m) return false;
+  }
+  return true;
+}
 
 FaultInjector::FaultInjector(std::vector<Fault> schedule, FaultTargets targets)
     : schedule_(std::move(schedule)), targets_(std::move(targets)) {}
@@ -112,12 +139,35 @@ bool FaultInjector::command(std::vector<std::string> arguments) {
   return start_process(arguments, targets_.run_dir.string() + ".commands.log").has_value();
 }
 
+/// Whether the launcher may add an obstacle seconds late, as it is frozen or about to be, or
+/// whether the robot logs have no present positions.
+bool FaultInjector::is_command_delayed(Duration mission_time) const {
+  const auto delays = [](FaultKind kind) {
+    return kind == FaultKind::kFreezeLauncher || kind == FaultKind::kFillDisk;
+  };
+  const auto comes = [&](const Fault& fault) {
+    return delays(fault.kind) && fault.at >= mission_time && fault.at < mission_time + kCommandTime;
+  };
+  return std::ranges::any_of(open_, [&](const Open& open) { return delays(open.fault.kind); }) ||
+         std::ranges::any_of(schedule_, comes);
+}
+
+/// Away from all robots: one that an obstacle appears on has touched it, whatever it does. The
+/// other host of two has logs of its own.
 bool FaultInjector::add_obstacle(const Fault& fault) {
+  if (targets_.hosts != nullptr || is_command_delayed(fault.at)) return false;
   const Box& map = targets_.bounds_m;
-  const Vec2 at =
-      map.min_m + Vec2(fault.x_share, fault.y_share).cwiseProduct(map.max_m - map.min_m);
-  return command({"add_obstacle", fmt::format("circle_m: {{center: [{:.2f}, {:.2f}], radius: 0.4}}",
-                                              at.x(), at.y())});
+  Vec2 share(fault.x_share, fault.y_share);
+  for (int tried = 0; tried < kPlaces; ++tried) {
+    const Vec2 at_m = map.min_m + share.cwiseProduct(map.max_m - map.min_m);
+    if (is_clear_of_robots(targets_.run_dir, at_m, kAway_m)) {
+      return command(
+          {"add_obstacle",
+           fmt::format("circle_m: {{center: [{:.2f}, {:.2f}], radius: 0.4}}", at_m.x(), at_m.y())});
+    }
+    share = Vec2(std::fmod(share.x() + kNextX, 1.0), std::fmod(share.y() + kNextY, 1.0));
+  }
+  return false;
 }
 
 // Beside the run directory, whose disk may be full.

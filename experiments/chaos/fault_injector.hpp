@@ -12,6 +12,7 @@
 #include "experiments/chaos/flight_processes.hpp"
 #include "experiments/chaos/small_disk.hpp"
 #include "swarmflow/core/box.hpp"
+#include "swarmflow/core/linalg.hpp"
 
 namespace swarm::launcher {
 
@@ -24,6 +25,9 @@ struct FaultTargets {
   HostPair* hosts;
   SmallDisk* disk;
 };
+
+/// Whether no robot of a run is within a distance of a point, by the ends of the robot logs.
+bool is_clear_of_robots(const std::filesystem::path& run_dir, const Vec2& at_m, double distance_m);
 
 /// Injects the faults of one flight as their times come, and undoes them.
 class FaultInjector {
@@ -50,6 +54,7 @@ class FaultInjector {
   bool signal(std::optional<pid_t> pid, int number);
   bool command(std::vector<std::string> arguments);
   bool add_obstacle(const Fault& fault);
+  bool is_command_delayed(Duration mission_time) const;
   void log(Duration mission_time, const Fault& fault, const char* edge) const;
 
   std::vector<Fault> schedule_;
