@@ -9,7 +9,7 @@ namespace swarm::launcher {
 namespace {
 
 // Before a host that was received once is gone for good, and before one that never was.
-constexpr Duration kLeastGone = std::chrono::seconds(30);
+constexpr Duration kLeastGone = std::chrono::seconds(60);
 constexpr Duration kLeastFirst = std::chrono::seconds(10);
 
 }  // namespace

@@ -30,7 +30,7 @@ class HostWatch {
   std::optional<Change> step(SteadyTime now);
 
   bool cut() const { return cut_; }
-  /// No status for ten timeouts, and at least 30 s: the host is treated as gone for good. One that
+  /// No status for ten timeouts, and at least 60 s: the host is treated as gone for good. One that
   /// never sent any is not waited for as long: half of the quorum's time after it joined others may
   /// have its robots, but not before 10 s and five timeouts.
   bool lost(SteadyTime now) const;
