@@ -76,8 +76,8 @@ std::int32_t to_us(Duration d) {
   if (output_.mode == RobotMode::kStopped) {
     parts.driver.stop(tick.now, StopKind::kHold);
   } else {
-    // Valid for two periods: a tick may be late, a dead process must not drive on.
-    parts.driver.command(tick.now, output_.velocity_mps, 2 * tick.period);
+    // Longer than a period, as a tick may be late; limited, as a dead process must not drive on.
+    parts.driver.command(tick.now, output_.velocity_mps, robot_log::command_lifetime(tick.period));
   }
   const bool is_well = body.is_valid && fault_.empty() && agent_.control_fault().empty();
   if (!is_well || ticks_ % kTicksPerHealth == 0) update_fault(body.is_valid, parts.driver);

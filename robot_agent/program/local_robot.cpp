@@ -22,11 +22,11 @@ constexpr std::uint32_t kRecordsAtOnce = 10;
 /// Of one robot: a minute and more of a disk that takes nothing. Reserved, and not used until then.
 constexpr std::size_t kWaitingBytes = 128U << 10U;
 
-/// A respawned robot starts from the last position in its log, a new one, and one whose log cannot
-/// be read, from the position that the mission places it at.
-Vec2 first_position(const std::filesystem::path& log_file, const Vec2& placed_m) {
+/// A respawned robot starts where its body came to rest after the last step in its log, a new one,
+/// and one whose log cannot be read, from the position that the mission places it at.
+Vec2 first_position(const std::filesystem::path& log_file, const Vec2& placed_m, Duration period) {
   const auto last = robot_log::last_steps(log_file);
-  return !last || last->empty() ? placed_m : last->back().position_m;
+  return !last || last->empty() ? placed_m : robot_log::rest_position_m(last->back(), period);
 }
 
 /// Robots fill their chunks at different steps, so that a process does not write all its logs at
@@ -82,7 +82,8 @@ Result<LocalRobots> make_local_robots(const Mission& mission, const World& world
   for (std::uint32_t i = 0; i < spec.count; ++i) {
     const RobotId id(spec.first.value() + i);
     const Vec2& placed_m = (*places)[id.value()];
-    const Vec2 position_m = first_position(robot_log::file_of(spec.run_dir, id), placed_m);
+    const Vec2 position_m = first_position(robot_log::file_of(spec.run_dir, id), placed_m,
+                                           from_seconds(1.0 / mission.control.rate_hz));
     AgentIdentity self = agent_identity(mission, id);
     // A position other than the placed one means that the robot has driven before.
     self.underway = position_m != placed_m;

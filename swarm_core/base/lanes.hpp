@@ -39,7 +39,7 @@ inline Float4 load(const float* from) {
   return v;
 }
 
-/// Bit k tells whether lane k of a mask, whose lanes are 0 or −1, is set.
+/// Bit k is set if lane k of a mask is. The lanes of a mask are 0 or −1.
 inline std::uint32_t bits_of(Int4 mask) {
 #ifdef __SSE2__
   return static_cast<std::uint32_t>(_mm_movemask_ps(__builtin_bit_cast(Float4, mask)));

@@ -42,6 +42,15 @@ struct Step {
   static constexpr std::uint8_t kNoGoal = 255;
 };
 
+/// How long a driver executes the command of a step. `period`: of control.
+constexpr Duration command_lifetime(Duration period) { return 2 * period; }
+
+/// Where the body of a robot comes to rest whose process died after this step: its driver executes
+/// the last command until that runs out.
+inline Vec2 rest_position_m(const Step& last, Duration period) {
+  return last.position_m + to_seconds(command_lifetime(period)) * last.velocity_mps;
+}
+
 /// The robot's estimate of a neighbour's position at `stamp`; the neighbours near it are recorded
 /// in turn.
 struct Estimate {

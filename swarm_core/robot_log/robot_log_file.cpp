@@ -192,22 +192,24 @@ std::optional<RobotRecord> decode(const mcap::Message& message, const mcap::Chan
 
 /// Messages that are not valid records count as damage.
 Result<Damage> read_records(const std::filesystem::path& file,
-                            const std::function<void(const Record&)>& take) {
+                            const std::function<void(const Record&)>& take, UtcTime from) {
   std::uint64_t malformed = 0;
   std::uint64_t lost = 0;
   std::uint32_t expected = 0;
-  const auto read =
-      mcap::read(file, {.message = [&](const mcap::Message& message, const mcap::Channel& channel,
-                                       const mcap::Schema&) {
-                   // An incarnation begins at 0.
-                   if (message.sequence > expected) lost += message.sequence - expected;
-                   expected = message.sequence + 1;
-                   if (const auto record = decode(message, channel)) {
-                     take(record->record);
-                   } else {
-                     ++malformed;
-                   }
-                 }});
+  const auto read = mcap::read(file, {.message =
+                                          [&](const mcap::Message& message,
+                                              const mcap::Channel& channel, const mcap::Schema&) {
+                                            // An incarnation begins at 0.
+                                            if (message.sequence > expected)
+                                              lost += message.sequence - expected;
+                                            expected = message.sequence + 1;
+                                            if (const auto record = decode(message, channel)) {
+                                              take(record->record);
+                                            } else {
+                                              ++malformed;
+                                            }
+                                          },
+                                      .from_ns = from.time_since_epoch().count()});
   if (!read) return tl::unexpected(read.error());
   Damage damage{*read};
   damage.damaged += malformed;
@@ -217,15 +219,16 @@ Result<Damage> read_records(const std::filesystem::path& file,
 
 /// A robot that is started again takes its position from here. A file that does not exist is no
 /// error: the robot had not recorded a step.
-Result<std::vector<Step>> last_steps(const std::filesystem::path& file) {
+Result<std::vector<Step>> last_steps(const std::filesystem::path& file, UtcTime from) {
   std::vector<Step> last;
   if (!std::filesystem::exists(file)) return last;
-  const auto read = read_records(file, [&](const Record& record) {
+  const auto keep_steps = [&](const Record& record) {
     const auto* step = std::get_if<Step>(&record);
     if (step == nullptr) return;
     if (last.size() == 2) last.erase(last.begin());
     last.push_back(*step);
-  });
+  };
+  const auto read = read_records(file, keep_steps, from);
   if (!read) return tl::unexpected(read.error());
   return last;
 }

@@ -116,14 +116,17 @@ struct Damage : mcap::Damage {
 /// The robot-log record in a message of any recording; nothing if the message is not one.
 std::optional<RobotRecord> decode(const mcap::Message& message, const mcap::Channel& channel);
 
-/// Calls `take` for every readable record in turn. Fails only if the file cannot be read or is not
-/// a robot log at all.
+/// Calls `take` for every readable record in turn that is not older than `from`. Fails only if the
+/// file cannot be read or is not a robot log at all.
 Result<Damage> read_records(const std::filesystem::path& file,
-                            const std::function<void(const Record&)>& take);
+                            const std::function<void(const Record&)>& take,
+                            UtcTime from = UtcTime::min());
 
 /// The last two steps a robot recorded, the newest last; fewer if it recorded no more, or has no
-/// file.
-Result<std::vector<Step>> last_steps(const std::filesystem::path& file);
+/// file. Parts of the file from before `from` are passed over without being unpacked: a caller that
+/// must not wait names a recent time, as a log grows by some megabytes an hour.
+Result<std::vector<Step>> last_steps(const std::filesystem::path& file,
+                                     UtcTime from = UtcTime::min());
 
 /// All records of a file and what was wrong with it.
 struct File : Damage {

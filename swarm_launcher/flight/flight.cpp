@@ -29,6 +29,8 @@ constexpr Duration kLogsTimeout = std::chrono::minutes(3);
 
 constexpr std::ptrdiff_t kMostNamed = 10;  // files that lack something
 constexpr Duration kFilesEvery = std::chrono::seconds(1);
+// The robot of a process that has just died or fallen silent made its last step within this time.
+constexpr Duration kRecent = std::chrono::seconds(60);
 // Thousands of events that wait for the disk.
 constexpr std::size_t kEventsBytes = 4U << 20U;
 
@@ -47,7 +49,9 @@ class SocketRequests final : public ControlRequests {
 
 LoggedPosition positions_in_logs(const PreparedRun& run) {
   return [&run](RobotId robot) -> std::optional<LastKnown> {
-    const auto steps = robot_log::last_steps(robot_log::file_of(run.dir(), robot));
+    const std::filesystem::path file = robot_log::file_of(run.dir(), robot);
+    auto steps = robot_log::last_steps(file, utc_now() - kRecent);
+    if (steps && steps->empty()) steps = robot_log::last_steps(file);
     if (!steps) return std::nullopt;
     return last_known(*steps, run.options().mission);
   };

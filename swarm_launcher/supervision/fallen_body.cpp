@@ -7,8 +7,6 @@
 namespace swarm::launcher {
 namespace {
 
-// Control periods for which a driver executes a command.
-constexpr double kPeriodsOfACommand = 2.0;
 /// Two log records this many periods apart or less are taken as consecutive.
 constexpr double kPeriodsOfATick = 3.0;
 
@@ -45,7 +43,7 @@ Circle circle_of_fallen(const LastKnown& known, UtcTime silent_since, const Miss
                         RobotId robot) {
   const BodySpec& body = body_of(mission.robots, robot);
   const double period_s = 1.0 / mission.control.rate_hz;
-  const double command_s = kPeriodsOfACommand * period_s;
+  const double command_s = to_seconds(robot_log::command_lifetime(from_seconds(period_s)));
   const double age_s = std::max(0.0, to_seconds(silent_since - known.at));
   Circle circle{.center_m = known.position_m, .radius_m = body.radius_m};
   if (known.at_rest) return circle;

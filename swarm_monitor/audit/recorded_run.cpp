@@ -102,6 +102,7 @@ void TrackMaker::take(const robot_log::Step& step) {
                            .plan_time_s = step.plan_time_s,
                            .reference_x_m = step.reference_x_m,
                            .reference_y_m = step.reference_y_m});
+  last_step_ = step;
 }
 
 void TrackMaker::take(const robot_log::Estimate& estimate) {
@@ -117,9 +118,22 @@ void TrackMaker::take(const robot_log::Note& note) {
   if (note.code == "exit") track_.ended_gracefully = true;
 }
 
+/// The body of a robot whose process died drives on until its last command runs out. A simulation,
+/// which has no period here, records that itself.
+void TrackMaker::let_body_come_to_rest() {
+  const robot_log::Step last = std::exchange(last_step_, {});
+  const bool drives_on = !track_.ended_gracefully && last.velocity_mps != Vec2::Zero();
+  if (period_ == Duration::zero() || track_.points.empty() || !drives_on) return;
+  TrackPoint rest = track_.points.back();
+  rest.time_s += to_seconds(robot_log::command_lifetime(period_));
+  rest.position_m = robot_log::rest_position_m(last, period_);
+  track_.points.push_back(rest);
+}
+
 /// Adds the newest counters of an incarnation to the track: link statistics are cumulative within
 /// an incarnation, so only the last record counts.
 void TrackMaker::close_incarnation() {
+  let_body_come_to_rest();
   track_.state_age.merge(incarnation_.state_age);
   track_.states_sent += incarnation_.states_sent;
   track_.refused +=

@@ -51,14 +51,14 @@ struct Track {
   /// The body of a dead robot stays at the last point until this time; a time before the last
   /// point means that there is no body. Set by lay_fallen_bodies().
   double body_until_s = 0.0;
-  std::string unreadable{};       ///< why there is no robot log; empty if there is one
-  std::uint64_t damaged = 0;      ///< unreadable stretches of the file, and steps back in time
-  std::uint64_t lost = 0;         ///< records that the numbering of the log lacks
-  std::uint64_t late_ticks = 0;   ///< that began late, and that were missed
+  std::string unreadable{};        ///< why there is no robot log; empty if there is one
+  std::uint64_t damaged = 0;       ///< unreadable stretches of the file, and steps back in time
+  std::uint64_t lost = 0;          ///< records that the numbering of the log lacks
+  std::uint64_t late_ticks = 0;    ///< that began late, and that were missed
   std::uint64_t missed_ticks = 0;  ///< that have no step
-  std::uint64_t refused = 0;      ///< messages, over all incarnations
-  Histogram state_age{};          ///< over all incarnations
-  std::uint64_t states_sent = 0;  ///< over all incarnations
+  std::uint64_t refused = 0;       ///< messages, over all incarnations
+  Histogram state_age{};           ///< over all incarnations
+  std::uint64_t states_sent = 0;   ///< over all incarnations
   std::vector<robot_log::Note> notes{};
 };
 
@@ -121,11 +121,13 @@ class TrackMaker {
 
  private:
   void close_incarnation();
+  void let_body_come_to_rest();
 
   UtcTime origin_;
   Duration period_;
   Track track_{};
   robot_log::LinkStats incarnation_{};  // newest counters of the current incarnation
+  robot_log::Step last_step_{};         // of the current incarnation
 };
 
 }  // namespace swarm::monitor

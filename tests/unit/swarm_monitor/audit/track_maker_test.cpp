@@ -41,6 +41,36 @@ TEST(TrackMaker, KeepsTheNewestCountersOfEachIncarnation) {
   EXPECT_EQ(track.radius_m, 0.3) << "that of the last incarnation";
 }
 
+robot_log::Step driving(double time_s, const Vec2& position_m) {
+  return {.stamp = at(time_s), .position_m = position_m, .velocity_mps = {1.0, -0.5}};
+}
+
+TEST(TrackMaker, HasTheBodyOfADeadProcessDriveOnUntilItsCommandRunsOut) {
+  constexpr Duration kPeriod = std::chrono::milliseconds(100);
+  TrackMaker maker(RobotId(0), at(0), kPeriod);
+  maker.take(robot_log::Header{});
+  maker.take(driving(5.0, {3, 4}));  // killed after this step,
+  maker.take(robot_log::Header{});
+  maker.take(driving(7.0, {3.2, 3.9}));  // and again after this one
+
+  const Track track = maker.finish();
+
+  ASSERT_EQ(track.points.size(), 4U);
+  EXPECT_DOUBLE_EQ(track.points[1].time_s, 5.2);
+  EXPECT_TRUE(track.points[1].position_m.isApprox(Vec2(3.2, 3.9)));
+  EXPECT_DOUBLE_EQ(track.points[3].time_s, 7.2);
+  EXPECT_TRUE(track.points[3].position_m.isApprox(Vec2(3.4, 3.8)));
+}
+
+TEST(TrackMaker, EndsTheTrackOfAProcessThatEndedByItselfAtItsLastStep) {
+  TrackMaker maker(RobotId(0), at(0), std::chrono::milliseconds(100));
+  maker.take(robot_log::Header{});
+  maker.take(driving(5.0, {3, 4}));
+  maker.take(robot_log::Note{.stamp = at(5.0), .code = "exit", .text = "graceful end"});
+
+  EXPECT_EQ(maker.finish().points.size(), 1U);
+}
+
 TEST(TrackMaker, AddsUpCountersBeyond32Bits) {
   TrackMaker maker(RobotId(0), at(0));
   for (int i = 0; i < 3; ++i) {
