@@ -63,7 +63,7 @@ freeze() {
   kill -CONT "$@" 2>/dev/null || true  # it may have been killed meanwhile
 }
 
-# The robots of a host that is dropped are lost; both halves keep apart all the same.
+# The other host is silent for less time than after which it is given up, so all robots are to arrive.
 cut_host() {
   mkdir "$run.hosts"
   make_hosts "$run.hosts" 0 5
@@ -73,7 +73,7 @@ cut_host() {
   echo 1 >&3
   sleep 30
   echo 0 >&3
-  finish $((robots / 2))
+  finish "$robots"
   wait "$joined" || true
   joined=
   remove_hosts
