@@ -387,24 +387,5 @@ TEST_F(RobotLogFile, CanBeWrittenManyRecordsAtATime) {
   EXPECT_EQ(records_in_file(), 18U);
 }
 
-TEST_F(RobotLogFile, HasItsLastStepsReadFromATimeOn) {
-  write(steps(50));
-
-  const auto all = last_steps(file_);
-  const auto recent = last_steps(file_, step_number(47).stamp);
-  const auto one = last_steps(file_, step_number(49).stamp);
-  const auto none = last_steps(file_, step_number(50).stamp);
-
-  ASSERT_TRUE(all && recent && one && none);
-  ASSERT_EQ(all->size(), 2U);
-  expect_step(all->front(), step_number(48));
-  expect_step(all->back(), step_number(49));
-  ASSERT_EQ(recent->size(), 2U);
-  expect_step(recent->front(), step_number(48));
-  EXPECT_EQ(one->size(), 1U);
-  EXPECT_TRUE(none->empty());
-  EXPECT_TRUE(last_steps(folder_ / "none.mcap")->empty());
-}
-
 }  // namespace
 }  // namespace swarm::robot_log
