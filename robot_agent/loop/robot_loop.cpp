@@ -141,6 +141,7 @@ void RobotLoop::update_fault(bool has_position, const Driver& driver) {
   if (ticks_ % kTicksPerEstimate != 0 || output_.estimated.empty()) return;
   // Each neighbour within reach in turn: the error of estimates is a sample of all pairs.
   const Neighbour& one = output_.estimated[ticks_ / kTicksPerEstimate % output_.estimated.size()];
+  if (one.is_silent) return;  // a disc in which it may be, not an estimate of where it is
   log.append(robot_log::Estimate{
       .stamp = tick.utc_now, .neighbour = one.robot, .position_m = one.position_m});
 }

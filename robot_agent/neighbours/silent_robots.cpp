@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
+#include "swarm_core/mission/scene_bodies.hpp"
 #include "swarmflow/mission/body_limits.hpp"
 
 namespace swarm::agent {
@@ -32,29 +34,33 @@ void SilentRobots::on_state(const State& state) {
   if (!covers(state.robot)) return;
   if (index_of_[id] == kNone) {
     index_of_[id] = static_cast<std::uint32_t>(received_.size());
-    received_.push_back(state);
-  } else if (State& last = received_[index_of_[id]]; last.as_of < state.as_of) {
-    last = state;
+    received_.push_back({state, state.as_of});
+  } else if (Received& robot = received_[index_of_[id]]; robot.last.as_of < state.as_of) {
+    robot = {state, state.as_of};
   }
 }
 
 /// Robots that are well elsewhere are forgotten; the others close ranks, in their order. A robot
 /// whose body is an obstacle is kept: the launcher may clear the body as soon as it receives the
-/// robot, before the robot's next state arrives here.
-void SilentRobots::update(SteadyTime now, const Whereabouts& whereabouts) {
+/// robot, before the robot's next state arrives here, or may know little of where the body is.
+void SilentRobots::update(SteadyTime now, const Whereabouts& whereabouts,
+                          const ReceivesAt& receives_at) {
   silent_.clear();
   std::uint32_t kept = 0;
-  for (const State& state : received_) {
+  for (Received& robot : received_) {
+    const State& state = robot.last;
+    if (receives_at && !receives_at(state.position_m)) robot.missed_since = now;
+    robot.is_silent |= now - robot.missed_since > options_.expected_silence;
     const Duration age = now - state.as_of;
-    const bool is_silent = age > options_.expected_silence;
-    if (is_silent && whereabouts.is_well(state.robot, state.as_of, now)) {
+    if (age > options_.expected_silence && whereabouts.is_well(state.robot, state.as_of, now)) {
       index_of_[state.robot.value()] = kNone;
       continue;
     }
-    if (is_silent && !whereabouts.is_obstacle(state.robot))
-      silent_.push_back(possible_positions(state, age));
+    const std::optional<double> body_m = whereabouts.obstacle_radius_m(state.robot);
+    const bool is_there = body_m && *body_m <= options_.frozen_body_radius_m[state.robot.value()];
+    if (robot.is_silent && !is_there) silent_.push_back(possible_positions(state, age));
     index_of_[state.robot.value()] = kept;
-    received_[kept++] = state;
+    received_[kept++] = robot;
   }
   received_.resize(kept);
 }
@@ -71,11 +77,15 @@ SilentRobot SilentRobots::possible_positions(const State& state, Duration age) c
 SilenceOptions silence_options(const Mission& mission, RobotId first, std::uint32_t count) {
   const Duration period = from_seconds(1.0 / mission.control.rate_hz);
   const Duration silence = from_seconds(mission.link.send_interval_max_s) + 2 * period;
+  std::vector<double> frozen_m;
+  for (std::uint32_t i = 0; i < mission.robots.count; ++i)
+    frozen_m.push_back(frozen_body_radius_m(mission, RobotId(i)));
   return {
       .fleet = Fleet(mission.robots),
       .robots = mission.robots.count,
       .first_own = first.value(),
       .own = count,
+      .frozen_body_radius_m = std::move(frozen_m),
       .expected_silence = silence,
       .dead_man = from_seconds(mission.timing.planner_silence_s + largest_lag_s(mission.robots)) +
                   silence + 2 * period};

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -22,6 +23,8 @@ struct SilenceOptions {
   std::uint32_t robots = 0;
   std::uint32_t first_own = 0;  ///< the robots of this process are never silent to each other
   std::uint32_t own = 0;        ///< number of them
+  /// By robot: up to this radius, the circle of its body shows that it froze.
+  std::vector<double> frozen_body_radius_m{};
   Duration expected_silence{};  ///< σ: a healthy robot publishes at least this often
   Duration dead_man{};          ///< D: a robot that is cut off stands at the latest after this time
 };
@@ -36,8 +39,17 @@ struct SilentRobot {
 
 /// The robots that were received once, by this process, and are not any more. Silence is never free
 /// space: a silent robot is at each of its possible positions until it is received again, from
-/// wherever, or the launcher receives it elsewhere; while its body is an obstacle of the scene, it
-/// is there (see Whereabouts).
+/// wherever, or the launcher receives it elsewhere.
+///
+/// While its body is an obstacle of the scene, it is there (see Whereabouts). That obstacle is a
+/// circle around the end of the robot's log, where the robot froze. A circle wider than
+/// frozen_body_radius_m is made of the last status alone: the robot may have been cut off and have
+/// driven on, and is silent as without the obstacle.
+///
+/// A robot whose last state lies in a cell that the process does not receive has not fallen silent:
+/// it has left, or was left behind, and is received again before it is near. It is silent once the
+/// process has received that cell for σ, and not the robot. A disc that exists stays, whatever the
+/// process receives.
 ///
 /// A robot whose last state has position p is, at age α, within
 ///
@@ -82,8 +94,11 @@ class SilentRobots {
   };
   void on_state(const State& state);
 
+  /// Whether the states of a robot at a position are received. Empty: everywhere.
+  using ReceivesAt = std::function<bool(const Vec2& position_m)>;
+
   /// Finds those that are silent now, once a tick. O(robots received and not cleared).
-  void update(SteadyTime now, const Whereabouts& whereabouts);
+  void update(SteadyTime now, const Whereabouts& whereabouts, const ReceivesAt& receives_at = {});
 
   /// Whether a robot is looked after here: not one of this process, whose robots share its fate.
   bool covers(RobotId robot) const {
@@ -96,10 +111,15 @@ class SilentRobots {
   std::span<const SilentRobot> all() const { return silent_; }
 
  private:
+  struct Received {
+    State last;
+    SteadyTime missed_since;  // its cell has been received since then, but not the robot
+    bool is_silent = false;
+  };
   SilentRobot possible_positions(const State& state, Duration age) const;
 
   SilenceOptions options_;
-  std::vector<State> received_;          // of each robot the last state
+  std::vector<Received> received_;
   std::vector<std::uint32_t> index_of_;  // in received_, by robot; kNone: not received
   std::vector<SilentRobot> silent_;
 };

@@ -3,6 +3,7 @@
 #include "robot_agent/neighbours/whereabouts.hpp"
 
 #include <algorithm>
+#include <variant>
 
 #include "swarm_core/mission/supervision_times.hpp"
 
@@ -34,13 +35,17 @@ void Whereabouts::on_beat(const link::LauncherBeat& beat, SteadyTime now) {
 void Whereabouts::on_scene(const Scene& scene) {
   bodies_.clear();
   for (const SceneObstacle& obstacle : scene.obstacles) {
-    if (obstacle.owner) bodies_.push_back(*obstacle.owner);
+    if (!obstacle.owner) continue;
+    const auto* circle = std::get_if<Circle>(&obstacle.shape);
+    bodies_.push_back({*obstacle.owner, circle != nullptr ? circle->radius_m : 0.0});
   }
-  std::sort(bodies_.begin(), bodies_.end());
+  std::ranges::sort(bodies_, {}, &Body::robot);
 }
 
-bool Whereabouts::is_obstacle(RobotId robot) const {
-  return std::binary_search(bodies_.begin(), bodies_.end(), robot);
+std::optional<double> Whereabouts::obstacle_radius_m(RobotId robot) const {
+  const auto at = std::ranges::lower_bound(bodies_, robot, {}, &Body::robot);
+  if (at == bodies_.end() || at->robot != robot) return std::nullopt;
+  return at->radius_m;
 }
 
 bool Whereabouts::is_well(RobotId robot, SteadyTime last_state, SteadyTime now) const {

@@ -39,7 +39,9 @@ class Whereabouts {
   void on_scene(const Scene& scene);
 
   /// Whether a robot's body is an obstacle of the scene.
-  bool is_obstacle(RobotId robot) const;
+  bool is_obstacle(RobotId robot) const { return obstacle_radius_m(robot).has_value(); }
+  /// The radius of the circle that it is in then; empty: it is no obstacle. O(log bodies).
+  std::optional<double> obstacle_radius_m(RobotId robot) const;
   /// Whether the launcher has received a robot whose last state received here was measured at
   /// `last_state` since then: it is well, somewhere else. This takes `healthy_after` of beats
   /// without a gap up to now, none of which lists the robot.
@@ -62,7 +64,11 @@ class Whereabouts {
   std::uint64_t sequence_ = 0;
   std::uint64_t refused_ = 0;
   std::vector<SteadyTime> listed_at_;  // by robot: the last beat that lists it
-  std::vector<RobotId> bodies_;        // sorted
+  struct Body {
+    RobotId robot;
+    double radius_m;
+  };
+  std::vector<Body> bodies_;  // sorted by robot
 };
 
 /// The options of a mission. The launcher reports a robot as silent `launcher_silence` after its

@@ -97,7 +97,8 @@ void ProcessLoop::find_silent(SteadyTime now) {
                       .as_of = state.report.as_of,
                       .position_m = state.report.position_m});
   }
-  silent_.update(now, whereabouts_);
+  silent_.update(now, whereabouts_,
+                 [this](const Vec2& position_m) { return bus_.states->receives_at(position_m); });
 }
 
 /// Whether the robots may move at all. None does before the start: processes are still starting,

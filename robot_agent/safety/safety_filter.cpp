@@ -52,8 +52,10 @@ SafetyFilter::SafetyFilter(const World& world, Shared<SafetyOptions> options)
     : world_(world), options_(std::move(options)), fresh_(pace(0.0)) {}
 
 /// A half-plane for each convex part in reach and for the four bounds of the world: the surface gap
-/// above the margin may be closed within the 2Δt that a command lasts, plus the lag.
-[[gnu::hot]] void SafetyFilter::collect_obstacles(const Vec2& position_m, Lines& lines) const {
+/// above the margin may be closed within the 2Δt that a command lasts, plus the lag. A robot inside
+/// the margin withdraws; one that `stands` no faster than the obstacle comes.
+[[gnu::hot]] void SafetyFilter::collect_obstacles(const Vec2& position_m, Lines& lines,
+                                                  bool stands) const {
   const double horizon_s = 2.0 * to_seconds(options_->period) + options_->lag_s;
   // Farther surfaces cannot bound the velocity: their bound would be above v_max.
   const double reach_m = options_->speed_max_mps * horizon_s + options_->obstacle_margin_m;
@@ -62,8 +64,10 @@ SafetyFilter::SafetyFilter(const World& world, Shared<SafetyOptions> options)
     const double bound = (surface_gap_m - options_->obstacle_margin_m) / horizon_s - coming_mps;
     // A robot inside the margin withdraws at 0.9 v_max: a half-plane that asks for more might not
     // meet the disc ‖u‖ ≤ v_max, and without a solution the robot would stop.
+    const double fastest_mps = kWithdraw * options_->speed_max_mps;
+    const double withdraws_mps = stands ? std::min(coming_mps, fastest_mps) : fastest_mps;
     lines.make_room(1);
-    lines.buffer[lines.count++] = {towards, std::max(bound, -kWithdraw * options_->speed_max_mps)};
+    lines.buffer[lines.count++] = {towards, std::max(bound, -withdraws_mps)};
   };
   const double searched_m = options_->radius_m + reach_m + world_.fastest_mps() * horizon_s;
   world_.convex_boxes().for_each_within({position_m, position_m}, searched_m, [&](std::uint32_t i) {
@@ -256,7 +260,7 @@ std::optional<Vec2> SafetyFilter::least_violation(const Vec2& desired_mps, Relax
 
 Vec2 SafetyFilter::stand(const Vec2& position_m, std::span<const Neighbour> neighbours) const {
   Lines& lines = empty_lines();
-  collect_obstacles(position_m, lines);
+  collect_obstacles(position_m, lines, true);
   collect_approaching(position_m, neighbours, lines);
   lines.bodies = lines.count;
   return nearest(Vec2::Zero(), lines);
@@ -268,7 +272,7 @@ Vec2 SafetyFilter::stand(const Vec2& position_m, std::span<const Neighbour> neig
                                        std::span<const Neighbour> neighbours,
                                        bool gives_way) const {
   Lines& lines = empty_lines();
-  collect_obstacles(position_m, lines);
+  collect_obstacles(position_m, lines, false);
   collect_neighbours(position_m, neighbours, lines);
   const Vec2 u = nearest(desired_mps, lines);
   const double desired = desired_mps.norm();

@@ -86,7 +86,9 @@ class SafetyFilter {
               std::span<const Neighbour> neighbours, bool gives_way = false) const;
 
   /// For a robot that must not move of its own (SilentRobots): the velocity nearest to zero that
-  /// obstacles leave, and neighbours that approach by a state no older than a command lasts.
+  /// obstacles leave which come, and neighbours that approach by a state no older than a command
+  /// lasts. An obstacle at rest moves no robot, not even one inside its margin: it may be no more
+  /// than the circle in which the body of another silent robot is.
   /// Towards robots that receive it and obey it is zero: they close at most at γ (gap − m) / (2T),
   /// for which the second line leaves room. O(obstacles in reach + neighbours).
   Vec2 stand(const Vec2& position_m, std::span<const Neighbour> neighbours) const;
@@ -104,7 +106,7 @@ class SafetyFilter {
   Pace pace(double information_age_s) const;
   struct Lines;
   static Lines& empty_lines();  // of the calling thread
-  void collect_obstacles(const Vec2& position_m, Lines& lines) const;
+  void collect_obstacles(const Vec2& position_m, Lines& lines, bool stands) const;
   void collect_neighbours(const Vec2& position_m, std::span<const Neighbour> neighbours,
                           Lines& lines) const;
   void collect_approaching(const Vec2& position_m, std::span<const Neighbour> neighbours,

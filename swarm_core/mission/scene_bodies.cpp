@@ -26,6 +26,17 @@ Scene without_bodies_of(Scene scene, RobotId first, std::uint32_t robots) {
   return scene;
 }
 
+double frozen_body_radius_m(const Mission& mission, RobotId robot) {
+  const BodySpec& body = body_of(mission.robots, robot);
+  const double drives_s = 1.0 / mission.link.status_hz + 2.0 / mission.control.rate_hz;
+  const double fastest_mps = body.speed_max_mps;
+  const double brakes_m = body.model == "single_integrator"
+                              ? 0.0
+                              : fastest_mps * fastest_mps / (2.0 * body.acceleration_max_mps2);
+  constexpr double kRounding_m = 1e-6;
+  return body.radius_m + fastest_mps * drives_s + brakes_m + kRounding_m;
+}
+
 // Follows the scenes in order of time. A body that is missing from a scene was cleared at that
 // scene; one that is present and not open yet begins there. A later shape of an open body replaces
 // the earlier one.

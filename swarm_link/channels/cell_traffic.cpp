@@ -29,6 +29,10 @@ std::span<const Cell> CellInterest::update(std::span<const Vec2> positions_m) {
   return wanted_;
 }
 
+bool CellInterest::covers(const Vec2& position_m) const {
+  return std::ranges::binary_search(wanted_, cell_of(position_m, options_.cell_size_m));
+}
+
 // A robot that returns to the cell it has left needs no second copy.
 std::optional<Cell> LeftCells::update(std::uint32_t robot, const Cell& cell) {
   const auto [found, is_new] = tracks_.try_emplace(robot, Track{.cell = cell, .left = cell});

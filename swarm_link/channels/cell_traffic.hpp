@@ -27,6 +27,9 @@ class CellInterest {
   /// until the next call.
   std::span<const Cell> update(std::span<const Vec2> positions_m);
 
+  /// Whether the last update() wanted the cell of this position. O(log cells).
+  bool covers(const Vec2& position_m) const;
+
  private:
   CellOptions options_;
   std::vector<Cell> wanted_;  ///< sorted

@@ -26,6 +26,10 @@ class StateChannel {
   /// leaves those they no longer need (with hysteresis).
   virtual void listen_around(std::span<const Vec2> positions_m) = 0;
 
+  /// Whether the states of a robot at this position are received: its cell is among those that
+  /// the last listen_around() needs.
+  virtual bool receives_at(const Vec2& position_m) const = 0;
+
   /// Appends the cell batches received since the last call, including those that this process sent
   /// itself: robots of one process receive each other over the bus like all others.
   virtual std::size_t take(std::vector<CellStatesMessage>& out) = 0;

@@ -64,6 +64,7 @@ class TopicChannel final : public StateChannel {
     retire_writers();
   }
 
+  bool receives_at(const Vec2& position_m) const override { return interest_.covers(position_m); }
   bool receives_all() const override { return receives_all_; }
 
   std::size_t take(std::vector<CellStatesMessage>& out) override {

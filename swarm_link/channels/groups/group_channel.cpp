@@ -128,6 +128,7 @@ class GroupChannel final : public StateChannel, private DatagramSink {
     receives_all_ = joined_.size() == groups_.size();
   }
 
+  bool receives_at(const Vec2& position_m) const override { return interest_.covers(position_m); }
   bool receives_all() const override { return receives_all_; }
   bool lacks_files() const override { return lacks_files_; }
 

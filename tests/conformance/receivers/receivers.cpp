@@ -45,6 +45,7 @@ class QueueChannel final : public StateChannel {
   explicit QueueChannel(Queue<CellStatesMessage> queue) : reader_(std::move(queue)) {}
   std::size_t publish(std::span<const RobotStateMessage>) override { return 0; }
   void listen_around(std::span<const Vec2>) override {}
+  bool receives_at(const Vec2&) const override { return true; }
   std::size_t take(std::vector<CellStatesMessage>& out) override { return reader_.take(out); }
   std::uint64_t undecodable() const override { return 0; }
 

@@ -48,6 +48,7 @@ class QueueChannel final : public link::StateChannel {
   explicit QueueChannel(Queue<link::CellStatesMessage>& queue) : queue_(queue), reader_(queue) {}
   std::size_t publish(std::span<const link::RobotStateMessage>) override { return 0; }
   void listen_around(std::span<const Vec2>) override {}
+  bool receives_at(const Vec2&) const override { return true; }
   std::size_t take(std::vector<link::CellStatesMessage>& out) override { return reader_.take(out); }
   std::uint64_t undecodable() const override { return queue_.undecodable; }
 

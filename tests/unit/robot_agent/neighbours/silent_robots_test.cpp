@@ -3,6 +3,7 @@
 #include "robot_agent/neighbours/silent_robots.hpp"
 
 #include <chrono>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -21,6 +22,7 @@ SilenceOptions options() {
   return {.fleet = Fleet(Fleet::Body{0.2, 1.5}),
           .robots = 5,
           .own = 1,
+          .frozen_body_radius_m = std::vector(5, 2.0),
           .expected_silence = milliseconds(700),
           .dead_man = milliseconds(2200)};
 }
@@ -80,7 +82,7 @@ TEST(SilentRobots, AreClearedByTheirBodyInTheSceneAndByTheLaunchersBeats) {
   SilentRobots sut(options());
   Whereabouts whereabouts(clears());
   Scene scene = first_scene(0);
-  scene.obstacles.push_back({.id = 0, .owner = RobotId(3), .shape = Circle{{2, 0}, 0.3}});
+  scene.obstacles.push_back({.id = 0, .owner = RobotId(3), .shape = Circle{{2, 0}, 0.2}});
   for (const std::uint32_t robot : {2U, 3U, 4U}) sut.on_state(state(robot, 0, {2, 0}));
   whereabouts.on_scene(scene);
   sut.update(at(1000), whereabouts);
@@ -102,6 +104,53 @@ TEST(SilentRobots, AreClearedByTheirBodyInTheSceneAndByTheLaunchersBeats) {
   EXPECT_EQ(sut.all()[0].robot, RobotId(4)) << "which the launcher does not receive either";
 }
 
+TEST(SilentRobots, StaySilentWhileTheirBodyIsOnlyKnownToBeInAWideCircle) {
+  for (const double radius_m : {2.0, 2.1}) {
+    SilentRobots sut(options());  // up to 2 m, a circle shows that the robot froze
+    Whereabouts whereabouts(clears());
+    Scene scene = first_scene(0);
+    scene.obstacles.push_back({.id = 0, .owner = RobotId(3), .shape = Circle{{2, 0}, radius_m}});
+    whereabouts.on_scene(scene);
+    sut.on_state(state(3, 0, {2, 0}));
+
+    sut.update(at(1000), whereabouts);
+
+    EXPECT_EQ(sut.all().size(), radius_m > 2.0 ? 1U : 0U) << radius_m;
+  }
+}
+
+// Robot 3 was received last from a cell that the process does not receive any more.
+TEST(SilentRobots, AreNotThoseThatLeftTheCellsThatAreReceived) {
+  SilentRobots sut(options());
+  const Whereabouts nothing(clears());
+  double received_up_to_m = 5.0;
+  const auto receives_at = [&](const Vec2& position_m) {
+    return position_m.x() < received_up_to_m;
+  };
+  sut.on_state(state(3, 0, {6, 0}));
+  sut.on_state(state(4, 0, {4, 0}));
+
+  sut.update(at(2000), nothing, receives_at);
+  ASSERT_EQ(sut.all().size(), 1U);
+  EXPECT_EQ(sut.all()[0].robot, RobotId(4));
+
+  received_up_to_m = 7.0;
+  sut.update(at(2600), nothing, receives_at);
+  EXPECT_EQ(sut.all().size(), 1U) << "a healthy robot need not have published since";
+  sut.update(at(2800), nothing, receives_at);
+  ASSERT_EQ(sut.all().size(), 2U) << "its cell is received again, but it is not";
+  EXPECT_EQ(sut.all()[0].robot, RobotId(3));
+  EXPECT_NEAR(sut.all()[0].radius_m, 0.2 + 1.5 * 2.8, 1e-9) << "since its last state";
+
+  received_up_to_m = 0.0;
+  sut.update(at(2900), nothing, receives_at);
+  EXPECT_EQ(sut.all().size(), 2U) << "retreating from a disc does not end it";
+
+  sut.on_state(state(3, 2900, {6, 0}));
+  sut.update(at(4000), nothing, receives_at);
+  EXPECT_EQ(sut.all().size(), 1U) << "received in between, it has left again";
+}
+
 TEST(SilentRobots, AreNeverThoseOfTheProcessNorUnknownOnes) {
   SilentRobots sut(options());
   const Whereabouts nothing(clears());
@@ -111,7 +160,6 @@ TEST(SilentRobots, AreNeverThoseOfTheProcessNorUnknownOnes) {
   EXPECT_TRUE(sut.all().empty());
 }
 
-// What a neighbour table makes of them.
 /// What a neighbour table makes of them.
 NeighbourOptions table_options() {
   return {.radius_m = 0.2,

@@ -281,5 +281,19 @@ TEST(SafetyFilter, StandingRetreatsOnlyFromOneThatApproachesAndDoesNotKeepOff) {
   EXPECT_EQ(stand(0.2, 1.5, 0.1), Vec2(Vec2::Zero())) << "it may have turned since";
 }
 
+// Both obstacles overlap the robot; the second comes towards it at 0.5 m/s.
+TEST(SafetyFilter, StandingRetreatsOnlyFromObstaclesThatCome) {
+  const Obstacle circle = Circle{{0.5, 0.0}, 1.0};
+  const Vec2 velocity_mps(-0.5, 0.0);
+  const World at_rest = World::make({{-10, -10}, {10, 10}}, {circle}).value();
+  const World comes =
+      World::make({{-10, -10}, {10, 10}}, {circle}, std::span(&velocity_mps, 1)).value();
+
+  EXPECT_EQ(SafetyFilter(at_rest, options()).stand(Vec2::Zero(), {}), Vec2(Vec2::Zero()));
+  EXPECT_NEAR(SafetyFilter(comes, options()).stand(Vec2::Zero(), {}).x(), -0.5, 1e-9);
+  EXPECT_LT(SafetyFilter(at_rest, options()).filter(Vec2::Zero(), Vec2::Zero(), {}).x(), -1.0)
+      << "one that may move withdraws";
+}
+
 }  // namespace
 }  // namespace swarm::agent

@@ -79,6 +79,7 @@ struct SilentSwarm::Robot {
   Vec2 velocity_mps = Vec2::Zero();
   int valid_until_ms = 0;
   int status_ms = 0;
+  Vec2 status_m = Vec2::Zero();
   std::uint32_t sequence = 0;
   std::uint64_t scene_version = 0;
   std::optional<SteadyTime> planner_at{};
@@ -192,6 +193,7 @@ void SilentSwarm::tick(Robot& robot) {
   }
   if (!is_lost(robot) && now_ms_ % kStatusEvery_ms == robot.part.phase_ms) {
     robot.status_ms = now_ms_;
+    robot.status_m = robot.position_m;
   }
 }
 
@@ -212,14 +214,24 @@ bool SilentSwarm::is_lost(const Robot& sender) const {
   return sender.part.cut_off.covers(now_ms_) || sender.part.mute.covers(now_ms_);
 }
 
-/// A circle that covers a body until its last command has run out, as the launcher makes of a log.
+/// A circle that covers a body, as wide as the launcher makes it. Of one that is cut off it knows
+/// the last status: the robot was cut off at most a period later, and drove on until it held. Of
+/// others it reads the log, which ends where the robot froze, but may lack what a process had not
+/// written.
 Circle SilentSwarm::fallen(const Robot& robot) const {
+  constexpr int kHolds_ms = 2000;
+  const bool is_cut_off = robot.part.cut_off.covers(now_ms_);
   const bool drives = now_ms_ < robot.valid_until_ms;
-  const Vec2 half_m = drives ? Vec2(0.0005 * kCommandLasts_ms * robot.velocity_mps) : Vec2::Zero();
-  return {robot.position_m + half_m, kRadius_m + half_m.norm()};
+  if (!is_cut_off && drives) {
+    const Vec2 half_m = 0.0005 * kCommandLasts_ms * robot.velocity_mps;
+    return {robot.position_m + half_m, kRadius_m + half_m.norm()};
+  }
+  const int drives_ms = kStatusEvery_ms + kCommandLasts_ms + (is_cut_off ? kHolds_ms : 0);
+  return {is_cut_off ? robot.status_m : robot.position_m,
+          kRadius_m + 0.001 * drives_ms * kSpeed_mps};
 }
 
-/// The launcher: beats, and the bodies of silent robots, which it places by their logs.
+/// The launcher: beats, and the bodies of silent robots.
 void SilentSwarm::launch() {
   if (now_ms_ % kBeatEvery_ms != 0) return;
   std::vector<RobotId> silent;

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "robot_agent/drivers/simulated_robot.hpp"
+#include "swarm_core/mission/scene_bodies.hpp"
 #include "swarmflow/core/random.hpp"
 
 namespace swarm::launcher {
@@ -99,6 +100,20 @@ TEST(CircleOfFallen, DoesNotTrustAnOldCommand) {
 
   EXPECT_EQ(circle.center_m, Vec2(3, 4));
   EXPECT_NEAR(circle.radius_m, 0.2 + 1.5 * 1.2, 1e-9);
+}
+
+// Robots take a wider circle for that of a robot which may have driven on.
+TEST(CircleOfFallen, ShowsByItsSizeWhetherTheRobotFrozeWhereItsLogEnds) {
+  for (const std::string model : {"single_integrator", "double_integrator", "unicycle"}) {
+    const Mission mission = mission_of(model);
+    const double frozen_m = frozen_body_radius_m(mission, RobotId(0));
+    LastKnown known{.at = at_s(0.0), .position_m = {3, 4}, .command_mps = Vec2(1.5, 0.0)};
+    for (const double age_s : {0.1, 0.5, 3.0, 1000.0}) {
+      EXPECT_LE(circle_of_fallen(known, at_s(age_s), mission, RobotId(0)).radius_m, frozen_m);
+    }
+    known.command_mps.reset();
+    EXPECT_GT(circle_of_fallen(known, at_s(3.0), mission, RobotId(0)).radius_m, frozen_m + 1.0);
+  }
 }
 
 }  // namespace

@@ -81,7 +81,9 @@ TEST(CellInterest, KeepsACellUntilTheRobotIsBeyondTheLeaveMargin) {
   options.communication_radius_m = 1.0;
   CellInterest sut(options);
   EXPECT_EQ(wanted_at(sut, {{22.1, 25.0}}), at_start) << "not joined yet";
+  EXPECT_FALSE(sut.covers({19.9, 25.0}));
   EXPECT_EQ(wanted_at(sut, {{21.9, 25.0}}), west) << "within radius + join margin";
+  EXPECT_TRUE(sut.covers({19.9, 25.0}));
   EXPECT_EQ(wanted_at(sut, {{23.9, 25.0}}), west) << "still within radius + leave margin";
   EXPECT_EQ(wanted_at(sut, {{24.1, 25.0}}), at_start) << "left";
   EXPECT_EQ(wanted_at(sut, {{23.9, 25.0}}), at_start) << "the leave margin does not join";
