@@ -25,8 +25,6 @@
 namespace swarm::launcher {
 namespace {
 
-SteadyTime now() { return std::chrono::steady_clock::now(); }
-
 /// The sums over all flights.
 struct ChaosResult {
   std::uint32_t flights = 0, contacts = 0;
@@ -130,16 +128,18 @@ Result<ExitCode> chaos(const ChaosOptions& options) {
   const ChaosMeans means = find_means(*out);
   Progress progress;
   ChaosResult result;
-  const SteadyTime begin = now();
+  const SteadyTime begin = std::chrono::steady_clock::now();
   do {
-    progress.show("chaos", fmt::format("flight {}, {:.0f} of {:.0f} min, {} failures",
-                                       result.flights + 1, to_seconds(now() - begin) / 60.0,
-                                       options.minutes, result.failures.size()));
+    progress.show("chaos",
+                  fmt::format("flight {}, {:.0f} of {:.0f} min, {} failures", result.flights + 1,
+                              to_seconds(std::chrono::steady_clock::now() - begin) / 60.0,
+                              options.minutes, result.failures.size()));
     auto spec = draw_flight(options.seed + result.flights, options, *mission, means);
     if (auto flown = fly_once(std::move(spec), *out, means, result); !flown) {
       return tl::unexpected(flown.error());
     }
-  } while (to_seconds(now() - begin) < 60.0 * options.minutes && shell::stop_requests() == 0);
+  } while (to_seconds(std::chrono::steady_clock::now() - begin) < 60.0 * options.minutes &&
+           shell::stop_requests() == 0);
   if (options.json) {
     print_json(options, means, result);
   } else {

@@ -3,12 +3,17 @@
 #include "experiments/chaos/host_pair.hpp"
 
 #include <cerrno>
+#include <chrono>
 #include <cstring>
+#include <thread>
 #include <utility>
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <net/if.h>
 #include <sched.h>
+#include <sys/ioctl.h>
+#include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -58,7 +63,30 @@ Result<void> HostPair::set_up() {
            ip(host, {"link", "set", kCable, "up"});
   }
   if (!made) return fail(ErrorCode::kEnvironment, "needs iproute2, for a cable between two hosts");
+  if (!wait_until_running()) {
+    return fail(ErrorCode::kEnvironment, "the cable between two hosts does not come up");
+  }
   return {};
+}
+
+/// The kernel takes up to a second to report a cable as running, and DDS uses no other interfaces.
+bool HostPair::wait_until_running() const {
+  for (int tries = 0; tries < 100; ++tries) {
+    if (is_running(Host::kFirst) && is_running(Host::kSecond)) return true;
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
+  return false;
+}
+
+bool HostPair::is_running(Host host) const {
+  if (!enter(at(host))) return false;
+  const int socket = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  enter(home_);
+  ifreq request{};
+  std::strncpy(request.ifr_name, kCable, sizeof request.ifr_name - 1);
+  const bool is_known = ::ioctl(socket, SIOCGIFFLAGS, &request) == 0;
+  ::close(socket);
+  return is_known && (request.ifr_flags & IFF_RUNNING) != 0;
 }
 
 bool HostPair::ip(Host host, std::vector<std::string> arguments) const {

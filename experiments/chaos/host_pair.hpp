@@ -40,6 +40,8 @@ class HostPair {
   Result<void> set_up();
   /// Executes `ip` with these arguments on a host.
   bool ip(Host host, std::vector<std::string> arguments) const;
+  bool wait_until_running() const;
+  bool is_running(Host host) const;
   int at(Host host) const { return networks_[static_cast<std::size_t>(host)]; }
 
   int home_ = -1;               ///< network of this process
