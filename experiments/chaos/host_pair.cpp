@@ -69,7 +69,8 @@ Result<void> HostPair::set_up() {
   return {};
 }
 
-/// The kernel takes up to a second to report a cable as running, and DDS uses no other interfaces.
+/// The kernel takes up to a second to report a cable as running, and DDS uses only interfaces that
+/// run.
 bool HostPair::wait_until_running() const {
   for (int tries = 0; tries < 100; ++tries) {
     if (is_running(Host::kFirst) && is_running(Host::kSecond)) return true;
@@ -81,12 +82,12 @@ bool HostPair::wait_until_running() const {
 bool HostPair::is_running(Host host) const {
   if (!enter(at(host))) return false;
   const int socket = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-  enter(home_);
+  const bool is_back = enter(home_);
   ifreq request{};
   std::strncpy(request.ifr_name, kCable, sizeof request.ifr_name - 1);
   const bool is_known = ::ioctl(socket, SIOCGIFFLAGS, &request) == 0;
   ::close(socket);
-  return is_known && (request.ifr_flags & IFF_RUNNING) != 0;
+  return is_back && is_known && (request.ifr_flags & IFF_RUNNING) != 0;
 }
 
 bool HostPair::ip(Host host, std::vector<std::string> arguments) const {

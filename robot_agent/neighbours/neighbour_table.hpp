@@ -62,11 +62,12 @@ struct NeighbourOptions {
 /// The robots near us, as known from their published states. Between two state updates the position
 /// of a robot is extrapolated, and `possible_stop_age_s` bounds for how long it may have been
 /// stopped meanwhile. From `expected_silence` on the SilentRobots of the process keep its possible
-/// positions. A table without them lets its radius grow by its largest speed for every second more,
-/// and forgets it after `forget_after`: that is for simulations, in which dead robots are obstacles
-/// at once. In a dense region a robot receives fifty others at every tick: take() is one look-up in
-/// a hash table, at() one SIMD pass over an array, four robots at a time. The same reports in the
-/// same order give the same neighbours in the same order. No allocation once warm.
+/// positions, if it is near. A table without them lets its radius grow by its largest speed for
+/// every second more, and forgets it after `forget_after`: that is for simulations, in which dead
+/// robots are obstacles at once. In a dense region a robot receives fifty others at every tick:
+/// take() is one look-up in a hash table, at() one SIMD pass over an array, four robots at a time.
+/// The same reports in the same order give the same neighbours in the same order. No allocation
+/// once warm.
 class NeighbourTable {
  public:
   explicit NeighbourTable(Shared<NeighbourOptions> options);

@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "swarm_core/base/assert.hpp"
 #include "swarm_core/mission/scene_bodies.hpp"
 #include "swarmflow/mission/body_limits.hpp"
 
@@ -25,6 +26,7 @@ double largest_lag_s(const RobotsSpec& robots) {
 
 SilentRobots::SilentRobots(const SilenceOptions& options)
     : options_(options), index_of_(options.robots, kNone) {
+  SWARM_ASSERT(options.frozen_body_radius_m.size() == options.robots);
   received_.reserve(options.robots);
   silent_.reserve(options.robots);
 }

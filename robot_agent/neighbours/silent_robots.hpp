@@ -42,14 +42,14 @@ struct SilentRobot {
 /// wherever, or the launcher receives it elsewhere.
 ///
 /// While its body is an obstacle of the scene, it is there (see Whereabouts). That obstacle is a
-/// circle around the end of the robot's log, where the robot froze. A circle wider than
+/// circle, by the robot's log around the position at which it froze. A circle wider than
 /// frozen_body_radius_m is made of the last status alone: the robot may have been cut off and have
 /// driven on, and is silent as without the obstacle.
 ///
 /// A robot whose last state lies in a cell that the process does not receive has not fallen silent:
-/// it has left, or was left behind, and is received again before it is near. It is silent once the
-/// process has received that cell for σ, and not the robot. A disc that exists stays, whatever the
-/// process receives.
+/// it has left, or was left behind. If it is healthy, it is received again before it is near. It is
+/// silent once the process has received that cell for σ, and not the robot; its disc has its full
+/// size then. A disc that exists stays, whatever the process receives.
 ///
 /// A robot whose last state has position p is, at age α, within
 ///
@@ -78,8 +78,9 @@ struct SilentRobot {
 /// walls or others, may be overtaken by the disc, and then stand; a silent robot that follows no
 /// protocol can reach those within. One whose states alone are lost drives on, as the launcher
 /// receives it: it keeps off those that it receives, but two of them can meet beyond their discs. A
-/// robot that froze before it was received for the first time is known to the launcher alone, which
-/// makes its body an obstacle.
+/// robot that falls silent before it is received, for the first time or again, is known to the
+/// launcher alone, which makes its body an obstacle: cells are joined half a metre (groups) or six
+/// (topics) beyond the communication radius, and a robot that is cut off can drive farther.
 ///
 /// Shared by the robots of a process. Pure; the time is passed in. No allocation once made.
 class SilentRobots {

@@ -3,6 +3,7 @@
 #include "robot_agent/neighbours/whereabouts.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <variant>
 
 #include "swarm_core/mission/supervision_times.hpp"
@@ -37,7 +38,8 @@ void Whereabouts::on_scene(const Scene& scene) {
   for (const SceneObstacle& obstacle : scene.obstacles) {
     if (!obstacle.owner) continue;
     const auto* circle = std::get_if<Circle>(&obstacle.shape);
-    bodies_.push_back({*obstacle.owner, circle != nullptr ? circle->radius_m : 0.0});
+    constexpr double kUnknown_m = std::numeric_limits<double>::infinity();
+    bodies_.push_back({*obstacle.owner, circle != nullptr ? circle->radius_m : kUnknown_m});
   }
   std::ranges::sort(bodies_, {}, &Body::robot);
 }

@@ -40,7 +40,7 @@ class Whereabouts {
 
   /// Whether a robot's body is an obstacle of the scene.
   bool is_obstacle(RobotId robot) const { return obstacle_radius_m(robot).has_value(); }
-  /// The radius of the circle that it is in then; empty: it is no obstacle. O(log bodies).
+  /// Radius [m] of the circle that covers its body; empty if it is no obstacle. O(log bodies).
   std::optional<double> obstacle_radius_m(RobotId robot) const;
   /// Whether the launcher has received a robot whose last state received here was measured at
   /// `last_state` since then: it is well, somewhere else. This takes `healthy_after` of beats

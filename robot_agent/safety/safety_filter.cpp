@@ -53,7 +53,7 @@ SafetyFilter::SafetyFilter(const World& world, Shared<SafetyOptions> options)
 
 /// A half-plane for each convex part in reach and for the four bounds of the world: the surface gap
 /// above the margin may be closed within the 2Δt that a command lasts, plus the lag. A robot inside
-/// the margin withdraws; one that `stands` no faster than the obstacle comes.
+/// the margin withdraws; if it `stands`, only from obstacles that approach.
 [[gnu::hot]] void SafetyFilter::collect_obstacles(const Vec2& position_m, Lines& lines,
                                                   bool stands) const {
   const double horizon_s = 2.0 * to_seconds(options_->period) + options_->lag_s;
@@ -64,8 +64,8 @@ SafetyFilter::SafetyFilter(const World& world, Shared<SafetyOptions> options)
     const double bound = (surface_gap_m - options_->obstacle_margin_m) / horizon_s - coming_mps;
     // A robot inside the margin withdraws at 0.9 v_max: a half-plane that asks for more might not
     // meet the disc ‖u‖ ≤ v_max, and without a solution the robot would stop.
-    const double fastest_mps = kWithdraw * options_->speed_max_mps;
-    const double withdraws_mps = stands ? std::min(coming_mps, fastest_mps) : fastest_mps;
+    const double withdraws_mps =
+        stands && coming_mps <= 0.0 ? 0.0 : kWithdraw * options_->speed_max_mps;
     lines.make_room(1);
     lines.buffer[lines.count++] = {towards, std::max(bound, -withdraws_mps)};
   };

@@ -86,9 +86,9 @@ class SafetyFilter {
               std::span<const Neighbour> neighbours, bool gives_way = false) const;
 
   /// For a robot that must not move of its own (SilentRobots): the velocity nearest to zero that
-  /// obstacles leave which come, and neighbours that approach by a state no older than a command
-  /// lasts. An obstacle at rest moves no robot, not even one inside its margin: it may be no more
-  /// than the circle in which the body of another silent robot is.
+  /// keeps off approaching obstacles, and off neighbours that approach by a state no older than a
+  /// command lasts. An obstacle at rest moves no robot, not even one inside its margin: it may be a
+  /// circle that is much wider than the body of the silent robot in it.
   /// Towards robots that receive it and obey it is zero: they close at most at γ (gap − m) / (2T),
   /// for which the second line leaves room. O(obstacles in reach + neighbours).
   Vec2 stand(const Vec2& position_m, std::span<const Neighbour> neighbours) const;

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
 // What a flight receives over the bus and the stop channel.
+#include <algorithm>
 #include <cstddef>
 
 #include <fmt/format.h>
@@ -81,8 +82,10 @@ void FlightLoop::on_status(const link::StatusMessage& status, const FlightTime& 
     view_.take(robot);
     const Obedience obedience{robot.mode, status.command_id, stamp};
     confirmations_.on_status(id, obedience, now.utc);
-    fallen_.on_status(
-        id, {.at = stamp, .position_m = {robot.x_m, robot.y_m}, .at_rest = robot.settled});
+    // By the earlier clock: a stamp ahead of ours would make the robot's circle too small.
+    fallen_.on_status(id, {.at = std::min(stamp, now.utc),
+                           .position_m = {robot.x_m, robot.y_m},
+                           .at_rest = robot.settled});
     if (ports_.hosts != nullptr) ports_.hosts->on_status(id, now.steady);
     supervisor_.on_status(
         id, {.has_plan = status.plan_version > 0,

@@ -91,9 +91,11 @@ TEST_F(GroupChannelTest, ReceivesNothingFromCellsItLeft) {
   const Vec2 elsewhere_m(100.0, 100.0);
   const RobotStateMessage state{.robot_id = 7, .x_m = 2.0, .y_m = 2.0};
 
+  EXPECT_TRUE(receives->receives_at(place_m));
   receives->listen_around({&elsewhere_m, 1});
   speaks->publish({&state, 1});
 
+  EXPECT_FALSE(receives->receives_at(place_m));
   EXPECT_TRUE(take(*receives).empty());
 }
 

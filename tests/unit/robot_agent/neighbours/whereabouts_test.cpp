@@ -3,6 +3,8 @@
 #include "robot_agent/neighbours/whereabouts.hpp"
 
 #include <chrono>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -42,6 +44,25 @@ TEST_F(WhereaboutsTest, KnowNothingWithoutTheLauncher) {
   EXPECT_FALSE(is_well(-1000, 0));
   EXPECT_FALSE(sut_.last_beat());
   EXPECT_FALSE(sut_.is_launcher_lost(at(1000))) << "it was never received";
+}
+
+TEST_F(WhereaboutsTest, KnowTheCirclesOfBodies) {
+  Scene scene = first_scene(0);
+  const auto add = [&](std::optional<RobotId> owner, Obstacle shape) {
+    scene.obstacles.push_back({.id = 0, .owner = owner, .shape = std::move(shape)});
+  };
+  add(RobotId(9), Circle{{0, 0}, 0.5});
+  add(std::nullopt, Circle{{0, 0}, 3.0});
+  add(RobotId(3), Circle{{5, 5}, 2.0});
+  add(RobotId(5), Polygon::make({{0, 0}, {1, 0}, {0, 1}}).value());
+
+  sut_.on_scene(scene);
+
+  EXPECT_EQ(sut_.obstacle_radius_m(RobotId(3)), 2.0);
+  EXPECT_EQ(sut_.obstacle_radius_m(RobotId(9)), 0.5);
+  EXPECT_GT(sut_.obstacle_radius_m(RobotId(5)), 1e9) << "no circle: it shows nothing";
+  EXPECT_FALSE(sut_.obstacle_radius_m(RobotId(4)));
+  EXPECT_FALSE(sut_.is_obstacle(RobotId(4)));
 }
 
 TEST_F(WhereaboutsTest, ClearARobotThatAllBeatsForLongEnoughLeaveOut) {

@@ -290,7 +290,7 @@ TEST(SafetyFilter, StandingRetreatsOnlyFromObstaclesThatCome) {
       World::make({{-10, -10}, {10, 10}}, {circle}, std::span(&velocity_mps, 1)).value();
 
   EXPECT_EQ(SafetyFilter(at_rest, options()).stand(Vec2::Zero(), {}), Vec2(Vec2::Zero()));
-  EXPECT_NEAR(SafetyFilter(comes, options()).stand(Vec2::Zero(), {}).x(), -0.5, 1e-9);
+  EXPECT_LT(SafetyFilter(comes, options()).stand(Vec2::Zero(), {}).x(), -1.0);
   EXPECT_LT(SafetyFilter(at_rest, options()).filter(Vec2::Zero(), Vec2::Zero(), {}).x(), -1.0)
       << "one that may move withdraws";
 }

@@ -59,12 +59,13 @@ void add_fault(Rng& rng, RobotPart& part) {
   }
 }
 
-std::vector<RobotPart> random_group(int scene) {
+/// Robots start in a square of twice `half_m`.
+std::vector<RobotPart> random_group(int scene, double half_m = 6.0) {
   Rng rng(seed(scene));
   std::vector<RobotPart> parts;
   const std::size_t robots = 2 + rng() % 7;
   for (int tries = 0; tries < 80 && parts.size() < robots; ++tries) {
-    const Vec2 start(uniform(rng, -6.0, 6.0), uniform(rng, -6.0, 6.0));
+    const Vec2 start(uniform(rng, -half_m, half_m), uniform(rng, -half_m, half_m));
     const bool has_room = std::all_of(parts.begin(), parts.end(), [&](const RobotPart& p) {
       return (p.start_m - start).norm() > kApart_m;
     });
@@ -78,8 +79,9 @@ std::vector<RobotPart> random_group(int scene) {
   return parts;
 }
 
-SilentSwarm::Approach fly(const std::vector<RobotPart>& parts, SilenceRule rule) {
-  SilentSwarm swarm(kYard_m, parts, rule);
+SilentSwarm::Approach fly(const std::vector<RobotPart>& parts, SilenceRule rule,
+                          Cells cells = Cells::kOne) {
+  SilentSwarm swarm(kYard_m, parts, rule, cells);
   return swarm.fly_until(kFlight_ms);
 }
 
@@ -115,6 +117,20 @@ TEST(SilenceScenes, ForgettingSilentRobotsCollides) {
     contacts += fly(random_group(scene), SilenceRule::kForget).counts ? 1 : 0;
   }
   EXPECT_GT(contacts, 0);
+}
+
+// All contacts, those of robots that fell silent before they were received among them: to take a
+// robot that left the cells for silent avoids hardly any.
+TEST(SilenceScenes, ADiscForEachRobotThatLeftTheCellsAvoidsNoContacts) {
+  int elsewhere = 0, silent = 0;
+  for (int scene = 0; scene < scenes(); ++scene) {
+    const std::vector<RobotPart> parts = random_group(scene, 9.0);
+    elsewhere += fly(parts, SilenceRule::kKeep, Cells::kLeftIsElsewhere).gap_m <= 0.0 ? 1 : 0;
+    silent += fly(parts, SilenceRule::kKeep, Cells::kLeftIsSilent).gap_m <= 0.0 ? 1 : 0;
+  }
+  fmt::print("{} scenes with cells: {} contacts, {} with a disc for each\n", scenes(), elsewhere,
+             silent);
+  EXPECT_LE(elsewhere, silent + 1 + scenes() / 1000);
 }
 
 TEST(SilenceScenes, AFrozenRobotIsPassedAndNotDrivenInto) {

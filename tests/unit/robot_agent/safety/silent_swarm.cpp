@@ -6,6 +6,7 @@
 
 #include "swarm_core/mission/scene_bodies.hpp"
 #include "swarm_core/mission/supervision_times.hpp"
+#include "swarm_link/channels/cell_traffic.hpp"
 
 namespace swarm::agent {
 namespace {
@@ -57,6 +58,10 @@ MotionPermit::Options permit(const Mission& mission) {
                              milliseconds(kStatusEvery_ms + 2 * kBeatEvery_ms)};
 }
 
+/// As those of GroupChannelOptions.
+constexpr link::CellOptions kGroupCells{
+    .cell_size_m = 5.0, .communication_radius_m = 4.0, .join_margin_m = 0.5, .leave_margin_m = 1.5};
+
 }  // namespace
 
 struct SilentSwarm::Robot {
@@ -64,6 +69,7 @@ struct SilentSwarm::Robot {
       : id(robot),
         part(what),
         position_m(what.start_m),
+        status_m(what.start_m),
         world(World::make(bounds_m, {}).value()),
         table(neighbours(mission)),
         filter(world, safety()),
@@ -76,10 +82,10 @@ struct SilentSwarm::Robot {
   RobotId id;
   RobotPart part;
   Vec2 position_m;
+  Vec2 status_m;  // of the last status
   Vec2 velocity_mps = Vec2::Zero();
   int valid_until_ms = 0;
   int status_ms = 0;
-  Vec2 status_m = Vec2::Zero();
   std::uint32_t sequence = 0;
   std::uint64_t scene_version = 0;
   std::optional<SteadyTime> planner_at{};
@@ -92,11 +98,15 @@ struct SilentSwarm::Robot {
   MotionPermit permission;
   Whereabouts whereabouts;
   SilentRobots silent;
+  link::CellInterest interest{kGroupCells};
+  link::LeftCells left{};
 };
 
-SilentSwarm::SilentSwarm(const Box& bounds_m, const std::vector<RobotPart>& parts, SilenceRule rule)
+SilentSwarm::SilentSwarm(const Box& bounds_m, const std::vector<RobotPart>& parts, SilenceRule rule,
+                         Cells cells)
     : bounds_m_(bounds_m),
       rule_(rule),
+      cells_(cells),
       scene_(first_scene(0)),
       oracle_({.robots = parts.size(),
                .radius_m = kRadius_m,
@@ -149,7 +159,12 @@ void SilentSwarm::receive(Robot& robot) {
   oracle_.on_tick(robot.id.value(), now, robot.position_m);
   robot.beats.clear();
   robot.socket.clear();
-  robot.silent.update(now, robot.whereabouts);
+  SilentRobots::ReceivesAt receives_at;
+  if (cells_ == Cells::kLeftIsElsewhere) {
+    receives_at = [&](const Vec2& position_m) { return robot.interest.covers(position_m); };
+  }
+  robot.silent.update(now, robot.whereabouts, receives_at);
+  robot.interest.update({&robot.position_m, 1});
 }
 
 /// Straight to the goal, or to another robot, at full speed: the worst method above the filter.
@@ -199,8 +214,14 @@ void SilentSwarm::tick(Robot& robot) {
 
 void SilentSwarm::publish(Robot& robot, const Vec2& velocity_mps) {
   ++robot.sequence;
+  const double size_m = kGroupCells.cell_size_m;
+  const auto left = robot.left.update(robot.id.value(), link::cell_of(robot.position_m, size_m));
+  const auto receives = [&](const Robot& other) {
+    if (cells_ == Cells::kOne || other.interest.covers(robot.position_m)) return true;
+    return left && other.interest.covers(size_m * Vec2(left->x + 0.5, left->y + 0.5));
+  };
   for (const auto& other : robots_) {
-    if (other->id == robot.id) continue;
+    if (other->id == robot.id || !receives(*other)) continue;
     if (is_lost(robot) || other->part.cut_off.covers(now_ms_)) {
       oracle_.on_lost(other->id.value(), robot.id.value());
     } else {

@@ -23,8 +23,7 @@
 #include "tests/unit/robot_agent/safety/contact_oracle.hpp"
 
 /// Robots with the parts that keep them apart, a bus between them and a launcher, all of which may
-/// fail: for tests of what robots do about silence. All are in one cell: each process receives all
-/// states. Time is a number of milliseconds.
+/// fail: for tests of what robots do about silence. Time is a number of milliseconds.
 namespace swarm::agent {
 
 /// From `begin_ms` to `end_ms`; empty by default.
@@ -48,13 +47,22 @@ struct RobotPart {
 /// How silent robots are treated.
 enum class SilenceRule { kKeep, kForget };
 
+/// Which states a process receives, and what of a robot that it received and that left its cells.
+enum class Cells {
+  kOne,              ///< all
+  kLeftIsElsewhere,  ///< those of the cells around it, as by groups; it takes the robot for
+                     ///< elsewhere
+  kLeftIsSilent      ///< the same; it takes the robot for silent
+};
+
 class SilentSwarm {
  public:
   static constexpr double kRadius_m = 0.2;
   static constexpr double kSpeed_mps = 1.5;
   static constexpr double kCommunicationRadius_m = 6.0;
 
-  SilentSwarm(const Box& bounds_m, const std::vector<RobotPart>& parts, SilenceRule rule);
+  SilentSwarm(const Box& bounds_m, const std::vector<RobotPart>& parts, SilenceRule rule,
+              Cells cells = Cells::kOne);
   ~SilentSwarm();
 
   /// Two robots, and when they were nearest.
@@ -83,6 +91,7 @@ class SilentSwarm {
 
   Box bounds_m_;
   SilenceRule rule_;
+  Cells cells_;
   int now_ms_ = 0;
   std::vector<std::unique_ptr<Robot>> robots_;
   link::LauncherBeat beat_;

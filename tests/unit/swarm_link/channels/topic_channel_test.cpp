@@ -80,6 +80,16 @@ TEST_F(TopicChannelTest, HasItsWritersBeforeTheRobotCrosses) {
   }
 }
 
+TEST_F(TopicChannelTest, StatesWhereItReceives) {
+  const Vec2 here(25.0, 25.0), far(55.0, 55.0);
+  EXPECT_FALSE(channel->receives_at(here));
+  channel->listen_around({&here, 1});
+  EXPECT_TRUE(channel->receives_at(here));
+  EXPECT_FALSE(channel->receives_at(far));
+  channel->listen_around({&far, 1});
+  EXPECT_FALSE(channel->receives_at(here));
+}
+
 TEST_F(TopicChannelTest, KeepsFewWritersOfLeftCells) {
   for (double s = 0.0; s < 55.0; s += 0.5) {
     const Vec2 p(1.0 + s, 1.0 + s);
