@@ -3,6 +3,7 @@
 #include "robot_agent/neighbours/silent_robots.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <limits>
 #include <utility>
 
@@ -14,6 +15,9 @@ namespace swarm::agent {
 namespace {
 
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+
+/// After this time, a robot whose body is an obstacle has stood for long, or its process was ended.
+constexpr Duration kDrivesOnFor = std::chrono::seconds(15);
 
 /// The longest time that a body of the mission takes to reach a commanded velocity.
 double largest_lag_s(const RobotsSpec& robots) {
@@ -59,7 +63,9 @@ void SilentRobots::update(SteadyTime now, const Whereabouts& whereabouts,
       continue;
     }
     const std::optional<double> body_m = whereabouts.obstacle_radius_m(state.robot);
-    const bool is_there = body_m && *body_m <= options_.frozen_body_radius_m[state.robot.value()];
+    const bool is_there =
+        body_m &&
+        (*body_m <= options_.frozen_body_radius_m[state.robot.value()] || age > kDrivesOnFor);
     if (robot.is_silent && !is_there) silent_.push_back(possible_positions(state, age));
     index_of_[state.robot.value()] = kept;
     received_[kept++] = robot;

@@ -116,6 +116,8 @@ TEST(SilentRobots, StaySilentWhileTheirBodyIsOnlyKnownToBeInAWideCircle) {
     sut.update(at(1000), whereabouts);
 
     EXPECT_EQ(sut.all().size(), radius_m > 2.0 ? 1U : 0U) << radius_m;
+    sut.update(at(16'000), whereabouts);
+    EXPECT_TRUE(sut.all().empty()) << "it stands somewhere in the circle; others leave it";
   }
 }
 
