@@ -16,7 +16,8 @@ namespace swarm {
 class ScratchFolder {
  public:
   ScratchFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "swarmflow-XXXXXX").string();
+    std::string name = (std::filesystem::temp_directory_path() / "swarmflow-").string();
+    name.append(6, 'X');  // mkdtemp puts other characters in their place
     if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error("no folder at " + name);
     path_ = name;
   }
