@@ -14,6 +14,11 @@ namespace swarm::agent {
 /// section for all methods.
 void ControlRegistry::add(ControlEntry entry) {
   SWARM_ASSERT(find(entry.spec.name) == nullptr && entry.prepare);
+  const auto& own = entry.spec.options;
+  SWARM_ASSERT(entry.spec.shape_tolerance.empty() ||
+               std::any_of(own.begin(), own.end(), [&](const OptionSpec& o) {
+                 return o.key == entry.spec.shape_tolerance && o.kind == OptionSpec::Kind::kNumber;
+               }));
   for (const OptionSpec& option : entry.spec.options) {
     for (const ControlEntry& other : entries_) {
       const auto& theirs = other.spec.options;

@@ -147,7 +147,7 @@ Result<Flown> fly(const Mission& mission, const SimulationOptions& options, bool
   }
   flown.risk_share = risk_share(audited.run);
   take_tracking(audit.tracking, flown);
-  if (mission.control.method == "intermittent_diffusion") flown.energy_m2 = energy_m2(audited.run);
+  if (mission.control.shape_tolerance_m2) flown.energy_m2 = energy_m2(audited.run);
   if (!draw) return flown;
   flown.paths_svg = monitor::paths_svg(audited);
   flown.robot_gaps_m = audited.robots.by_robot_m;

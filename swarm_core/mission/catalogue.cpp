@@ -38,7 +38,7 @@ Json option_json(const OptionSpec& option) {
   return json;
 }
 
-// The default lag is left out to keep descriptions of components without a body short.
+// Defaults of a lag and of a shape tolerance are left out to keep descriptions short.
 Json components_json(const Components& components) {
   Json list = Json::array();
   for (const ComponentSpec& component : components) {
@@ -50,6 +50,7 @@ Json components_json(const Components& components) {
                      {"accelerates", component.lag.accelerates},
                      {"turns", component.lag.turns}};
     }
+    if (!component.shape_tolerance.empty()) json["shape_tolerance"] = component.shape_tolerance;
     list.push_back(std::move(json));
   }
   return list;
@@ -90,6 +91,7 @@ Components components_from(const Json& list) {
                        .accelerates = lag->at("accelerates").get<bool>(),
                        .turns = lag->at("turns").get<bool>()};
     }
+    component.shape_tolerance = json.value("shape_tolerance", "");
     components.push_back(std::move(component));
   }
   return components;

@@ -63,7 +63,7 @@ std::optional<std::string> lack_of_goal_room(const Mission& mission, const Named
   constexpr std::string_view kRemedy =
       "enlarge its covariance_m2, or lower robots.count or robots.radius_m";
   // Robots that fill an area stop where they find room: the audit does not count them by component.
-  const bool counted = mission.control.method != "intermittent_diffusion";
+  const bool counted = !mission.control.shape_tolerance_m2;
   double all = 0.0;
   for (std::size_t i = 0; i < goal.mixture->components().size(); ++i) {
     const WeightedGaussian& component = goal.mixture->components()[i];

@@ -162,6 +162,11 @@ void add_control(Page& page, const Components& methods) {
   page.heading("##", "control", "Keys of every control method");
   page.add("control", named("method", methods, ControlSpec{}.method, "the control method"));
   page.add("control", kControlKeys);
+  page.add("control",
+           automatic("shape_tolerance_m2", reader_bounds::kShapeTolerance_m2,
+                     "robots fill the drawing of the goal and have arrived within this tolerance "
+                     "of its shape function; auto: as the method declares, else robots arrive in "
+                     "their component of the goal"));
   page.add("control", methods);
 }
 

@@ -162,7 +162,8 @@ std::string to_yaml(const Mission& mission) {
                  or_automatic(mission.planner.density_cap_per_m2));
   write_fields(out, mission.planner, kPlannerKeys);
   write_options(out, mission.planner.options);
-  fmt::format_to(out, "control:\n  method: {}\n", mission.control.method);
+  fmt::format_to(out, "control:\n  method: {}\n  shape_tolerance_m2: {}\n", mission.control.method,
+                 or_automatic(mission.control.shape_tolerance_m2));
   write_fields(out, mission.control, kControlKeys);
   write_options(out, mission.control.options);
   fmt::format_to(out, "safety:\n");

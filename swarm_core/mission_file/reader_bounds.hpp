@@ -23,6 +23,7 @@ inline constexpr std::size_t kMaxNameLength = 64;       ///< of the mission, in 
 inline constexpr Range kScriptTime_s = between(0.0, 1e6);
 inline constexpr Range kDensityCap_per_m2 = between(0, 1e6);  ///< or kAutomatic
 inline constexpr Range kLag_s = between(0, 60);               ///< or kAutomatic
+inline constexpr Range kShapeTolerance_m2 = positive(1e6);    ///< or kAutomatic
 inline constexpr std::string_view kAutomatic = "auto";        ///< chosen by the program
 
 }  // namespace swarm::reader_bounds

@@ -55,11 +55,14 @@ void SectionReader::read_control(const Node* node, ControlSpec& control_spec) {
   if (node != nullptr) {
     MapReader keys(*node, "control", violations_);
     read_name(keys, "method", control(), control_spec.method);
+    read_automatic(keys, "shape_tolerance_m2", reader_bounds::kShapeTolerance_m2,
+                   control_spec.shape_tolerance_m2);
     read_fields(keys, control_spec, kControlKeys);
     read_options(keys, control(), control_spec.options);
     keys.finish();
   }
   set_defaults(catalogue_.control_methods, control_spec.options);
+  set_shape_tolerance(control_spec);
 }
 
 /// The order matters: the common body and its defaults are complete before the groups copy it.
@@ -120,6 +123,13 @@ void SectionReader::read_body(MapReader& keys, BodySpec& body) {
 void SectionReader::set_lag(BodySpec& body) const {
   const ComponentSpec* driver = find_component(catalogue_.drivers, body.model);
   if (driver != nullptr && !body.lag_s) body.lag_s = declared_lag_s(body, driver->lag);
+}
+
+/// Like set_lag(): the audit judges arrival by it and does not know the method.
+void SectionReader::set_shape_tolerance(ControlSpec& control_spec) const {
+  const ComponentSpec* method = find_component(catalogue_.control_methods, control_spec.method);
+  if (method == nullptr || control_spec.shape_tolerance_m2) return;
+  control_spec.shape_tolerance_m2 = control_spec.options.number(method->shape_tolerance);
 }
 
 /// A number, or `auto`, which leaves the value unset.

@@ -103,6 +103,7 @@ class SectionReader {
   void read_body(yaml::MapReader& keys, BodySpec& body);
   void read_groups(const yaml::Node& node, RobotsSpec& robots, bool counted);
   void set_lag(BodySpec& body) const;
+  void set_shape_tolerance(ControlSpec& control_spec) const;
   void read_automatic(yaml::MapReader& keys, std::string_view key, const Range& range,
                       std::optional<double>& value);
   void read_name(yaml::MapReader& keys, std::string_view key, const ComponentSection& section,

@@ -7,30 +7,16 @@
 #include <numeric>
 #include <set>
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include "swarm_core/metrics/geodesic_bound.hpp"
-#include "swarm_core/mission/goal_room.hpp"
 #include "swarm_monitor/audit/evidence.hpp"
 #include "swarm_monitor/audit/fallen_bodies.hpp"
 #include "swarm_monitor/audit/quantile.hpp"
-#include "swarm_monitor/audit/tracking/criteria.hpp"
+#include "swarm_monitor/audit/verdict.hpp"
 
 namespace swarm::monitor {
 namespace {
-
-/// The first ten entries of a list and the number of the others, as in `3, 7, 12 and 40 more`: the
-/// reasons of a failed audit stay readable when hundreds of robots fail.
-std::string list(const std::vector<std::string>& items) {
-  constexpr std::size_t kShown = 10;
-  const std::vector<std::string> first(
-      items.begin(), items.begin() + static_cast<std::ptrdiff_t>(std::min(items.size(), kShown)));
-  std::string text = fmt::format("{}", fmt::join(first, ", "));
-  if (items.size() > kShown) text += fmt::format(" and {} more", items.size() - kShown);
-  return text;
-}
 
 /// Time of the first point of the robot's last stay in mode "arrived" [s since the begin of the
 /// run]; empty if its last stay ended. Only moving or waiting ends a stay: a hold or a stop leaves
@@ -68,18 +54,12 @@ std::optional<double> stop_latency_ms(const Track& track, UtcTime begin) {
   return std::max(0.0, 1e3 * (at_rest_s - to_seconds(stopped->caused - begin)));
 }
 
-/// Whether the robots fill a drawing. They are arrived where the drawing's shape function is within
-/// the tolerance, whichever Gaussian is nearest.
-bool fills_shape(const RecordedRun& run) {
-  return run.mission.control.method == "intermittent_diffusion";
-}
-
 /// Whether a position counts as arrived: inside the 99 % ellipse of component `goal`, or within the
 /// tolerance of the shape function [m²] if the mission fills a drawing.
 bool is_at_goal(const RecordedRun& run, std::size_t goal, const Vec2& position_m) {
-  if (fills_shape(run) && run.mission.goal_shape != nullptr) {
-    return run.mission.goal_shape->at(position_m).energy_m2 <=
-           run.mission.control.options.number("diffusion_tolerance_m2").value_or(0.0);
+  const std::optional<double>& tolerance_m2 = run.mission.control.shape_tolerance_m2;
+  if (tolerance_m2 && run.mission.goal_shape != nullptr) {
+    return run.mission.goal_shape->at(position_m).energy_m2 <= *tolerance_m2;
   }
   return run.goal().components()[goal].gaussian.contains_99(position_m);
 }
@@ -222,87 +202,6 @@ void measure_arrivals(Audit& audit) {
   }
 }
 
-/// Pairs of robots as text, as in `3-7, 12-9 and 40 more`.
-std::string list_pairs(const std::vector<Approach>& contacts) {
-  std::vector<std::string> pairs;
-  for (const Approach& contact : contacts) {
-    pairs.push_back(fmt::format("{}-{}", contact.robot, contact.other));
-  }
-  return list(pairs);
-}
-
-std::string number_of_pairs(std::uint32_t count) {
-  return count == 1 ? "1 pair" : fmt::format("{} pairs", count);
-}
-
-/// Collects the reasons why the run fails, one line each; without any the outcome is "ok".
-void judge(const AuditedRun& audited, Audit& audit) {
-  constexpr std::size_t kMostNamed = 10;
-  for (std::size_t i = 0; i < std::min(audit.missing.size(), kMostNamed); ++i) {
-    audit.reasons.push_back("missing: " + audit.missing[i]);
-  }
-  if (audit.missing.size() > kMostNamed) {
-    audit.reasons.push_back(fmt::format("missing: {} more", audit.missing.size() - kMostNamed));
-  }
-  if (!audit.lost.empty()) {
-    std::vector<std::string> ids;
-    for (const RobotId id : audit.lost) ids.push_back(fmt::format("{}", id.value()));
-    audit.reasons.push_back(fmt::format("{} lost: robot {}", ids.size(), list(ids)));
-  }
-  std::vector<std::string> absent;
-  for (const RobotAudit& robot : audit.by_robot) {
-    if (!robot.lost && !robot.arrived) absent.push_back(fmt::format("{}", robot.robot.value()));
-  }
-  if (!absent.empty()) {
-    audit.reasons.push_back(fmt::format("{} not arrived: robot {}", absent.size(), list(absent)));
-  }
-  if (audit.collisions_robot > 0) {
-    audit.reasons.push_back(fmt::format("{} touched: {}", number_of_pairs(audit.collisions_robot),
-                                        list_pairs(audited.robots.contacts)));
-  }
-  if (audit.collisions_fallen > 0) {
-    audit.reasons.push_back(fmt::format("{} touched after one had died: {}",
-                                        number_of_pairs(audit.collisions_fallen),
-                                        list_pairs(audited.robots.fallen_contacts)));
-  }
-  if (audit.collisions_obstacle > 0) {
-    audit.reasons.push_back(fmt::format("{} touched obstacles",
-                                        audit.collisions_obstacle == 1
-                                            ? "1 robot"
-                                            : fmt::format("{} robots", audit.collisions_obstacle)));
-  }
-  if (audit.outside_bounds > 0) {
-    std::vector<std::string> outside;
-    for (const RobotAudit& robot : audit.by_robot) {
-      if (robot.left_bounds) outside.push_back(fmt::format("{}", robot.robot.value()));
-    }
-    audit.reasons.push_back(
-        fmt::format("{} left the world's bounds: robot {}", outside.size(), list(outside)));
-  }
-  for (std::string& reason :
-       failed_criteria(audited.run.mission.criteria, audit.tracking, audit.path_ratio)) {
-    audit.reasons.push_back(std::move(reason));
-  }
-  if (fills_shape(audited.run)) return;  // robots stay where they find room: no counts
-  const auto& goals = audited.run.goal().components();
-  const Mission& mission = audited.run.mission;
-  const double tolerance = goal_tolerance(audit.robots);
-  const double distance_m =
-      2.0 * largest_radius_m(mission.robots) + mission.safety.neighbour_margin_m;
-  for (std::size_t g = 0; g < goals.size(); ++g) {
-    const double wanted = goals[g].weight * audit.robots;
-    if (std::abs(audit.arrived_per_goal[g] - wanted) <= tolerance) continue;
-    std::string reason = fmt::format("goal {} got {} robots, its weight is {:.1f}", g,
-                                     audit.arrived_per_goal[g], wanted);
-    // A goal that is full is no fault of the robots.
-    const std::uint32_t room = most_in_goal(goals[g].gaussian, distance_m);
-    if (audit.arrived_per_goal[g] < wanted && room < wanted) {
-      reason += fmt::format("; with safety.neighbour_margin_m it has room for {} at most", room);
-    }
-    audit.reasons.push_back(std::move(reason));
-  }
-}
-
 /// Copies the four numbers that only the launcher can measure (planning time, discovery, CPU,
 /// memory) from its summary. The audit recomputes everything else and ignores the summary's other
 /// keys.
@@ -350,7 +249,7 @@ AuditedRun audit_recorded(RecordedRun recorded) {
   audit.min_robot_gap_m = known(audited.robots.nearest.gap_m);
   audit.min_obstacle_gap_m = known(audited.obstacles.nearest.gap_m);
   audit.missing = missing_evidence(run);
-  judge(audited, audit);
+  audit.reasons = reasons_for_failure(audited);
   return audited;
 }
 

@@ -28,6 +28,11 @@ struct ComponentSpec {
   std::string doc;                  ///< one sentence for help and documentation
   std::vector<OptionSpec> options;  ///< keys that it reads from its section
   LagSpec lag{};                    ///< of a driver: how late its body follows a command
+  /// Of a control method whose robots fill the drawing of the goal and stop where they find room:
+  /// the key of its option that holds the tolerance of the shape function [m²]. Within it a robot
+  /// has arrived, whichever Gaussian of the goal is nearest. Empty: a robot arrives in the 99 %
+  /// ellipse of the goal's component that its path leads to.
+  std::string shape_tolerance{};
 };
 
 /// The components of one section of the mission file, by name.

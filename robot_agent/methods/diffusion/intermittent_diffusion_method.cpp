@@ -44,7 +44,8 @@ ControlEntry intermittent_diffusion_method() {
   return {.spec = {.name = "intermittent_diffusion",
                    .doc = "Shape formation by gradient flow and intermittent diffusion, without a "
                           "path [intermittent diffusion, Alg. 1]",
-                   .options = intermittent_diffusion_keys().specs()},
+                   .options = intermittent_diffusion_keys().specs(),
+                   .shape_tolerance = "diffusion_tolerance_m2"},
           .prepare = prepare_diffusion};
 }
 

@@ -130,7 +130,7 @@ void expect_same(const Section& a, const Section& b,
   // and the groups.
   constexpr std::size_t kOthers = std::is_same_v<Section, PlannerSpec>   ? 3
                                   : std::is_same_v<Section, RobotsSpec>  ? 2
-                                  : std::is_same_v<Section, ControlSpec> ? 2
+                                  : std::is_same_v<Section, ControlSpec> ? 3
                                   : std::is_same_v<Section, BodySpec>    ? 3
                                                                          : 0;
   if constexpr (std::is_same_v<Section, CriteriaSpec>) {
@@ -166,6 +166,7 @@ void expect_same(const Mission& a, const Mission& b) {
   }
   EXPECT_EQ(a.control.method, b.control.method);
   EXPECT_EQ(a.control.options, b.control.options);
+  EXPECT_EQ(a.control.shape_tolerance_m2, b.control.shape_tolerance_m2);
   expect_same(a.planner, b.planner, kPlannerKeys);
   expect_same(a.control, b.control, kControlKeys);
   expect_same(a.safety, b.safety, kSafetyKeys);

@@ -63,12 +63,14 @@ TEST(Catalogue, IsTheSameAfterJson) {
   Catalogue catalogue;
   catalogue.control_methods.push_back({"spiral", "Turns around its path", table().specs()});
   catalogue.control_methods[0].options[0].at_most = "turns";
+  catalogue.control_methods[0].shape_tolerance = "turns";
   catalogue.drivers.push_back({"cart", "Rolls", {}, {.fixed_s = 0.2, .turns = true}});
   const auto read = catalogue_from_json(to_json(catalogue), "agent");
   ASSERT_TRUE(read);
   ASSERT_EQ(read->control_methods.size(), 1U);
   EXPECT_EQ(read->control_methods[0].name, "spiral");
   EXPECT_EQ(read->control_methods[0].options, catalogue.control_methods[0].options);
+  EXPECT_EQ(read->control_methods[0].shape_tolerance, "turns");
   ASSERT_EQ(read->drivers.size(), 1U);
   EXPECT_EQ(read->drivers[0].lag, catalogue.drivers[0].lag);
 }
@@ -117,6 +119,28 @@ TEST(Mission, MayGiveTheLagItself) {
   std::string text = kMission;
   text.replace(text.find("port: 7"), 7, "lag_s: 0.1");
   EXPECT_EQ(parse_mission(text, "m.yaml", {}, drivers)->robots.lag_s, 0.1);
+}
+
+/// What a guest's control method declares is known to the audit, which does not have the method.
+TEST(Mission, HasTheShapeToleranceOfItsMethodForProgramsWithoutIt) {
+  Catalogue methods = open_catalogue();
+  methods.control_methods.push_back(
+      {"spiral", "Fills the drawing", table().specs(), {}, "gain_hz"});
+  const auto mission = parse_mission(kMission, "m.yaml", {}, methods);
+  ASSERT_TRUE(mission) << mission.error().message;
+  EXPECT_EQ(mission->control.shape_tolerance_m2, 0.5);
+
+  const auto audits = parse_mission(to_yaml(*mission), "m.yaml", {}, open_catalogue());
+  ASSERT_TRUE(audits) << audits.error().message;
+  EXPECT_EQ(audits->control.shape_tolerance_m2, 0.5);
+}
+
+TEST(Mission, HasNoShapeToleranceOfAMethodThatDeclaresNone) {
+  Catalogue methods = open_catalogue();
+  methods.control_methods.push_back({"spiral", "Turns around its path", table().specs()});
+  const auto mission = parse_mission(kMission, "m.yaml", {}, methods);
+  ASSERT_TRUE(mission) << mission.error().message;
+  EXPECT_FALSE(mission->control.shape_tolerance_m2);
 }
 
 TEST(ClosedCatalogue, RefusesThem) {

@@ -3,11 +3,13 @@
 #include "swarm_monitor/audit/audit.hpp"
 
 #include <fstream>
+#include <memory>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
 #include "swarm_core/robot_log/robot_log_file.hpp"
+#include "swarmflow/core/shape_field.hpp"
 #include "tests/unit/swarm_monitor/synthetic_run.hpp"
 
 namespace swarm::monitor {
@@ -176,6 +178,24 @@ TEST(Audit, ChecksTheSharesOfTheGoals) {
   bool found = false;
   for (const auto& reason : audit.reasons) found = found || reason.starts_with("goal 1 got 0");
   EXPECT_TRUE(found);
+}
+
+TEST(Audit, JudgesRobotsThatFillADrawingByItsShapeFunction) {
+  SyntheticRun files(8);
+  files.write_good_run();  // four robots end near (30, 5), four near (30, 15)
+  auto run = read_run(files.dir());
+  ASSERT_TRUE(run) << run.error().message;
+  auto shape = ShapeField::make({}, {Box{{27, 2}, {33, 8}}});
+  ASSERT_TRUE(shape) << shape.error().message;
+  run->mission.goal_shape = std::make_shared<const ShapeField>(*std::move(shape));
+
+  EXPECT_EQ(audit_recorded(*run).audit.arrived, 8U) << "in their goals";
+
+  run->mission.control.shape_tolerance_m2 = 0.1;
+  const Audit audit = audit_recorded(*run).audit;
+  EXPECT_EQ(audit.arrived, 4U);
+  ASSERT_EQ(audit.reasons.size(), 1U) << "robots in the drawing are not counted by goal";
+  EXPECT_EQ(audit.reasons[0], "4 not arrived: robot 1, 3, 5, 7");
 }
 
 TEST(Audit, MeasuresTheMissionFromFirstMotionToLastArrival) {
