@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "swarm_launcher/hosts/join_host.hpp"
 
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <map>
@@ -22,6 +23,7 @@
 #include "swarm_launcher/hosts/offer.hpp"
 #include "swarm_launcher/processes/child_process.hpp"
 #include "swarm_launcher/supervision/progress.hpp"
+#include "swarm_launcher/supervision/restart_policy.hpp"
 #include "swarmflow/mission/mission_file.hpp"
 
 namespace swarm::launcher {
@@ -58,15 +60,15 @@ Result<HostOffer> ask(LineSocket& socket, const JoinOptions& options) {
   return fail(ErrorCode::kEnvironment, "no launcher answers there");
 }
 
-/// The agent processes of this host: started one after the other, restarted a limited number of
-/// times, and killed when the object is destroyed.
+/// The agent processes of this host: started one after the other, restarted as on the launcher's
+/// host (see RestartPolicy), and killed when the object is destroyed.
 class HostProcesses {
  public:
   HostProcesses(const HostOffer& offer, std::filesystem::path dir, link::Vendor dds,
                 std::uint32_t respawns)
       : offer_(offer), dir_(std::move(dir)), dds_(dds), respawns_(respawns) {
     for (std::uint32_t robot = 0; robot < offer.robots; robot += offer.per_process) {
-      waiting_.push_back(robot);
+      waiting_.push_back({.robot = robot});
     }
   }
   ~HostProcesses() { signal(SIGKILL); }
@@ -82,14 +84,20 @@ class HostProcesses {
       children_.erase(known);
       if (ending_) continue;
       ProcessExit exit = child->exit;
-      exit.is_restarted = deaths_[robot]++ < respawns_;
-      if (exit.is_restarted) waiting_.push_back(robot);
+      RestartPolicy& restarts = restarts_[robot];
+      const Duration delay = restarts.on_exit(now());
+      exit.is_restarted = restarts.deaths_in_a_row() <= respawns_;
+      if (exit.is_restarted) waiting_.push_back({.robot = robot, .due = now() + delay});
       exits_.emplace_back(robot / offer_.per_process, exit);
     }
     if (ending_ || waiting_.empty() || now() < next_start_) return {};
+    const auto next = std::find_if(waiting_.begin(), waiting_.end(),
+                                   [at = now()](const Waiting& w) { return w.due <= at; });
+    if (next == waiting_.end()) return {};
     next_start_ = now() + kStartEvery;
-    const std::uint32_t robot = waiting_.front();
-    waiting_.erase(waiting_.begin());
+    const std::uint32_t robot = next->robot;
+    waiting_.erase(next);
+    restarts_[robot].on_start(now());
     return start(robot);
   }
 
@@ -109,6 +117,12 @@ class HostProcesses {
   std::size_t living() const { return children_.size(); }
 
  private:
+  /// A process that is to be started.
+  struct Waiting {
+    std::uint32_t robot = 0;  ///< its first robot, counted from our first
+    SteadyTime due{};         ///< not before this
+  };
+
   Result<void> start(std::uint32_t robot) {
     const std::uint32_t id = offer_.first_robot + robot;
     std::vector<std::string> command_line = {
@@ -138,9 +152,9 @@ class HostProcesses {
   std::filesystem::path dir_;
   link::Vendor dds_;
   std::uint32_t respawns_;
-  std::vector<std::uint32_t> waiting_;  // first robot of each process, counted from our first
-  std::map<pid_t, std::uint32_t> children_;
-  std::map<std::uint32_t, std::uint32_t> deaths_;
+  std::vector<Waiting> waiting_;
+  std::map<pid_t, std::uint32_t> children_;          // first robot of each process, as in Waiting
+  std::map<std::uint32_t, RestartPolicy> restarts_;  // by the same number
   std::vector<std::pair<std::uint32_t, ProcessExit>> exits_;
   SteadyTime next_start_;
   bool ending_ = false;
