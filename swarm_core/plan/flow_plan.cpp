@@ -37,8 +37,8 @@ class Digest {
   std::uint64_t hash_ = 0xCBF29CE484222325ULL;
 };
 
-// Sizes are hashed too, so that a node cannot be taken for a leg. Of the symmetric covariance three
-// entries suffice.
+// The number of nodes is hashed too, so that a node cannot be taken for a leg. Of the symmetric
+// covariance three entries suffice.
 std::uint64_t digest_of(const std::vector<PlanNode>& nodes, const std::vector<PlanLeg>& legs) {
   Digest digest;
   digest.add(std::uint64_t{nodes.size()});

@@ -45,8 +45,9 @@ void mixture_cvar_gradient(std::span<const LineComponent> components, double alp
 /// Y = −sd(X, O) of a mixture X and one convex obstacle [ROVER, eq. 14].
 std::vector<LineComponent> negated_distance(const Mixture& mixture, const ConvexObstacle& obstacle);
 
-/// Largest CVaR_α(−sd(X, O)) over the obstacles of the world [m]; −∞ without obstacles. Promise
-/// (11g) holds iff the result < ε.
+/// Largest CVaR_α(−sd(X, O)) over the obstacles of the world [m], each by mixture_tail_risk(); −∞
+/// without obstacles. The risk limit (11g) of ROVER holds iff the result is at most ε, key
+/// `planner.risk_delta_m`.
 double max_mixture_cvar_m(const Mixture& mixture, const World& world, double alpha);
 
 }  // namespace swarm

@@ -18,7 +18,7 @@ struct LauncherSpec {
   double quorum_share = 1.0;       ///< share of robots that is enough after the timeout
   double quorum_timeout_s = 30.0;  ///< until then all are waited for; missing ones are reported
   double time_limit_s = 600.0;     ///< longest mission time
-  std::uint32_t respawn_planner_max = 3;                  ///< deaths in a row, see below
+  std::uint32_t respawn_planner_max = 3;                  ///< restarts in a row, see below
   std::uint32_t respawn_agent_max = 0;                    ///< the same, of each agent process
   LauncherLoss on_launcher_loss = LauncherLoss::kFinish;  ///< when its beats stop
 };
@@ -36,12 +36,11 @@ inline constexpr auto kLauncherKeys = std::to_array<SectionKey<LauncherSpec>>({
     {"time_limit_s", &LauncherSpec::time_limit_s, positive(1e6),
      "longest mission time; then the run fails"},
     {"respawn_planner_max", &LauncherSpec::respawn_planner_max, between(0, 1000),
-     "deaths in a row after which a planner ends the run before the start; in flight it is "
-     "restarted all the same"},
+     "restarts in a row of a planner before the mission starts; one more death ends the run. In "
+     "flight the planner is always restarted"},
     {"respawn_agent_max", &LauncherSpec::respawn_agent_max, between(0, 1000),
-     "deaths in a row, each within 20 s of life, after which a robot's process stays dead; 0: it "
-     "is "
-     "never restarted"},
+     "restarts in a row of a robot's process, each after less than 20 s of life; after one more "
+     "death it is not restarted. 0: never restarted"},
     {"on_launcher_loss", &LauncherSpec::on_launcher_loss, between(0, 1),
      "what robots do when the launcher's beats stop for timing.launcher_silence_s"},
 });

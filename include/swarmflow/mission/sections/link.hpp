@@ -12,7 +12,7 @@ namespace swarm {
 /// Key `link`: which states are received, and when they are published.
 struct LinkSpec {
   double cell_size_m = 100.0;           ///< side of a cell of the topics channel [m]
-  double communication_radius_m = 4.0;  ///< communication radius [m]
+  double communication_radius_m = 4.0;  ///< states of robots this near are received [m]
   double join_margin_m = 6.0;           ///< beyond the communication radius: cells to join [m]
   double leave_margin_m = 9.0;          ///< beyond the communication radius: cells to leave [m]
   double group_cell_size_m = 5.0;       ///< side of a cell of the groups channel [m]
