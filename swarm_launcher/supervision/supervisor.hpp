@@ -135,8 +135,9 @@ class Supervisor {
   /// time to get ready: otherwise a host that joins again and again would delay the start for ever.
   void on_joined(ProcessIndex first, std::uint32_t count, SteadyTime now);
   /// A process has ended. An agent process is restarted while it died no more often in a row than
-  /// the mission allows (see RestartPolicy); after that its robots are lost. The planner is restarted
-  /// for as long as robots need it: without it they hold, so it never ends a mission in flight.
+  /// the mission allows (see RestartPolicy); after that its robots are lost. The planner is
+  /// restarted for as long as robots need it: without it they hold, so it never ends a mission in
+  /// flight.
   void on_exit(ProcessIndex process, const ProcessExit& exit, SteadyTime now);
   /// A robot is silent: nothing is received from it, for whatever reason. It is assumed to stay
   /// where it is, as an obstacle, until it reports again.

@@ -55,7 +55,8 @@ struct ControlEntry {
 class ControlRegistry {
  public:
   /// Adds a method. Pointers from find() become invalid.
-  /// \pre entry.prepare is set, the name is new, options that share a key with another method's have
+  /// \pre entry.prepare is set, the name is new, options that share a key with another method's
+  /// have
   ///   the same spec, and a shape_tolerance is the key of an option that is a number; asserted
   void add(ControlEntry entry);
 
