@@ -35,18 +35,42 @@ SilentRobots::SilentRobots(const SilenceOptions& options)
   silent_.reserve(options.robots);
 }
 
+/// The entry of a robot; a new one has this state.
+SilentRobots::Received& SilentRobots::received(const State& state) {
+  std::uint32_t& index = index_of_[state.robot.value()];
+  if (index == kNone) {
+    index = static_cast<std::uint32_t>(received_.size());
+    received_.push_back({.last = state, .missed_since = state.as_of, .is_reported = true});
+  }
+  return received_[index];
+}
+
 void SilentRobots::on_state(const State& state) {
-  const std::uint32_t id = state.robot.value();
   if (!covers(state.robot)) return;
-  if (index_of_[id] == kNone) {
-    index_of_[id] = static_cast<std::uint32_t>(received_.size());
-    received_.push_back({state, state.as_of});
-  } else if (Received& robot = received_[index_of_[id]]; robot.last.as_of < state.as_of) {
-    robot = {state, state.as_of};
+  Received& robot = received(state);
+  if (robot.is_reported ? robot.last.as_of <= state.as_of : robot.last.as_of < state.as_of) {
+    robot = {.last = state, .missed_since = state.as_of};
   }
 }
 
-/// Robots that are well elsewhere are forgotten; the others close ranks, in their order. A robot
+/// A later position makes a disc smaller and does not end it: the robot is still not received here.
+void SilentRobots::on_beat(const link::LauncherBeat& beat, SteadyTime now) {
+  for (Received& robot : received_) robot.is_listed = !beat.lists_all;
+  for (const link::LateRobot& late : beat.late()) {
+    const State state{.robot = RobotId(late.robot),
+                      .as_of = now - std::chrono::milliseconds(late.age_ms),
+                      .position_m = {late.x_m, late.y_m}};
+    if (!covers(state.robot)) continue;
+    Received& robot = received(state);
+    robot.is_listed = true;
+    if (robot.last.as_of >= state.as_of) continue;
+    robot.last = state;
+    robot.missed_since = state.as_of;
+  }
+}
+
+/// Robots that are well elsewhere are forgotten, and those that only the launcher had reported as
+/// late and receives again; the others close ranks, in their order. A robot
 /// whose body is an obstacle is kept: the launcher may clear the body as soon as it receives the
 /// robot, before the robot's next state arrives here, or may know little of where the body is.
 void SilentRobots::update(SteadyTime now, const Whereabouts& whereabouts,
@@ -58,7 +82,9 @@ void SilentRobots::update(SteadyTime now, const Whereabouts& whereabouts,
     if (receives_at && !receives_at(state.position_m)) robot.missed_since = now;
     robot.is_silent |= now - robot.missed_since > options_.expected_silence;
     const Duration age = now - state.as_of;
-    if (age > options_.expected_silence && whereabouts.is_well(state.robot, state.as_of, now)) {
+    const bool is_withdrawn = robot.is_reported && !robot.is_listed && !robot.is_silent;
+    if (is_withdrawn ||
+        (age > options_.expected_silence && whereabouts.is_well(state.robot, state.as_of, now))) {
       index_of_[state.robot.value()] = kNone;
       continue;
     }

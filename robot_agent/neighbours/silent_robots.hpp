@@ -37,9 +37,9 @@ struct SilentRobot {
   double growth_mps = 0.0;  ///< of the radius; 0: the robot stands by now
 };
 
-/// The robots that were received once, by this process, and are not any more. Silence is never free
-/// space: a silent robot is at each of its possible positions until it is received again, from
-/// wherever, or the launcher receives it elsewhere.
+/// The robots that were received once, by this process or by the launcher, and are not any more.
+/// Silence is never free space: a silent robot is at each of its possible positions until it is
+/// received again, from wherever, or the launcher receives it elsewhere.
 ///
 /// While its body is an obstacle of the scene, it is there (see Whereabouts). That obstacle is a
 /// circle, by the robot's log around the position at which it froze. A circle wider than
@@ -51,6 +51,10 @@ struct SilentRobot {
 /// it has left, or was left behind. If it is healthy, it is received again before it is near. It is
 /// silent once the process has received that cell for σ, and not the robot; its disc has its full
 /// size then. A disc that exists stays, whatever the process receives.
+///
+/// A robot that falls silent before this process receives it is known from the launcher's beats:
+/// they list where a robot was whose next status is late (1.25 periods of the statuses). It is
+/// treated as if its state had been received at that time, until a beat does not list it any more.
 ///
 /// A robot whose last state has position p is, at age α, within
 ///
@@ -79,9 +83,9 @@ struct SilentRobot {
 /// walls or others, may be overtaken by the disc, and then stand; a silent robot that follows no
 /// protocol can reach those within. One whose states alone are lost drives on, as the launcher
 /// receives it: it keeps off those that it receives, but two of them can meet beyond their discs. A
-/// robot that falls silent before it is received, for the first time or again, is known to the
-/// launcher alone, which makes its body an obstacle: cells are joined half a metre (groups) or six
-/// (topics) beyond the communication radius, and a robot that is cut off can drive farther.
+/// robot that is cut off from planner and launcher, too, can drive for D towards others before a
+/// beat lists it; cells are joined half a metre (groups) or six (topics) beyond the communication
+/// radius.
 ///
 /// Shared by the robots of a process. Pure; the time is passed in. No allocation once made.
 class SilentRobots {
@@ -95,6 +99,9 @@ class SilentRobots {
     Vec2 position_m = Vec2::Zero();
   };
   void on_state(const State& state);
+
+  /// The late robots of a beat that Whereabouts has taken. O(robots received and not cleared).
+  void on_beat(const link::LauncherBeat& beat, SteadyTime now);
 
   /// Whether the states of a robot at a position are received. Empty: everywhere.
   using ReceivesAt = std::function<bool(const Vec2& position_m)>;
@@ -117,7 +124,10 @@ class SilentRobots {
     State last;
     SteadyTime missed_since;  // its cell has been received since then, but not the robot
     bool is_silent = false;
+    bool is_reported = false;  // known from the launcher's beats alone
+    bool is_listed = false;    // by the last beat
   };
+  Received& received(const State& state);
   SilentRobot possible_positions(const State& state, Duration age) const;
 
   SilenceOptions options_;

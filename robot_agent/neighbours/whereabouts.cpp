@@ -3,6 +3,7 @@
 #include "robot_agent/neighbours/whereabouts.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <variant>
 
@@ -13,17 +14,22 @@ namespace swarm::agent {
 Whereabouts::Whereabouts(const WhereaboutsOptions& options)
     : options_(options), listed_at_(options.robots) {}
 
-bool Whereabouts::has_known_ids(const link::LauncherBeat& beat) const {
-  return std::ranges::all_of(beat.silent(), [&](const link::RobotRange& range) {
+bool Whereabouts::is_valid(const link::LauncherBeat& beat) const {
+  const auto has_known_ids = [&](const link::RobotRange& range) {
     return std::uint64_t{range.first} + range.count <= options_.robots;
-  });
+  };
+  const auto is_known = [&](const link::LateRobot& late) {
+    return late.robot < options_.robots && std::isfinite(late.x_m) && std::isfinite(late.y_m);
+  };
+  return std::ranges::all_of(beat.silent(), has_known_ids) &&
+         std::ranges::all_of(beat.late(), is_known);
 }
 
 /// A beat that does not list all silent robots is a sign of life, but ends what earlier ones state.
-void Whereabouts::on_beat(const link::LauncherBeat& beat, SteadyTime now) {
-  if (beat.run != options_.run || beat.sequence <= sequence_ || !has_known_ids(beat)) {
+bool Whereabouts::on_beat(const link::LauncherBeat& beat, SteadyTime now) {
+  if (beat.run != options_.run || beat.sequence <= sequence_ || !is_valid(beat)) {
     ++refused_;
-    return;
+    return false;
   }
   sequence_ = beat.sequence;
   if (!beat.lists_all || !last_beat_ || now - *last_beat_ > options_.beat_timeout) since_ = now;
@@ -31,6 +37,7 @@ void Whereabouts::on_beat(const link::LauncherBeat& beat, SteadyTime now) {
   for (const link::RobotRange& range : beat.silent()) {
     std::fill_n(listed_at_.begin() + range.first, range.count, now);
   }
+  return true;
 }
 
 void Whereabouts::on_scene(const Scene& scene) {

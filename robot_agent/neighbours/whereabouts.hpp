@@ -32,9 +32,10 @@ class Whereabouts {
  public:
   explicit Whereabouts(const WhereaboutsOptions& options);
 
-  /// Takes a beat. One of another run, out of order or with ids that the mission does not have is
-  /// ignored and counted. O(silent robots).
-  void on_beat(const link::LauncherBeat& beat, SteadyTime now);
+  /// Takes a beat. One of another run, out of order, with ids that the mission does not have or
+  /// with numbers that are not finite is ignored and counted. O(silent and late robots).
+  /// \return whether it was taken
+  bool on_beat(const link::LauncherBeat& beat, SteadyTime now);
   /// Takes the scene, for the robots whose bodies are obstacles. O(obstacles).
   void on_scene(const Scene& scene);
 
@@ -56,7 +57,7 @@ class Whereabouts {
   std::uint64_t refused() const { return refused_; }
 
  private:
-  bool has_known_ids(const link::LauncherBeat& beat) const;
+  bool is_valid(const link::LauncherBeat& beat) const;
 
   WhereaboutsOptions options_;
   std::optional<SteadyTime> last_beat_;

@@ -86,7 +86,9 @@ void ProcessLoop::receive(const Time& time) {
   });
   if (bus_.stops) {
     if (const auto stop = bus_.stops->take()) inbox_.receive(*stop, time.utc_now);
-    for (const link::LauncherBeat& beat : bus_.stops->beats()) whereabouts_.on_beat(beat, time.now);
+    for (const link::LauncherBeat& beat : bus_.stops->beats()) {
+      if (whereabouts_.on_beat(beat, time.now)) silent_.on_beat(beat, time.now);
+    }
   }
 }
 

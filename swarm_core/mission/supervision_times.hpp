@@ -16,6 +16,10 @@ inline Duration reported_silence(double rate_hz) {
   return std::max<Duration>(std::chrono::seconds(3), from_seconds(3.0 / rate_hz));
 }
 
+/// Without a status for this long, the launcher lists a robot as late in its beats: a quarter of a
+/// period beyond the next one.
+inline Duration late_status(double rate_hz) { return from_seconds(1.25 / rate_hz); }
+
 /// Rate of the launcher's beats.
 inline constexpr double kBeatHz = 2.0;
 

@@ -6,13 +6,15 @@
 #include <memory>
 #include <optional>
 
+#include "swarm_launcher/flight/late_robots.hpp"
 #include "swarm_launcher/supervision/supervisor.hpp"
 #include "swarm_link/channels/stop_channel.hpp"
 #include "swarmflow/core/time.hpp"
 
 namespace swarm::launcher {
 
-/// Sends the launcher's beats to all robots: that it runs, and which robots it does not receive.
+/// Sends the launcher's beats to all robots: that it runs, which robots it does not receive, and
+/// where robots were whose next status is late.
 /// Single thread; the time is passed in.
 class BeatSender {
  public:
@@ -22,7 +24,7 @@ class BeatSender {
   /// Sends a beat if one is due. Call it often. `lists_all`: robots that are not listed may be
   /// taken for healthy ones somewhere else; false while a gateway does not run, since those beyond
   /// it are not received where they are near.
-  void step(SteadyTime now, const Supervisor& supervisor, bool lists_all = true);
+  void step(SteadyTime now, const Supervisor& supervisor, LateRobots& late, bool lists_all = true);
 
  private:
   std::unique_ptr<link::StopSender> sender_;

@@ -39,6 +39,7 @@ FlightLoop::FlightLoop(const FlightOptions& options, const std::filesystem::path
       ports_(std::move(ports)),
       supervisor_(supervision_of(options), now),
       view_(options.mission.robots.count, options.mission.link.communication_radius_m),
+      late_(options.mission.robots.count, options.mission.link.status_hz),
       fallen_(options.mission, ports_.scene, ports_.log, ports_.logged_position),
       stamp_tolerance_(from_seconds(options.mission.timing.clock_skew_warn_s)),
       confirmations_(options.mission.robots.count, stamp_tolerance_) {}
@@ -68,7 +69,7 @@ Result<void> FlightLoop::step(const FlightTime& now) {
   if (ports_.beats != nullptr) {
     const bool lists_all =
         supervisor_.knows_silent(now.steady) && !ports_.helpers.is_gateway_down();
-    ports_.beats->step(now.steady, supervisor_, lists_all);
+    ports_.beats->step(now.steady, supervisor_, late_, lists_all);
   }
   if (const auto message = ports_.helpers.message()) ports_.display.print(*message);
   if (ports_.observer != nullptr) ports_.observer->on_step(*this, now.steady);

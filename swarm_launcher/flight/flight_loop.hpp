@@ -16,6 +16,7 @@
 #include "swarm_launcher/flight/fallen_robots.hpp"
 #include "swarm_launcher/flight/flight_choices.hpp"
 #include "swarm_launcher/flight/flight_ports.hpp"
+#include "swarm_launcher/flight/late_robots.hpp"
 #include "swarm_launcher/flight/swarm_view.hpp"
 #include "swarm_launcher/supervision/event_throttle.hpp"
 #include "swarm_launcher/supervision/summary.hpp"
@@ -89,6 +90,7 @@ class FlightLoop {
   FlightPorts ports_;
   Supervisor supervisor_;
   SwarmView view_;
+  LateRobots late_;
   FallenRobots fallen_;
   Duration stamp_tolerance_;  ///< of statuses that confirm commands
   Confirmations confirmations_;

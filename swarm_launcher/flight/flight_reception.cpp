@@ -83,9 +83,12 @@ void FlightLoop::on_status(const link::StatusMessage& status, const FlightTime& 
     const Obedience obedience{robot.mode, status.command_id, stamp};
     confirmations_.on_status(id, obedience, now.utc);
     // By the earlier clock: a stamp ahead of ours would make the robot's circle too small.
-    fallen_.on_status(id, {.at = std::min(stamp, now.utc),
-                           .position_m = {robot.x_m, robot.y_m},
-                           .at_rest = robot.settled});
+    const UtcTime measured = std::min(stamp, now.utc);
+    const Vec2 position_m(robot.x_m, robot.y_m);
+    fallen_.on_status(id, {.at = measured, .position_m = position_m, .at_rest = robot.settled});
+    if (robot.ticks > 0) {  // before it has no position
+      late_.on_status(id, position_m, now.steady - (now.utc - measured), now.steady);
+    }
     if (ports_.hosts != nullptr) ports_.hosts->on_status(id, now.steady);
     supervisor_.on_status(
         id, {.has_plan = status.plan_version > 0,

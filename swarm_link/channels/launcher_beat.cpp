@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "swarm_link/channels/launcher_beat.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cstring>
 
@@ -10,7 +11,8 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little);
 
-constexpr std::size_t kFixedBytes = 20;
+constexpr std::size_t kFixedBytes = 24;
+static_assert(sizeof(RobotRange) == 8 && sizeof(LateRobot) == 24);
 
 template <class Number>
 void put(std::vector<std::byte>& out, Number number) {
@@ -46,32 +48,52 @@ void set_silent(LauncherBeat& beat, std::span<const RobotId> robots) {
   }
 }
 
+void set_late(LauncherBeat& beat, std::span<const LateRobot> robots) {
+  beat.late_robots = static_cast<std::uint32_t>(std::min(robots.size(), LauncherBeat::kMaxLate));
+  std::copy_n(robots.begin(), beat.late_robots, beat.late_robot.begin());
+}
+
 void encode(const LauncherBeat& beat, std::vector<std::byte>& out) {
   out.clear();
   put(out, beat.run);
   put(out, beat.sequence);
   put(out, static_cast<std::uint32_t>(beat.lists_all ? 1 : 0));
+  put(out, beat.ranges);
   for (const RobotRange& range : beat.silent()) {
     put(out, range.first);
     put(out, range.count);
+  }
+  for (const LateRobot& late : beat.late()) {
+    put(out, late.robot);
+    put(out, late.age_ms);
+    put(out, late.x_m);
+    put(out, late.y_m);
   }
 }
 
 std::optional<LauncherBeat> decode_beat(std::span<const std::byte> bytes) {
   if (bytes.size() < kFixedBytes) return std::nullopt;
-  const std::size_t ranges = (bytes.size() - kFixedBytes) / sizeof(RobotRange);
-  if (bytes.size() != kFixedBytes + ranges * sizeof(RobotRange)) return std::nullopt;
-  if (ranges > LauncherBeat::kMaxRanges) return std::nullopt;
   LauncherBeat beat;
   beat.run = get<std::uint64_t>(bytes);
   beat.sequence = get<std::uint64_t>(bytes);
   const auto lists_all = get<std::uint32_t>(bytes);
-  if (lists_all > 1) return std::nullopt;
+  const auto ranges = get<std::uint32_t>(bytes);
+  if (lists_all > 1 || ranges > LauncherBeat::kMaxRanges) return std::nullopt;
+  if (bytes.size() < ranges * sizeof(RobotRange)) return std::nullopt;
   beat.lists_all = lists_all == 1;
-  for (beat.ranges = 0; beat.ranges < ranges; ++beat.ranges) {
+  for (; beat.ranges < ranges; ++beat.ranges) {
     RobotRange& range = beat.range[beat.ranges];
     range.first = get<std::uint32_t>(bytes);
     range.count = get<std::uint32_t>(bytes);
+  }
+  if (bytes.size() % sizeof(LateRobot) != 0) return std::nullopt;
+  if (bytes.size() / sizeof(LateRobot) > LauncherBeat::kMaxLate) return std::nullopt;
+  for (; !bytes.empty(); ++beat.late_robots) {
+    LateRobot& late = beat.late_robot[beat.late_robots];
+    late.robot = get<std::uint32_t>(bytes);
+    late.age_ms = get<std::uint32_t>(bytes);
+    late.x_m = get<double>(bytes);
+    late.y_m = get<double>(bytes);
   }
   return beat;
 }

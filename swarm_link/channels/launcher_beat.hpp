@@ -20,26 +20,43 @@ struct RobotRange {
   bool operator==(const RobotRange&) const = default;
 };
 
+/// A robot whose next status is late, and where it was at the last one.
+struct LateRobot {
+  std::uint32_t robot = 0;   ///< id
+  std::uint32_t age_ms = 0;  ///< of the position when the beat was sent
+  double x_m = 0.0;          ///< position, world frame [m]
+  double y_m = 0.0;
+  bool operator==(const LateRobot&) const = default;
+};
+
 /// The launcher's sign of life, twice a second, with the robots that it does not receive. It states
 /// nothing about the others while `lists_all` is false: then there were more silent robots than a
 /// beat has room for. A plain value without heap memory, so that receiving one allocates nothing.
 struct LauncherBeat {
   static constexpr std::size_t kMaxRanges = 100;
+  static constexpr std::size_t kMaxLate = 24;  ///< the datagram is not fragmented
 
   std::uint64_t run = 0;       ///< of the run that it belongs to: the time of its begin [ns]
   std::uint64_t sequence = 0;  ///< from 1; a lower or equal one is out of date
   bool lists_all = true;
   std::uint32_t ranges = 0;  ///< number of those in use
   std::array<RobotRange, kMaxRanges> range{};
+  std::uint32_t late_robots = 0;  ///< number of those in use
+  std::array<LateRobot, kMaxLate> late_robot{};
 
   std::span<const RobotRange> silent() const { return std::span(range).first(ranges); }
+  std::span<const LateRobot> late() const { return std::span(late_robot).first(late_robots); }
 };
 
 /// Fills in the silent robots, whose ids ascend.
 void set_silent(LauncherBeat& beat, std::span<const RobotId> robots);
 
-/// The bytes of a beat, without the datagram's header: run, sequence, lists_all and the ranges, as
-/// little-endian integers of 8, 8, 4 and 4 + 4 bytes.
+/// Fills in the late robots; of more than kMaxLate the first.
+void set_late(LauncherBeat& beat, std::span<const LateRobot> robots);
+
+/// The bytes of a beat, without the datagram's header: run, sequence, lists_all, the number of
+/// ranges, the ranges and the late robots, as little-endian integers of 8, 8, 4, 4, 4 + 4 and
+/// 4 + 4 bytes, the latter with two doubles.
 void encode(const LauncherBeat& beat, std::vector<std::byte>& out);
 
 /// Empty if the bytes are no beat. The ids are not checked.

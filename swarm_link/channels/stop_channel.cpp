@@ -25,7 +25,7 @@ constexpr std::size_t kHeaderBytes = 8;
 using Header = std::array<char, kHeaderBytes>;
 constexpr Header kStop{'S', 'W', 'S', 'T', 'O', 'P', 0, 1};
 constexpr Header kConfirmation{'S', 'W', 'S', 'T', 'O', 'P', 1, 2};
-constexpr Header kBeat{'S', 'W', 'S', 'T', 'O', 'P', 2, 1};
+constexpr Header kBeat{'S', 'W', 'S', 'T', 'O', 'P', 2, 2};
 constexpr std::size_t kMaxBeats = 8;  // kept of those that arrive between two calls
 constexpr int kReceiveBytes = 1 << 18;
 constexpr std::size_t kMaxSenders = 8;  // that are answered: launcher and commands, not a flood

@@ -153,6 +153,83 @@ TEST(SilentRobots, AreNotThoseThatLeftTheCellsThatAreReceived) {
   EXPECT_EQ(sut.all().size(), 1U) << "received in between, it has left again";
 }
 
+/// Robots that were never received here; the launcher's beats list them as late.
+class LateRobots : public testing::Test {
+ protected:
+  void beat(int ms, const std::vector<link::LateRobot>& late) {
+    ++beat_.sequence;
+    link::set_late(beat_, late);
+    sut_.on_beat(beat_, at(ms));
+  }
+  std::size_t silent(int ms, bool is_received_there) {
+    sut_.update(at(ms), nothing_, [=](const Vec2&) { return is_received_there; });
+    return sut_.all().size();
+  }
+
+  SilentRobots sut_{options()};
+  const Whereabouts nothing_{clears()};
+  link::LauncherBeat beat_;
+};
+
+TEST_F(LateRobots, AreSilentWhereTheirCellsAreReceived) {
+  beat(10'000, {{.robot = 3, .age_ms = 1300, .x_m = 2.0, .y_m = 1.0}});
+
+  EXPECT_EQ(silent(10'000, false), 0U);
+  EXPECT_EQ(silent(10'200, true), 0U) << "a healthy robot need not have published since";
+  ASSERT_EQ(silent(10'800, true), 1U);
+  EXPECT_EQ(sut_.all()[0].robot, RobotId(3));
+  EXPECT_EQ(sut_.all()[0].centre_m, Vec2(2.0, 1.0));
+  EXPECT_NEAR(sut_.all()[0].radius_m, 0.2 + 1.5 * 2.1, 1e-9) << "since its last status";
+}
+
+TEST_F(LateRobots, AreSilentAtOnceInACellThatHasBeenReceivedForLong) {
+  beat(10'000, {{.robot = 3, .age_ms = 1300}});
+  EXPECT_EQ(silent(10'000, true), 1U);
+}
+
+TEST_F(LateRobots, AreForgottenOnceTheLauncherReceivesThemAgain) {
+  beat(10'000, {{.robot = 3, .age_ms = 1300}});
+  EXPECT_EQ(silent(10'100, false), 0U);
+  beat(10'500, {});
+  EXPECT_EQ(silent(10'500, false), 0U);
+  EXPECT_EQ(silent(20'000, true), 0U);
+}
+
+TEST_F(LateRobots, AreKeptWhileABeatStatesNothingAboutTheOthers) {
+  beat(10'000, {{.robot = 3, .age_ms = 1300}});
+  beat_.lists_all = false;
+  beat(10'500, {});
+  EXPECT_EQ(silent(10'500, false), 0U);
+  EXPECT_EQ(silent(20'000, true), 1U);
+}
+
+TEST_F(LateRobots, KeepTheirDiscsWhenTheyAreNotListedAnyMore) {
+  beat(10'000, {{.robot = 3, .age_ms = 1300}});
+  EXPECT_EQ(silent(10'000, true), 1U);
+  beat(10'500, {});
+  EXPECT_EQ(silent(10'500, true), 1U) << "received by the launcher, but not here";
+  sut_.on_state(state(3, 10'600, {2, 0}));
+  EXPECT_EQ(silent(10'600, true), 0U);
+}
+
+TEST_F(LateRobots, WereReceivedHereLater) {
+  sut_.on_state(state(3, 9'500, {5, 0}));
+  beat(10'000, {{.robot = 3, .age_ms = 1300, .x_m = 2.0}});
+  EXPECT_EQ(silent(10'100, true), 0U);
+  beat(10'500, {});
+  ASSERT_EQ(silent(10'600, true), 1U) << "received once: it stays";
+  EXPECT_EQ(sut_.all()[0].centre_m, Vec2(5.0, 0.0));
+}
+
+TEST_F(LateRobots, MoveTheDiscOfARobotThatIsSilentHereToTheirLastStatus) {
+  sut_.on_state(state(3, 7'000, {5, 0}));
+  EXPECT_EQ(silent(8'700, true), 1U);
+  beat(10'000, {{.robot = 3, .age_ms = 1300, .x_m = 4.0}});
+  ASSERT_EQ(silent(10'000, true), 1U);
+  EXPECT_EQ(sut_.all()[0].centre_m, Vec2(4.0, 0.0));
+  EXPECT_NEAR(sut_.all()[0].radius_m, 0.2 + 1.5 * 1.3, 1e-9);
+}
+
 TEST(SilentRobots, AreNeverThoseOfTheProcessNorUnknownOnes) {
   SilentRobots sut(options());
   const Whereabouts nothing(clears());

@@ -3,6 +3,7 @@
 #include "robot_agent/neighbours/whereabouts.hpp"
 
 #include <chrono>
+#include <limits>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -112,6 +113,20 @@ TEST_F(WhereaboutsTest, RefuseBeatsOfOthersOldOnesAndUnknownIds) {
 
   EXPECT_EQ(sut_.last_beat(), at(10));
   EXPECT_EQ(sut_.refused(), 4U);
+}
+
+TEST_F(WhereaboutsTest, RefuseLateRobotsThatTheMissionDoesNotHaveOrThatAreNowhere) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  const auto take = [&](const link::LateRobot& late) {
+    ++beat_.sequence;
+    link::set_late(beat_, {&late, 1});
+    return sut_.on_beat(beat_, at(1));
+  };
+  EXPECT_TRUE(take({.robot = 999, .x_m = 1.0, .y_m = 2.0}));
+  EXPECT_FALSE(take({.robot = 1000, .x_m = 1.0, .y_m = 2.0}));
+  EXPECT_FALSE(take({.robot = 3, .x_m = kNan, .y_m = 2.0}));
+  EXPECT_FALSE(take({.robot = 3, .x_m = 1.0, .y_m = std::numeric_limits<double>::infinity()}));
+  EXPECT_EQ(sut_.refused(), 3U);
 }
 
 TEST_F(WhereaboutsTest, ReportALauncherWhoseBeatsHaveStopped) {

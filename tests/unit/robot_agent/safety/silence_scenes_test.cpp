@@ -133,6 +133,20 @@ TEST(SilenceScenes, ADiscForEachRobotThatLeftTheCellsAvoidsNoContacts) {
   EXPECT_LE(elsewhere, silent + 1 + scenes() / 1000);
 }
 
+// A robot that falls silent before another receives it is in the launcher's beats.
+TEST(SilenceScenes, BeatsThatListLateRobotsAvoidContacts) {
+  int listed = 0, not_listed = 0;
+  for (int scene = 0; scene < scenes(); ++scene) {
+    const std::vector<RobotPart> parts = random_group(scene, 9.0);
+    const auto nearest = fly(parts, SilenceRule::kKeep, Cells::kLeftIsElsewhere);
+    listed += nearest.gap_m <= 0.0 ? 1 : 0;
+    not_listed += fly(parts, SilenceRule::kKeep, Cells::kNoLateRobots).gap_m <= 0.0 ? 1 : 0;
+  }
+  fmt::print("{} scenes with cells: {} contacts, {} without late robots in the beats\n", scenes(),
+             listed, not_listed);
+  EXPECT_LE(listed, not_listed);
+}
+
 TEST(SilenceScenes, AFrozenRobotIsPassedAndNotDrivenInto) {
   const std::vector<RobotPart> parts = {
       {.start_m = {-7, 0}, .goal_m = {7, 0}},

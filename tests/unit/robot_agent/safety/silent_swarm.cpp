@@ -150,7 +150,11 @@ void SilentSwarm::receive(Robot& robot) {
       robot.whereabouts.on_scene(scene_);
     }
   }
-  for (const link::LauncherBeat& beat : robot.beats) robot.whereabouts.on_beat(beat, now);
+  for (const link::LauncherBeat& beat : robot.beats) {
+    if (robot.whereabouts.on_beat(beat, now) && cells_ != Cells::kNoLateRobots) {
+      robot.silent.on_beat(beat, now);
+    }
+  }
   for (const NeighbourReport& report : robot.socket) {
     robot.table.take(report, robot.position_m, now - report.as_of);
     robot.silent.on_state({report.robot, report.as_of, report.position_m});
@@ -160,7 +164,7 @@ void SilentSwarm::receive(Robot& robot) {
   robot.beats.clear();
   robot.socket.clear();
   SilentRobots::ReceivesAt receives_at;
-  if (cells_ == Cells::kLeftIsElsewhere) {
+  if (cells_ == Cells::kLeftIsElsewhere || cells_ == Cells::kNoLateRobots) {
     receives_at = [&](const Vec2& position_m) { return robot.interest.covers(position_m); };
   }
   robot.silent.update(now, robot.whereabouts, receives_at);
@@ -255,10 +259,18 @@ Circle SilentSwarm::fallen(const Robot& robot) const {
 /// The launcher: beats, and the bodies of silent robots.
 void SilentSwarm::launch() {
   if (now_ms_ % kBeatEvery_ms != 0) return;
+  constexpr double kStatus_hz = 1000.0 / kStatusEvery_ms;
   std::vector<RobotId> silent;
+  std::vector<link::LateRobot> late;
   for (const auto& robot : robots_) {
-    const bool is_silent =
-        milliseconds(now_ms_ - robot->status_ms) > reported_silence(1000.0 / kStatusEvery_ms);
+    const int silence_ms = now_ms_ - robot->status_ms;
+    const bool is_silent = milliseconds(silence_ms) > reported_silence(kStatus_hz);
+    if (milliseconds(silence_ms) > late_status(kStatus_hz)) {
+      late.push_back({.robot = robot->id.value(),
+                      .age_ms = static_cast<std::uint32_t>(silence_ms),
+                      .x_m = robot->status_m.x(),
+                      .y_m = robot->status_m.y()});
+    }
     if (is_silent) silent.push_back(robot->id);
     if (is_silent == has_body(scene_, robot->id)) continue;
     const SceneChange change = is_silent ? SceneChange(AddBody{robot->id, fallen(*robot)})
@@ -270,6 +282,7 @@ void SilentSwarm::launch() {
   }
   ++beat_.sequence;
   link::set_silent(beat_, silent);
+  link::set_late(beat_, late);
   for (const auto& robot : robots_) {
     if (!robot->part.cut_off.covers(now_ms_)) robot->beats.push_back(beat_);
   }

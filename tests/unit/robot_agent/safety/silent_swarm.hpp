@@ -52,7 +52,8 @@ enum class Cells {
   kOne,              ///< all
   kLeftIsElsewhere,  ///< those of the cells around it, as by groups; it takes the robot for
                      ///< elsewhere
-  kLeftIsSilent      ///< the same; it takes the robot for silent
+  kLeftIsSilent,     ///< the same; it takes the robot for silent
+  kNoLateRobots      ///< as kLeftIsElsewhere, and beats list no late robots
 };
 
 class SilentSwarm {

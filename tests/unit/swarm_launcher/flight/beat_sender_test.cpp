@@ -24,7 +24,10 @@ TEST(BeatSender, SendsTwiceASecondAndListsTheRobotsThatAreNotReceived) {
   BeatSender sut(*link::StopSender::open({.domain = 218}), 77);
   supervisor.on_status(RobotId(3), {});
 
-  for (int ms = 0; ms <= 1000; ms += 20) sut.step(at(ms), supervisor);
+  LateRobots late(5, 1.0);
+  late.on_status(RobotId(3), {4.0, 2.0}, at(-1600), at(-600));
+
+  for (int ms = 0; ms <= 1000; ms += 20) sut.step(at(ms), supervisor, late);
 
   std::vector<link::LauncherBeat> beats;
   for (int i = 0; i < 5000 && beats.size() < 3; ++i) {
@@ -39,7 +42,10 @@ TEST(BeatSender, SendsTwiceASecondAndListsTheRobotsThatAreNotReceived) {
     ASSERT_EQ(beats[i].silent().size(), 2U);
     EXPECT_EQ(beats[i].silent()[0], (link::RobotRange{0, 3}));
     EXPECT_EQ(beats[i].silent()[1], (link::RobotRange{4, 1}));
+    EXPECT_EQ(beats[i].late().size(), i == 2 ? 1U : 0U) << "late from 1.25 s after its status on";
   }
+  EXPECT_EQ(beats[2].late()[0],
+            (link::LateRobot{.robot = 3, .age_ms = 2600, .x_m = 4.0, .y_m = 2.0}));
 }
 
 TEST(BeatSender, StatesNothingAboutTheOthersWhileRobotsMayNotReceiveEachOther) {
@@ -48,8 +54,9 @@ TEST(BeatSender, StatesNothingAboutTheOthersWhileRobotsMayNotReceiveEachOther) {
   const Supervisor supervisor({.robots = 5, .launcher = {}, .script = {}}, at(0));
   BeatSender sut(*link::StopSender::open({.domain = 219}), 77);
 
-  sut.step(at(0), supervisor, false);
-  sut.step(at(500), supervisor, true);
+  LateRobots late(5, 1.0);
+  sut.step(at(0), supervisor, late, false);
+  sut.step(at(500), supervisor, late, true);
 
   std::vector<link::LauncherBeat> beats;
   for (int i = 0; i < 5000 && beats.size() < 2; ++i) {

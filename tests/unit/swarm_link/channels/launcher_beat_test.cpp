@@ -40,9 +40,20 @@ TEST(LauncherBeat, StatesThatItHasNoRoomForAll) {
   EXPECT_EQ(beat.silent().size(), LauncherBeat::kMaxRanges);
 }
 
+TEST(LauncherBeat, HasTheFirstLateRobotsThatItHasRoomFor) {
+  LauncherBeat beat;
+  set_late(beat, std::vector<LateRobot>(LauncherBeat::kMaxLate + 1, LateRobot{.robot = 7}));
+  EXPECT_EQ(beat.late().size(), LauncherBeat::kMaxLate);
+  set_late(beat, std::vector<LateRobot>{{.robot = 1}, {.robot = 2}});
+  ASSERT_EQ(beat.late().size(), 2U);
+  EXPECT_EQ(beat.late()[0].robot, 1U);
+}
+
 TEST(LauncherBeat, IsDecodedAsItWasEncoded) {
   LauncherBeat beat{.run = 0x0123'4567'89AB'CDEF, .sequence = 42};
   set_silent(beat, ids({3, 4, 4'000'000'000}));
+  set_late(beat, std::vector<LateRobot>{{.robot = 5, .age_ms = 1300, .x_m = -1.5, .y_m = 1e6},
+                                        {.robot = 9, .age_ms = 2900, .x_m = 0.0, .y_m = 2.0}});
   beat.lists_all = false;
   std::vector<std::byte> bytes;
   encode(beat, bytes);
@@ -54,21 +65,31 @@ TEST(LauncherBeat, IsDecodedAsItWasEncoded) {
   EXPECT_EQ(decoded->sequence, 42U);
   EXPECT_FALSE(decoded->lists_all);
   EXPECT_TRUE(std::ranges::equal(decoded->silent(), beat.silent()));
+  EXPECT_TRUE(std::ranges::equal(decoded->late(), beat.late()));
 }
 
 TEST(LauncherBeat, IsNotDecodedFromOtherBytes) {
+  constexpr std::size_t kFixed = 24, kRange = 8, kLate = 24;
   LauncherBeat beat;
   set_silent(beat, ids({3}));
+  set_late(beat, std::vector<LateRobot>(2));
   std::vector<std::byte> bytes;
   encode(beat, bytes);
   for (std::size_t size = 0; size < bytes.size(); ++size) {
-    if (size == 20) continue;  // a beat without ranges
+    if (size == kFixed + kRange || size == kFixed + kRange + kLate) continue;  // less late robots
     EXPECT_FALSE(decode_beat(std::span(bytes).first(size))) << size;
   }
   bytes[16] = std::byte{2};
   EXPECT_FALSE(decode_beat(bytes)) << "neither all nor not all";
-  EXPECT_FALSE(decode_beat(std::vector<std::byte>(20 + 8 * 101))) << "too many ranges";
-  EXPECT_TRUE(decode_beat(std::vector<std::byte>(20 + 8 * 100)));
+
+  const auto beat_of = [](std::size_t ranges, std::size_t late) {
+    std::vector<std::byte> made(kFixed + kRange * ranges + kLate * late);
+    made[20] = static_cast<std::byte>(ranges);
+    return decode_beat(made);
+  };
+  EXPECT_TRUE(beat_of(LauncherBeat::kMaxRanges, LauncherBeat::kMaxLate));
+  EXPECT_FALSE(beat_of(LauncherBeat::kMaxRanges + 1, 0));
+  EXPECT_FALSE(beat_of(0, LauncherBeat::kMaxLate + 1));
 }
 
 }  // namespace
