@@ -36,16 +36,18 @@ function(swarm_unity)
   endforeach()
 endfunction()
 
-# One precompiled header for targets with the same flags: `owner` builds it, the others read it.
+# One precompiled header for targets with the same flags: `owner` builds it, the others read it. ALSO: more headers in it.
+# Not CLI11: its global objects would cost each source file two seconds or more.
 function(swarm_precompile owner)
   if(NOT SWARM_FAST_BUILD)
     return()
   endif()
+  cmake_parse_arguments(PARSE_ARGV 1 ARG "" "" "ALSO")
   target_precompile_headers(${owner} PRIVATE
     <Eigen/Core> <Eigen/Eigenvalues> <Eigen/LU> <fmt/format.h> <tl/expected.hpp>
     <algorithm> <array> <cmath> <cstdint> <filesystem> <functional> <limits> <map> <memory> <optional> <span> <string>
-    <string_view> <utility> <variant> <vector>)
-  foreach(target IN LISTS ARGN)
+    <string_view> <utility> <variant> <vector> ${ARG_ALSO})
+  foreach(target IN LISTS ARG_UNPARSED_ARGUMENTS)
     target_link_libraries(${target} PRIVATE fmt::fmt)  # its flags are part of the precompiled header
     target_precompile_headers(${target} REUSE_FROM ${owner})
   endforeach()
