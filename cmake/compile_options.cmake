@@ -36,6 +36,17 @@ function(swarm_unity)
   endforeach()
 endfunction()
 
+# The same for some sources of a library of the control loop, none of which runs at every step.
+function(swarm_unity_of target)
+  if(NOT SWARM_FAST_BUILD)
+    return()
+  endif()
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
+  get_target_property(folder ${target} SOURCE_DIR)
+  list(TRANSFORM ARGN PREPEND ${folder}/ OUTPUT_VARIABLE sources)
+  set_source_files_properties(${sources} TARGET_DIRECTORY ${target} PROPERTIES UNITY_GROUP not_at_every_step)
+endfunction()
+
 # One precompiled header for targets with the same flags: `owner` builds it, the others read it. ALSO: more headers in it.
 # Not CLI11: its global objects would cost each source file two seconds or more.
 function(swarm_precompile owner)
