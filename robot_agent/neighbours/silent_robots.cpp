@@ -40,7 +40,8 @@ SilentRobots::Received& SilentRobots::received(const State& state) {
   std::uint32_t& index = index_of_[state.robot.value()];
   if (index == kNone) {
     index = static_cast<std::uint32_t>(received_.size());
-    received_.push_back({.last = state, .missed_since = state.as_of, .is_reported = true});
+    received_.push_back(
+        {.last = state, .missed_since = state.as_of, .is_reported = true, .is_status = true});
   }
   return received_[index];
 }
@@ -54,54 +55,71 @@ void SilentRobots::on_state(const State& state) {
 }
 
 /// A later position makes a disc smaller and does not end it: the robot is still not received here.
-void SilentRobots::on_beat(const link::LauncherBeat& beat, SteadyTime now) {
-  for (Received& robot : received_) robot.is_listed = !beat.lists_all;
+void SilentRobots::on_beat(const link::LauncherBeat& beat, SteadyTime sent) {
   for (const link::LateRobot& late : beat.late()) {
     const State state{.robot = RobotId(late.robot),
-                      .as_of = now - std::chrono::milliseconds(late.age_ms),
+                      .as_of = sent - std::chrono::milliseconds(late.age_ms),
                       .position_m = {late.x_m, late.y_m}};
     if (!covers(state.robot)) continue;
     Received& robot = received(state);
-    robot.is_listed = true;
     if (robot.last.as_of >= state.as_of) continue;
     robot.last = state;
     robot.missed_since = state.as_of;
+    robot.has_left = false;
+    robot.is_status = true;
   }
 }
 
-/// Robots that are well elsewhere are forgotten, and those that only the launcher had reported as
-/// late and receives again; the others close ranks, in their order. A robot
-/// whose body is an obstacle is kept: the launcher may clear the body as soon as it receives the
-/// robot, before the robot's next state arrives here, or may know little of where the body is.
+/// Whether nothing speaks for the robot being near its last position: the launcher has received it
+/// since, and here only the launcher had reported it, or it has left the cells that are received;
+/// or the launcher has received it for long.
+bool SilentRobots::is_elsewhere(const Received& robot, SteadyTime now,
+                                const Whereabouts& whereabouts) const {
+  const auto& [id, as_of, position_m] = robot.last;
+  if (robot.is_reported && !whereabouts.may_be_late(id, now)) return true;
+  if (robot.has_left && !robot.is_silent && whereabouts.is_alive(id, as_of, now)) return true;
+  return now - as_of > options_.expected_silence && whereabouts.is_well(id, as_of, now);
+}
+
+/// Robots that are elsewhere are forgotten; the others close ranks, in their order. A robot whose
+/// body is an obstacle is kept: the launcher may clear the body as soon as it receives the robot,
+/// before the robot's next state arrives here, or may know little of where the body is.
 void SilentRobots::update(SteadyTime now, const Whereabouts& whereabouts,
                           const ReceivesAt& receives_at) {
   silent_.clear();
   std::uint32_t kept = 0;
   for (Received& robot : received_) {
     const State& state = robot.last;
-    if (receives_at && !receives_at(state.position_m)) robot.missed_since = now;
-    robot.is_silent |= now - robot.missed_since > options_.expected_silence;
-    const Duration age = now - state.as_of;
-    const bool is_withdrawn = robot.is_reported && !robot.is_listed && !robot.is_silent;
-    if (is_withdrawn ||
-        (age > options_.expected_silence && whereabouts.is_well(state.robot, state.as_of, now))) {
+    if (receives_at && !receives_at(state.position_m)) {
+      robot.missed_since = now;
+      robot.has_left = true;
+    }
+    if (is_elsewhere(robot, now, whereabouts)) {
       index_of_[state.robot.value()] = kNone;
       continue;
     }
+    robot.is_silent |= now - robot.missed_since > options_.expected_silence;
+    const Duration age = now - state.as_of;
     const std::optional<double> body_m = whereabouts.obstacle_radius_m(state.robot);
     const bool is_there =
         body_m &&
         (*body_m <= options_.frozen_body_radius_m[state.robot.value()] || age > kDrivesOnFor);
-    if (robot.is_silent && !is_there) silent_.push_back(possible_positions(state, age));
+    if (robot.is_silent && !is_there) silent_.push_back(possible_positions(robot, age));
     index_of_[state.robot.value()] = kept;
     received_[kept++] = robot;
   }
   received_.resize(kept);
 }
 
-SilentRobot SilentRobots::possible_positions(const State& state, Duration age) const {
+/// Between two statuses a robot drives for longer than between two states before it can have been
+/// cut off.
+SilentRobot SilentRobots::possible_positions(const Received& robot, Duration age) const {
+  const State& state = robot.last;
   const Fleet::Body& body = options_.fleet.of(state.robot);
-  const Duration stands_after = options_.expected_silence + options_.dead_man;
+  const Duration cut_off_after = robot.is_status
+                                     ? std::max(options_.expected_silence, options_.expected_status)
+                                     : options_.expected_silence;
+  const Duration stands_after = cut_off_after + options_.dead_man;
   return {.robot = state.robot,
           .centre_m = state.position_m,
           .radius_m = body.radius_m + body.speed_max_mps * to_seconds(std::min(age, stands_after)),
@@ -121,6 +139,7 @@ SilenceOptions silence_options(const Mission& mission, RobotId first, std::uint3
       .own = count,
       .frozen_body_radius_m = std::move(frozen_m),
       .expected_silence = silence,
+      .expected_status = from_seconds(1.0 / mission.link.status_hz) + period,
       .dead_man = from_seconds(mission.timing.planner_silence_s + largest_lag_s(mission.robots)) +
                   silence + 2 * period};
 }

@@ -26,6 +26,7 @@ struct SilenceOptions {
   /// By robot: up to this radius, the circle of its body shows that it froze.
   std::vector<double> frozen_body_radius_m{};
   Duration expected_silence{};  ///< σ: a healthy robot publishes at least this often
+  Duration expected_status{};   ///< P: and its status at least this often
   Duration dead_man{};          ///< D: a robot that is cut off stands at the latest after this time
 };
 
@@ -50,11 +51,13 @@ struct SilentRobot {
 /// A robot whose last state lies in a cell that the process does not receive has not fallen silent:
 /// it has left, or was left behind. If it is healthy, it is received again before it is near. It is
 /// silent once the process has received that cell for σ, and not the robot; its disc has its full
-/// size then. A disc that exists stays, whatever the process receives.
+/// size then. It is forgotten before if the launcher has received it since. A disc that exists
+/// stays, whatever the process receives.
 ///
 /// A robot that falls silent before this process receives it is known from the launcher's beats:
-/// they list where a robot was whose next status is late (1.25 periods of the statuses). It is
-/// treated as if its state had been received at that time, until a beat does not list it any more.
+/// they list where a robot was whose next status is late. It is treated as if its state had been
+/// received at that time, with P, the period of its statuses, for σ in the bound below. It is
+/// forgotten when the launcher receives it again.
 ///
 /// A robot whose last state has position p is, at age α, within
 ///
@@ -83,9 +86,9 @@ struct SilentRobot {
 /// walls or others, may be overtaken by the disc, and then stand; a silent robot that follows no
 /// protocol can reach those within. One whose states alone are lost drives on, as the launcher
 /// receives it: it keeps off those that it receives, but two of them can meet beyond their discs. A
-/// robot that is cut off from planner and launcher, too, can drive for D towards others before a
-/// beat lists it; cells are joined half a metre (groups) or six (topics) beyond the communication
-/// radius.
+/// robot that is cut off drives for up to σ + D, and others that have not received it learn of it
+/// from a beat, a status period or two later: cells are joined half a metre (groups) or six
+/// (topics) beyond the communication radius.
 ///
 /// Shared by the robots of a process. Pure; the time is passed in. No allocation once made.
 class SilentRobots {
@@ -100,8 +103,8 @@ class SilentRobots {
   };
   void on_state(const State& state);
 
-  /// The late robots of a beat that Whereabouts has taken. O(robots received and not cleared).
-  void on_beat(const link::LauncherBeat& beat, SteadyTime now);
+  /// The late robots of a beat that Whereabouts has taken, and when it was sent. O(late robots).
+  void on_beat(const link::LauncherBeat& beat, SteadyTime sent);
 
   /// Whether the states of a robot at a position are received. Empty: everywhere.
   using ReceivesAt = std::function<bool(const Vec2& position_m)>;
@@ -124,11 +127,13 @@ class SilentRobots {
     State last;
     SteadyTime missed_since;  // its cell has been received since then, but not the robot
     bool is_silent = false;
+    bool has_left = false;     // its cell has not been received at some time since
     bool is_reported = false;  // known from the launcher's beats alone
-    bool is_listed = false;    // by the last beat
+    bool is_status = false;    // `last` is from a beat
   };
   Received& received(const State& state);
-  SilentRobot possible_positions(const State& state, Duration age) const;
+  bool is_elsewhere(const Received& robot, SteadyTime now, const Whereabouts& whereabouts) const;
+  SilentRobot possible_positions(const Received& robot, Duration age) const;
 
   SilenceOptions options_;
   std::vector<Received> received_;

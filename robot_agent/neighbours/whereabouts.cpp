@@ -12,7 +12,7 @@
 namespace swarm::agent {
 
 Whereabouts::Whereabouts(const WhereaboutsOptions& options)
-    : options_(options), listed_at_(options.robots) {}
+    : options_(options), listed_at_(options.robots), late_in_(options.robots) {}
 
 bool Whereabouts::is_valid(const link::LauncherBeat& beat) const {
   const auto has_known_ids = [&](const link::RobotRange& range) {
@@ -26,7 +26,7 @@ bool Whereabouts::is_valid(const link::LauncherBeat& beat) const {
 }
 
 /// A beat that does not list all silent robots is a sign of life, but ends what earlier ones state.
-bool Whereabouts::on_beat(const link::LauncherBeat& beat, SteadyTime now) {
+bool Whereabouts::on_beat(const link::LauncherBeat& beat, SteadyTime now, SteadyTime sent) {
   if (beat.run != options_.run || beat.sequence <= sequence_ || !is_valid(beat)) {
     ++refused_;
     return false;
@@ -36,7 +36,11 @@ bool Whereabouts::on_beat(const link::LauncherBeat& beat, SteadyTime now) {
   last_beat_ = now;
   for (const link::RobotRange& range : beat.silent()) {
     std::fill_n(listed_at_.begin() + range.first, range.count, now);
+    std::fill_n(late_in_.begin() + range.first, range.count, sequence_);
   }
+  for (const link::LateRobot& late : beat.late()) late_in_[late.robot] = sequence_;
+  lists_all_late_ = beat.lists_all_late;
+  complete_sent_ = beat.lists_all && beat.lists_all_late ? std::min(sent, now) : SteadyTime{};
   return true;
 }
 
@@ -64,6 +68,15 @@ bool Whereabouts::is_well(RobotId robot, SteadyTime last_state, SteadyTime now) 
   return *last_beat_ - begin >= options_.healthy_after;
 }
 
+bool Whereabouts::may_be_late(RobotId robot, SteadyTime now) const {
+  if (!last_beat_ || now - *last_beat_ > options_.beat_timeout || !lists_all_late_) return true;
+  return robot.value() >= late_in_.size() || late_in_[robot.value()] == sequence_;
+}
+
+bool Whereabouts::is_alive(RobotId robot, SteadyTime last_state, SteadyTime now) const {
+  return !may_be_late(robot, now) && complete_sent_ - last_state >= options_.alive_after;
+}
+
 WhereaboutsOptions whereabouts_options(const Mission& mission, std::uint64_t run) {
   const Duration beat = from_seconds(1.0 / kBeatHz);
   return {.robots = mission.robots.count,
@@ -73,7 +86,9 @@ WhereaboutsOptions whereabouts_options(const Mission& mission, std::uint64_t run
           // The last status may have been sent just before the robot was cut off, the beat that
           // lists it follows up to a period later, and may wait in a socket for up to a gap.
           .healthy_after = reported_silence(mission.link.status_hz) +
-                           from_seconds(1.0 / mission.link.status_hz) + 4 * beat};
+                           from_seconds(1.0 / mission.link.status_hz) + 4 * beat,
+          .alive_after =
+              late_status(mission.link.status_hz) + from_seconds(mission.timing.clock_skew_warn_s)};
 }
 
 }  // namespace swarm::agent

@@ -24,6 +24,8 @@ struct WhereaboutsOptions {
   /// Without a gap for this long, a robot that the launcher has not received for all that time
   /// would have been listed as silent.
   Duration healthy_after{};
+  /// In a beat that was sent this long after its last status, a robot would be listed as late.
+  Duration alive_after{};
 };
 
 /// What launcher and scene state about robots that are not received: which are obstacles, and which
@@ -34,8 +36,9 @@ class Whereabouts {
 
   /// Takes a beat. One of another run, out of order, with ids that the mission does not have or
   /// with numbers that are not finite is ignored and counted. O(silent and late robots).
+  /// \param sent when it was sent
   /// \return whether it was taken
-  bool on_beat(const link::LauncherBeat& beat, SteadyTime now);
+  bool on_beat(const link::LauncherBeat& beat, SteadyTime now, SteadyTime sent);
   /// Takes the scene, for the robots whose bodies are obstacles. O(obstacles).
   void on_scene(const Scene& scene);
 
@@ -47,6 +50,14 @@ class Whereabouts {
   /// `last_state` since then: it is well, somewhere else. This takes `healthy_after` of beats
   /// without a gap up to now, none of which lists the robot.
   bool is_well(RobotId robot, SteadyTime last_state, SteadyTime now) const;
+  /// Whether the launcher has received a status that the robot sent after `last_state`: the last
+  /// beat, sent late enough, does not list it as late or silent. This is known sooner than
+  /// is_well().
+  bool is_alive(RobotId robot, SteadyTime last_state, SteadyTime now) const;
+
+  /// Whether the launcher may lack the robot's next status: the last beat lists the robot as late
+  /// or silent, or does not list all who are late, or is out of date.
+  bool may_be_late(RobotId robot, SteadyTime now) const;
 
   /// Whether beats had been received and have stopped.
   bool is_launcher_lost(SteadyTime now) const {
@@ -64,7 +75,10 @@ class Whereabouts {
   SteadyTime since_;  // of the first beat after the last gap
   std::uint64_t sequence_ = 0;
   std::uint64_t refused_ = 0;
-  std::vector<SteadyTime> listed_at_;  // by robot: the last beat that lists it
+  std::vector<SteadyTime> listed_at_;   // by robot: the last beat that lists it
+  SteadyTime complete_sent_;            // of the last beat, if it lists all late and silent robots
+  bool lists_all_late_ = false;         // whether the last beat does
+  std::vector<std::uint64_t> late_in_;  // by robot: the last beat that lists it as late or silent
   struct Body {
     RobotId robot;
     double radius_m;

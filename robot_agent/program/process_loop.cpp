@@ -87,7 +87,11 @@ void ProcessLoop::receive(const Time& time) {
   if (bus_.stops) {
     if (const auto stop = bus_.stops->take()) inbox_.receive(*stop, time.utc_now);
     for (const link::LauncherBeat& beat : bus_.stops->beats()) {
-      if (whereabouts_.on_beat(beat, time.now)) silent_.on_beat(beat, time.now);
+      const SteadyTime sent =
+          time.now - (time.utc_now - UtcTime(Duration(beat.sent_ns)));  // by the run's clock
+      if (whereabouts_.on_beat(beat, time.now, sent)) {
+        silent_.on_beat(beat, std::min(sent, time.now));
+      }
     }
   }
 }

@@ -16,9 +16,11 @@ inline Duration reported_silence(double rate_hz) {
   return std::max<Duration>(std::chrono::seconds(3), from_seconds(3.0 / rate_hz));
 }
 
-/// Without a status for this long, the launcher lists a robot as late in its beats: a quarter of a
-/// period beyond the next one.
-inline Duration late_status(double rate_hz) { return from_seconds(1.25 / rate_hz); }
+/// When its last status is this old, the launcher lists a robot as late in its beats: a quarter of
+/// a period beyond the next one, and at least 0.2 s.
+inline Duration late_status(double rate_hz) {
+  return from_seconds(std::max(1.25 / rate_hz, 1.0 / rate_hz + 0.2));
+}
 
 /// Rate of the launcher's beats.
 inline constexpr double kBeatHz = 2.0;

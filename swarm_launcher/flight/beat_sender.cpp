@@ -13,13 +13,14 @@ BeatSender::BeatSender(std::unique_ptr<link::StopSender> sender, std::uint64_t r
   beat_.run = run;
 }
 
-void BeatSender::step(SteadyTime now, const Supervisor& supervisor, LateRobots& late,
+void BeatSender::step(const FlightTime& now, const Supervisor& supervisor, LateRobots& late,
                       bool lists_all) {
-  if (sent_at_ && now - *sent_at_ < from_seconds(1.0 / kBeatHz)) return;
-  sent_at_ = now;
+  if (sent_at_ && now.steady - *sent_at_ < from_seconds(1.0 / kBeatHz)) return;
+  sent_at_ = now.steady;
   ++beat_.sequence;
   link::set_silent(beat_, supervisor.silent());
-  link::set_late(beat_, late.at(now));
+  late.list(now.steady, beat_);
+  beat_.sent_ns = now.utc.time_since_epoch().count();
   beat_.lists_all = beat_.lists_all && lists_all;
   sender_->send(beat_);
 }

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 
+#include "swarm_launcher/flight/flight_time.hpp"
 #include "swarm_launcher/flight/late_robots.hpp"
 #include "swarm_launcher/supervision/supervisor.hpp"
 #include "swarm_link/channels/stop_channel.hpp"
@@ -24,7 +25,8 @@ class BeatSender {
   /// Sends a beat if one is due. Call it often. `lists_all`: robots that are not listed may be
   /// taken for healthy ones somewhere else; false while a gateway does not run, since those beyond
   /// it are not received where they are near.
-  void step(SteadyTime now, const Supervisor& supervisor, LateRobots& late, bool lists_all = true);
+  void step(const FlightTime& now, const Supervisor& supervisor, LateRobots& late,
+            bool lists_all = true);
 
  private:
   std::unique_ptr<link::StopSender> sender_;

@@ -69,7 +69,7 @@ Result<void> FlightLoop::step(const FlightTime& now) {
   if (ports_.beats != nullptr) {
     const bool lists_all =
         supervisor_.knows_silent(now.steady) && !ports_.helpers.is_gateway_down();
-    ports_.beats->step(now.steady, supervisor_, late_, lists_all);
+    ports_.beats->step(now, supervisor_, late_, lists_all);
   }
   if (const auto message = ports_.helpers.message()) ports_.display.print(*message);
   if (ports_.observer != nullptr) ports_.observer->on_step(*this, now.steady);

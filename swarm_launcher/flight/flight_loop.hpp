@@ -16,6 +16,7 @@
 #include "swarm_launcher/flight/fallen_robots.hpp"
 #include "swarm_launcher/flight/flight_choices.hpp"
 #include "swarm_launcher/flight/flight_ports.hpp"
+#include "swarm_launcher/flight/flight_time.hpp"
 #include "swarm_launcher/flight/late_robots.hpp"
 #include "swarm_launcher/flight/swarm_view.hpp"
 #include "swarm_launcher/supervision/event_throttle.hpp"
@@ -23,12 +24,6 @@
 #include "swarm_launcher/supervision/supervisor.hpp"
 
 namespace swarm::launcher {
-
-/// The present time on both clocks.
-struct FlightTime {
-  SteadyTime steady;
-  UtcTime utc;
-};
 
 /// Flies one mission: the Supervisor decides, the loop executes its decisions and reports back what
 /// came of them. The caller calls step() every 20 ms or so with the time; all else is behind the

@@ -2,8 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
-#include <span>
+#include <optional>
 #include <vector>
 
 #include "swarm_link/channels/launcher_beat.hpp"
@@ -14,9 +15,10 @@
 namespace swarm::launcher {
 
 /// The robots whose next status is late, for the launcher's beats: a robot that approaches one of
-/// them without having received it would take its place for free. A robot is late from
-/// late_status() after its last status on; once it is reported as silent, its body is an obstacle
-/// of the scene, and three seconds later it is late no more. Pure; the times are passed in.
+/// them without having received it would take its place for free. A robot is late when its last
+/// status is older than late_status(), until it has been silent for three seconds longer than it
+/// takes to be reported as such: then its body has been an obstacle of the scene for long. Pure;
+/// the times are passed in.
 class LateRobots {
  public:
   LateRobots(std::uint32_t robots, double status_hz);
@@ -24,9 +26,11 @@ class LateRobots {
   /// A status, which was received at `now`, of a position that was measured at `measured`.
   void on_status(RobotId robot, const Vec2& position_m, SteadyTime measured, SteadyTime now);
 
-  /// Those that are late at `now`, the newest positions first; valid until the next call.
+  /// Fills in those that are late at `now`; of more than a beat has room for others at each call.
+  /// After a gap of more than a second between two calls the launcher was suspended: statuses that
+  /// have arrived since may not have been read yet, so that for a while it states nothing.
   /// O(robots).
-  std::span<const link::LateRobot> at(SteadyTime now);
+  void list(SteadyTime now, link::LauncherBeat& beat);
 
  private:
   struct Last {
@@ -38,6 +42,9 @@ class LateRobots {
 
   Duration from_;
   Duration to_;
+  std::optional<SteadyTime> listed_at_{};  // last call
+  SteadyTime silent_until_;                // after a gap
+  std::size_t next_ = 0;                   // first of the next beat, where there are too many
   std::vector<Last> last_;
   std::vector<link::LateRobot> late_;
 };

@@ -11,7 +11,9 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little);
 
-constexpr std::size_t kFixedBytes = 24;
+constexpr std::size_t kFixedBytes = 32;
+constexpr std::uint32_t kListsAll = 1;
+constexpr std::uint32_t kListsAllLate = 2;
 static_assert(sizeof(RobotRange) == 8 && sizeof(LateRobot) == 24);
 
 template <class Number>
@@ -49,6 +51,7 @@ void set_silent(LauncherBeat& beat, std::span<const RobotId> robots) {
 }
 
 void set_late(LauncherBeat& beat, std::span<const LateRobot> robots) {
+  beat.lists_all_late = robots.size() <= LauncherBeat::kMaxLate;
   beat.late_robots = static_cast<std::uint32_t>(std::min(robots.size(), LauncherBeat::kMaxLate));
   std::copy_n(robots.begin(), beat.late_robots, beat.late_robot.begin());
 }
@@ -57,7 +60,8 @@ void encode(const LauncherBeat& beat, std::vector<std::byte>& out) {
   out.clear();
   put(out, beat.run);
   put(out, beat.sequence);
-  put(out, static_cast<std::uint32_t>(beat.lists_all ? 1 : 0));
+  put(out, beat.sent_ns);
+  put(out, (beat.lists_all ? kListsAll : 0U) | (beat.lists_all_late ? kListsAllLate : 0U));
   put(out, beat.ranges);
   for (const RobotRange& range : beat.silent()) {
     put(out, range.first);
@@ -76,11 +80,13 @@ std::optional<LauncherBeat> decode_beat(std::span<const std::byte> bytes) {
   LauncherBeat beat;
   beat.run = get<std::uint64_t>(bytes);
   beat.sequence = get<std::uint64_t>(bytes);
-  const auto lists_all = get<std::uint32_t>(bytes);
+  beat.sent_ns = get<std::int64_t>(bytes);
+  const auto flags = get<std::uint32_t>(bytes);
   const auto ranges = get<std::uint32_t>(bytes);
-  if (lists_all > 1 || ranges > LauncherBeat::kMaxRanges) return std::nullopt;
+  if (flags > (kListsAll | kListsAllLate) || ranges > LauncherBeat::kMaxRanges) return std::nullopt;
   if (bytes.size() < ranges * sizeof(RobotRange)) return std::nullopt;
-  beat.lists_all = lists_all == 1;
+  beat.lists_all = (flags & kListsAll) != 0;
+  beat.lists_all_late = (flags & kListsAllLate) != 0;
   for (; beat.ranges < ranges; ++beat.ranges) {
     RobotRange& range = beat.range[beat.ranges];
     range.first = get<std::uint32_t>(bytes);

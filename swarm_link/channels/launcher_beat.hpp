@@ -38,8 +38,10 @@ struct LauncherBeat {
 
   std::uint64_t run = 0;       ///< of the run that it belongs to: the time of its begin [ns]
   std::uint64_t sequence = 0;  ///< from 1; a lower or equal one is out of date
+  std::int64_t sent_ns = 0;    ///< when it was sent, by the run's clock [ns]
   bool lists_all = true;
-  std::uint32_t ranges = 0;  ///< number of those in use
+  bool lists_all_late = true;  ///< whether `late()` are all whose status is late
+  std::uint32_t ranges = 0;    ///< number of those in use
   std::array<RobotRange, kMaxRanges> range{};
   std::uint32_t late_robots = 0;  ///< number of those in use
   std::array<LateRobot, kMaxLate> late_robot{};
@@ -51,12 +53,12 @@ struct LauncherBeat {
 /// Fills in the silent robots, whose ids ascend.
 void set_silent(LauncherBeat& beat, std::span<const RobotId> robots);
 
-/// Fills in the late robots; of more than kMaxLate the first.
+/// Fills in the late robots; of more than kMaxLate the first, and then not all are listed.
 void set_late(LauncherBeat& beat, std::span<const LateRobot> robots);
 
-/// The bytes of a beat, without the datagram's header: run, sequence, lists_all, the number of
-/// ranges, the ranges and the late robots, as little-endian integers of 8, 8, 4, 4, 4 + 4 and
-/// 4 + 4 bytes, the latter with two doubles.
+/// The bytes of a beat, without the datagram's header: run, sequence, sent_ns, flags (1: lists_all,
+/// 2: lists_all_late), the number of ranges, the ranges and the late robots, as little-endian
+/// integers of 8, 8, 8, 4, 4, 4 + 4 and 4 + 4 bytes, the latter with two doubles.
 void encode(const LauncherBeat& beat, std::vector<std::byte>& out);
 
 /// Empty if the bytes are no beat. The ids are not checked.

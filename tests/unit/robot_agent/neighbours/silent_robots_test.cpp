@@ -24,13 +24,15 @@ SilenceOptions options() {
           .own = 1,
           .frozen_body_radius_m = std::vector(5, 2.0),
           .expected_silence = milliseconds(700),
+          .expected_status = milliseconds(1100),
           .dead_man = milliseconds(2200)};
 }
 WhereaboutsOptions clears() {
   return {.robots = 5,
           .beat_timeout = milliseconds(1500),
           .launcher_silence = seconds(3),
-          .healthy_after = seconds(6)};
+          .healthy_after = seconds(6),
+          .alive_after = milliseconds(1500)};
 }
 
 SilentRobots::State state(std::uint32_t robot, int ms, Vec2 position_m) {
@@ -96,7 +98,7 @@ TEST(SilentRobots, AreClearedByTheirBodyInTheSceneAndByTheLaunchersBeats) {
   for (int ms = 1000; ms <= 7000; ms += 500) {
     ++beat.sequence;
     link::set_silent(beat, std::vector{RobotId(4)});
-    whereabouts.on_beat(beat, at(ms));
+    whereabouts.on_beat(beat, at(ms), at(ms));
     sut.update(at(ms), whereabouts);
     EXPECT_EQ(sut.all().size(), ms < 7000 ? 2U : 1U) << ms;
   }
@@ -159,15 +161,16 @@ class LateRobots : public testing::Test {
   void beat(int ms, const std::vector<link::LateRobot>& late) {
     ++beat_.sequence;
     link::set_late(beat_, late);
+    ASSERT_TRUE(whereabouts_.on_beat(beat_, at(ms), at(ms)));
     sut_.on_beat(beat_, at(ms));
   }
   std::size_t silent(int ms, bool is_received_there) {
-    sut_.update(at(ms), nothing_, [=](const Vec2&) { return is_received_there; });
+    sut_.update(at(ms), whereabouts_, [=](const Vec2&) { return is_received_there; });
     return sut_.all().size();
   }
 
   SilentRobots sut_{options()};
-  const Whereabouts nothing_{clears()};
+  Whereabouts whereabouts_{clears()};
   link::LauncherBeat beat_;
 };
 
@@ -187,29 +190,31 @@ TEST_F(LateRobots, AreSilentAtOnceInACellThatHasBeenReceivedForLong) {
   EXPECT_EQ(silent(10'000, true), 1U);
 }
 
+TEST_F(LateRobots, CanHaveDrivenForAPeriodOfTheirStatusesBeforeTheyWereCutOff) {
+  for (int ms = 10'000; ms <= 14'000; ms += 1000) {
+    beat(ms, {{.robot = 3, .age_ms = static_cast<std::uint32_t>(ms - 8'700)}});
+    ASSERT_EQ(silent(ms, true), 1U);
+  }
+  EXPECT_NEAR(sut_.all()[0].radius_m, 0.2 + 1.5 * (1.1 + 2.2), 1e-9);
+  EXPECT_EQ(sut_.all()[0].growth_mps, 0.0);
+}
+
 TEST_F(LateRobots, AreForgottenOnceTheLauncherReceivesThemAgain) {
-  beat(10'000, {{.robot = 3, .age_ms = 1300}});
-  EXPECT_EQ(silent(10'100, false), 0U);
-  beat(10'500, {});
-  EXPECT_EQ(silent(10'500, false), 0U);
-  EXPECT_EQ(silent(20'000, true), 0U);
+  for (const bool is_received_there : {false, true}) {
+    beat(10'000, {{.robot = 3, .age_ms = 1300}});
+    EXPECT_EQ(silent(10'100, is_received_there), is_received_there ? 1U : 0U);
+    beat(10'500, {});
+    EXPECT_EQ(silent(10'500, is_received_there), 0U);
+    EXPECT_EQ(silent(11'500, true), 0U);
+    beat_ = {.sequence = beat_.sequence};
+  }
 }
 
-TEST_F(LateRobots, AreKeptWhileABeatStatesNothingAboutTheOthers) {
+TEST_F(LateRobots, AreKeptWhileBeatsDoNotListAllOrStop) {
   beat(10'000, {{.robot = 3, .age_ms = 1300}});
-  beat_.lists_all = false;
-  beat(10'500, {});
+  beat(10'500, std::vector<link::LateRobot>(link::LauncherBeat::kMaxLate + 1, {.robot = 4}));
   EXPECT_EQ(silent(10'500, false), 0U);
-  EXPECT_EQ(silent(20'000, true), 1U);
-}
-
-TEST_F(LateRobots, KeepTheirDiscsWhenTheyAreNotListedAnyMore) {
-  beat(10'000, {{.robot = 3, .age_ms = 1300}});
-  EXPECT_EQ(silent(10'000, true), 1U);
-  beat(10'500, {});
-  EXPECT_EQ(silent(10'500, true), 1U) << "received by the launcher, but not here";
-  sut_.on_state(state(3, 10'600, {2, 0}));
-  EXPECT_EQ(silent(10'600, true), 0U);
+  EXPECT_EQ(silent(20'000, true), 2U);
 }
 
 TEST_F(LateRobots, WereReceivedHereLater) {
@@ -221,6 +226,13 @@ TEST_F(LateRobots, WereReceivedHereLater) {
   EXPECT_EQ(sut_.all()[0].centre_m, Vec2(5.0, 0.0));
 }
 
+TEST_F(LateRobots, AreReceivedHereByAnOlderState) {
+  beat(10'000, {{.robot = 3, .age_ms = 1300, .x_m = 2.0}});
+  sut_.on_state(state(3, 8'600, {5, 0}));
+  ASSERT_EQ(silent(10'000, true), 1U);
+  EXPECT_EQ(sut_.all()[0].centre_m, Vec2(2.0, 0.0));
+}
+
 TEST_F(LateRobots, MoveTheDiscOfARobotThatIsSilentHereToTheirLastStatus) {
   sut_.on_state(state(3, 7'000, {5, 0}));
   EXPECT_EQ(silent(8'700, true), 1U);
@@ -228,6 +240,18 @@ TEST_F(LateRobots, MoveTheDiscOfARobotThatIsSilentHereToTheirLastStatus) {
   ASSERT_EQ(silent(10'000, true), 1U);
   EXPECT_EQ(sut_.all()[0].centre_m, Vec2(4.0, 0.0));
   EXPECT_NEAR(sut_.all()[0].radius_m, 0.2 + 1.5 * 1.3, 1e-9);
+}
+
+// A robot that has left the cells that are received is forgotten once the launcher has received it.
+TEST_F(LateRobots, AreNotThoseThatLeftAndAreReceivedByTheLauncherSince) {
+  for (const int beat_ms : {11'400, 11'600}) {
+    sut_.on_state(state(3, 10'000, {6, 0}));
+    EXPECT_EQ(silent(beat_ms - 100, false), 0U);
+    beat(beat_ms, {});
+    EXPECT_EQ(silent(beat_ms, true), 0U);
+    EXPECT_EQ(silent(beat_ms + 800, true), beat_ms < 11'500 ? 1U : 0U) << beat_ms;
+    sut_ = SilentRobots(options());
+  }
 }
 
 TEST(SilentRobots, AreNeverThoseOfTheProcessNorUnknownOnes) {

@@ -27,7 +27,7 @@ class WhereaboutsTest : public testing::Test {
   void beat(double s, const std::vector<RobotId>& silent = {}) {
     ++beat_.sequence;
     link::set_silent(beat_, silent);
-    sut_.on_beat(beat_, at(s));
+    sut_.on_beat(beat_, at(s), at(s));
   }
   bool is_well(double last_state_s, double now_s) const {
     return sut_.is_well(RobotId(3), at(last_state_s), at(now_s));
@@ -37,7 +37,8 @@ class WhereaboutsTest : public testing::Test {
                     .run = 7,
                     .beat_timeout = milliseconds(1500),
                     .launcher_silence = seconds(3),
-                    .healthy_after = seconds(6)}};
+                    .healthy_after = seconds(6),
+                    .alive_after = milliseconds(1500)}};
   link::LauncherBeat beat_{.run = 7};
 };
 
@@ -101,18 +102,48 @@ TEST_F(WhereaboutsTest, RefuseBeatsOfOthersOldOnesAndUnknownIds) {
   link::LauncherBeat other = beat_;
   other.run = 8;
   other.sequence += 5;
-  sut_.on_beat(other, at(10.5));
-  sut_.on_beat(beat_, at(10.5));  // again
+  sut_.on_beat(other, at(10.5), at(10.5));
+  sut_.on_beat(beat_, at(10.5), at(10.5));  // again
   link::LauncherBeat forged = beat_;
   ++forged.sequence;
   forged.ranges = 1;
   forged.range[0] = {.first = 999, .count = 2};
-  sut_.on_beat(forged, at(10.5));
+  sut_.on_beat(forged, at(10.5), at(10.5));
   forged.range[0] = {.first = 2, .count = 0xFFFF'FFFF};
-  sut_.on_beat(forged, at(10.5));
+  sut_.on_beat(forged, at(10.5), at(10.5));
 
   EXPECT_EQ(sut_.last_beat(), at(10));
   EXPECT_EQ(sut_.refused(), 4U);
+}
+
+TEST_F(WhereaboutsTest, KnowARobotAliveByOneBeatThatDoesNotListItAsLate) {
+  const auto is_alive = [&](double last_state_s, double now_s) {
+    return sut_.is_alive(RobotId(3), at(last_state_s), at(now_s));
+  };
+  const link::LateRobot late{.robot = 3};
+  EXPECT_TRUE(sut_.may_be_late(RobotId(3), at(0))) << "without a beat";
+  beat(10);
+  EXPECT_TRUE(is_alive(8.5, 10));
+  EXPECT_FALSE(is_alive(8.6, 10)) << "it would not be listed yet";
+  EXPECT_FALSE(is_alive(8.5, 11.6)) << "the beat is out of date";
+
+  link::set_late(beat_, {&late, 1});
+  beat(10.5);
+  EXPECT_FALSE(is_alive(0, 10.5)) << "late";
+  link::set_late(beat_, {});
+  beat(11, {RobotId(3)});
+  EXPECT_FALSE(is_alive(0, 11)) << "silent";
+  beat(11.5);
+  EXPECT_TRUE(is_alive(0, 11.5));
+  beat_.lists_all_late = false;
+  beat(12);
+  EXPECT_FALSE(is_alive(0, 12)) << "not all late robots are listed";
+
+  beat_.lists_all_late = true;
+  ++beat_.sequence;
+  ASSERT_TRUE(sut_.on_beat(beat_, at(13), at(12.6)));
+  EXPECT_TRUE(is_alive(11.1, 13));
+  EXPECT_FALSE(is_alive(11.2, 13)) << "it was sent before it arrived";
 }
 
 TEST_F(WhereaboutsTest, RefuseLateRobotsThatTheMissionDoesNotHaveOrThatAreNowhere) {
@@ -120,7 +151,7 @@ TEST_F(WhereaboutsTest, RefuseLateRobotsThatTheMissionDoesNotHaveOrThatAreNowher
   const auto take = [&](const link::LateRobot& late) {
     ++beat_.sequence;
     link::set_late(beat_, {&late, 1});
-    return sut_.on_beat(beat_, at(1));
+    return sut_.on_beat(beat_, at(1), at(1));
   };
   EXPECT_TRUE(take({.robot = 999, .x_m = 1.0, .y_m = 2.0}));
   EXPECT_FALSE(take({.robot = 1000, .x_m = 1.0, .y_m = 2.0}));

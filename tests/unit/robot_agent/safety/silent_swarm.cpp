@@ -151,8 +151,9 @@ void SilentSwarm::receive(Robot& robot) {
     }
   }
   for (const link::LauncherBeat& beat : robot.beats) {
-    if (robot.whereabouts.on_beat(beat, now) && cells_ != Cells::kNoLateRobots) {
-      robot.silent.on_beat(beat, now);
+    const SteadyTime sent{Duration(beat.sent_ns)};
+    if (robot.whereabouts.on_beat(beat, now, sent) && cells_ != Cells::kNoLateRobots) {
+      robot.silent.on_beat(beat, sent);
     }
   }
   for (const NeighbourReport& report : robot.socket) {
@@ -283,6 +284,7 @@ void SilentSwarm::launch() {
   ++beat_.sequence;
   link::set_silent(beat_, silent);
   link::set_late(beat_, late);
+  beat_.sent_ns = time().time_since_epoch().count();
   for (const auto& robot : robots_) {
     if (!robot->part.cut_off.covers(now_ms_)) robot->beats.push_back(beat_);
   }

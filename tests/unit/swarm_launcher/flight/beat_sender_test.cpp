@@ -15,7 +15,11 @@ namespace {
 
 using std::chrono::milliseconds;
 
-SteadyTime at(int ms) { return SteadyTime(std::chrono::hours(1) + milliseconds(ms)); }
+FlightTime time(int ms) {
+  return {.steady = SteadyTime(std::chrono::hours(1) + milliseconds(ms)),
+          .utc = UtcTime(std::chrono::hours(2) + milliseconds(ms))};
+}
+SteadyTime at(int ms) { return time(ms).steady; }
 
 TEST(BeatSender, SendsTwiceASecondAndListsTheRobotsThatAreNotReceived) {
   if (!link::carries_multicast()) GTEST_SKIP() << "loopback carries no multicast here";
@@ -25,9 +29,9 @@ TEST(BeatSender, SendsTwiceASecondAndListsTheRobotsThatAreNotReceived) {
   supervisor.on_status(RobotId(3), {});
 
   LateRobots late(5, 1.0);
-  late.on_status(RobotId(3), {4.0, 2.0}, at(-1600), at(-600));
+  late.on_status(RobotId(3), {4.0, 2.0}, at(-600), at(-500));
 
-  for (int ms = 0; ms <= 1000; ms += 20) sut.step(at(ms), supervisor, late);
+  for (int ms = 0; ms <= 1000; ms += 20) sut.step(time(ms), supervisor, late);
 
   std::vector<link::LauncherBeat> beats;
   for (int i = 0; i < 5000 && beats.size() < 3; ++i) {
@@ -42,10 +46,11 @@ TEST(BeatSender, SendsTwiceASecondAndListsTheRobotsThatAreNotReceived) {
     ASSERT_EQ(beats[i].silent().size(), 2U);
     EXPECT_EQ(beats[i].silent()[0], (link::RobotRange{0, 3}));
     EXPECT_EQ(beats[i].silent()[1], (link::RobotRange{4, 1}));
-    EXPECT_EQ(beats[i].late().size(), i == 2 ? 1U : 0U) << "late from 1.25 s after its status on";
+    EXPECT_EQ(UtcTime(Duration(beats[i].sent_ns)), time(500 * static_cast<int>(i)).utc);
+    EXPECT_EQ(beats[i].late().size(), i == 2 ? 1U : 0U) << "late from 1.25 s on";
   }
   EXPECT_EQ(beats[2].late()[0],
-            (link::LateRobot{.robot = 3, .age_ms = 2600, .x_m = 4.0, .y_m = 2.0}));
+            (link::LateRobot{.robot = 3, .age_ms = 1600, .x_m = 4.0, .y_m = 2.0}));
 }
 
 TEST(BeatSender, StatesNothingAboutTheOthersWhileRobotsMayNotReceiveEachOther) {
@@ -55,8 +60,8 @@ TEST(BeatSender, StatesNothingAboutTheOthersWhileRobotsMayNotReceiveEachOther) {
   BeatSender sut(*link::StopSender::open({.domain = 219}), 77);
 
   LateRobots late(5, 1.0);
-  sut.step(at(0), supervisor, late, false);
-  sut.step(at(500), supervisor, late, true);
+  sut.step(time(0), supervisor, late, false);
+  sut.step(time(500), supervisor, late, true);
 
   std::vector<link::LauncherBeat> beats;
   for (int i = 0; i < 5000 && beats.size() < 2; ++i) {

@@ -44,13 +44,15 @@ TEST(LauncherBeat, HasTheFirstLateRobotsThatItHasRoomFor) {
   LauncherBeat beat;
   set_late(beat, std::vector<LateRobot>(LauncherBeat::kMaxLate + 1, LateRobot{.robot = 7}));
   EXPECT_EQ(beat.late().size(), LauncherBeat::kMaxLate);
+  EXPECT_FALSE(beat.lists_all_late);
   set_late(beat, std::vector<LateRobot>{{.robot = 1}, {.robot = 2}});
   ASSERT_EQ(beat.late().size(), 2U);
+  EXPECT_TRUE(beat.lists_all_late);
   EXPECT_EQ(beat.late()[0].robot, 1U);
 }
 
 TEST(LauncherBeat, IsDecodedAsItWasEncoded) {
-  LauncherBeat beat{.run = 0x0123'4567'89AB'CDEF, .sequence = 42};
+  LauncherBeat beat{.run = 0x0123'4567'89AB'CDEF, .sequence = 42, .sent_ns = -7};
   set_silent(beat, ids({3, 4, 4'000'000'000}));
   set_late(beat, std::vector<LateRobot>{{.robot = 5, .age_ms = 1300, .x_m = -1.5, .y_m = 1e6},
                                         {.robot = 9, .age_ms = 2900, .x_m = 0.0, .y_m = 2.0}});
@@ -63,13 +65,15 @@ TEST(LauncherBeat, IsDecodedAsItWasEncoded) {
   ASSERT_TRUE(decoded);
   EXPECT_EQ(decoded->run, beat.run);
   EXPECT_EQ(decoded->sequence, 42U);
+  EXPECT_EQ(decoded->sent_ns, -7);
+  EXPECT_TRUE(decoded->lists_all_late);
   EXPECT_FALSE(decoded->lists_all);
   EXPECT_TRUE(std::ranges::equal(decoded->silent(), beat.silent()));
   EXPECT_TRUE(std::ranges::equal(decoded->late(), beat.late()));
 }
 
 TEST(LauncherBeat, IsNotDecodedFromOtherBytes) {
-  constexpr std::size_t kFixed = 24, kRange = 8, kLate = 24;
+  constexpr std::size_t kFixed = 32, kRange = 8, kLate = 24;
   LauncherBeat beat;
   set_silent(beat, ids({3}));
   set_late(beat, std::vector<LateRobot>(2));
@@ -79,12 +83,12 @@ TEST(LauncherBeat, IsNotDecodedFromOtherBytes) {
     if (size == kFixed + kRange || size == kFixed + kRange + kLate) continue;  // less late robots
     EXPECT_FALSE(decode_beat(std::span(bytes).first(size))) << size;
   }
-  bytes[16] = std::byte{2};
-  EXPECT_FALSE(decode_beat(bytes)) << "neither all nor not all";
+  bytes[24] = std::byte{4};
+  EXPECT_FALSE(decode_beat(bytes)) << "an unknown flag";
 
   const auto beat_of = [](std::size_t ranges, std::size_t late) {
     std::vector<std::byte> made(kFixed + kRange * ranges + kLate * late);
-    made[20] = static_cast<std::byte>(ranges);
+    made[28] = static_cast<std::byte>(ranges);
     return decode_beat(made);
   };
   EXPECT_TRUE(beat_of(LauncherBeat::kMaxRanges, LauncherBeat::kMaxLate));
