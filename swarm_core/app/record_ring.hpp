@@ -15,8 +15,8 @@
 namespace swarm::shell {
 
 /// Blocks of bytes from one thread to another, in memory that is reserved once. One thread pushes,
-/// another one copies and pops; neither ever blocks the other. Memory that is never needed is never
-/// touched: a ring that is kept empty stays at its begin.
+/// another one copies and pops; neither ever blocks the other. A ring that is kept empty stays in
+/// the first half of its memory, so that the other half is never touched.
 class RecordRing {
  public:
   /// Blocks that copy() found, for pop().
@@ -39,7 +39,10 @@ class RecordRing {
     const std::size_t offset = begin % capacity_;
     const std::size_t to_end = capacity_ - offset;
     // Blocks are contiguous. An empty ring goes back to its begin, where memory is in use already.
-    const bool wraps = need > to_end || (begin == read && offset >= need && offset > kStayBelow);
+    // Until the consumer has passed what is skipped, only what lies before it can be used: so at
+    // least half of the ring.
+    const bool wraps =
+        need > to_end || (begin == read && offset >= need && offset >= capacity_ / 2);
     const std::size_t skipped = wraps ? to_end : 0;
     if (need + skipped > capacity_ - (begin - read)) return false;
     if (wraps) {
@@ -79,7 +82,6 @@ class RecordRing {
   };
   static constexpr std::size_t kAlign = sizeof(Front);
   static constexpr std::uint32_t kSkip = UINT32_MAX;  ///< the next block is at the begin
-  static constexpr std::size_t kStayBelow = 4096;
 
   // Frees what was skipped at once, and not with the first block behind it: while that cannot be
   // written, a ring that went back to its begin early would have no more room than it had used.

@@ -96,7 +96,7 @@ TEST(RecordRing, HasAllItsRoomAfterItWentBackToItsBegin) {
   constexpr std::size_t kBlock = 56, kWithFront = kBlock + 8;
   const std::string text(kBlock, 'x');
   const auto block = bytes_of(text);
-  for (std::size_t blocks_before = 1; blocks_before <= 140; ++blocks_before) {
+  for (std::size_t blocks_before = 1; blocks_before <= 1100; blocks_before += 7) {
     RecordRing sut(kCapacity);
     std::uint64_t records = 0;
     for (std::size_t i = 0; i < blocks_before; ++i) {
@@ -112,6 +112,28 @@ TEST(RecordRing, HasAllItsRoomAfterItWentBackToItsBegin) {
     while (sut.push(block, 1)) ++waiting;
     EXPECT_GE(waiting, kCapacity / kWithFront - 1) << blocks_before;
     EXPECT_EQ(sut.waiting(), waiting);
+    EXPECT_TRUE(take(sut, kCapacity, records) == std::string(waiting * kBlock, 'x'));
+  }
+}
+
+// The consumer is a thread that may not run for a while, for instance as the disk does not answer.
+TEST(RecordRing, HasHalfOfItsRoomBeforeTheConsumerLooksAtIt) {
+  constexpr std::size_t kCapacity = 1U << 13U;
+  constexpr std::size_t kBlock = 56, kWithFront = kBlock + 8;
+  const std::string text(kBlock, 'x');
+  const auto block = bytes_of(text);
+  for (std::size_t blocks_before = 0; blocks_before <= 140; ++blocks_before) {
+    RecordRing sut(kCapacity);
+    std::uint64_t records = 0;
+    for (std::size_t i = 0; i < blocks_before; ++i) {
+      ASSERT_TRUE(sut.push(block, 1));
+      take(sut, kBlock, records);
+    }
+
+    std::size_t waiting = 0;
+    while (sut.push(block, 1)) ++waiting;
+
+    EXPECT_GE(waiting, kCapacity / 2 / kWithFront) << blocks_before;
     EXPECT_TRUE(take(sut, kCapacity, records) == std::string(waiting * kBlock, 'x'));
   }
 }
