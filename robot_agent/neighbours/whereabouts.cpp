@@ -39,7 +39,9 @@ bool Whereabouts::on_beat(const link::LauncherBeat& beat, SteadyTime now, Steady
     std::fill_n(late_in_.begin() + range.first, range.count, sequence_);
   }
   for (const link::LateRobot& late : beat.late()) late_in_[late.robot] = sequence_;
-  lists_all_late_ = beat.lists_all_late;
+  // A robot that has been silent for long is in the other list, if that has room for it.
+  const bool has_room = beat.lists_all || beat.ranges < link::LauncherBeat::kMaxRanges;
+  lists_all_late_ = beat.lists_all_late && has_room;
   complete_sent_ = beat.lists_all && beat.lists_all_late ? std::min(sent, now) : SteadyTime{};
   return true;
 }

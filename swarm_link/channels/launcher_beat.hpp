@@ -31,7 +31,8 @@ struct LateRobot {
 
 /// The launcher's sign of life, twice a second, with the robots that it does not receive. It states
 /// nothing about the others while `lists_all` is false: then there were more silent robots than a
-/// beat has room for. A plain value without heap memory, so that receiving one allocates nothing.
+/// beat has room for, or a gateway does not run, or the launcher was suspended. A plain value
+/// without heap memory, so that receiving one allocates nothing.
 struct LauncherBeat {
   static constexpr std::size_t kMaxRanges = 100;
   static constexpr std::size_t kMaxLate = 24;  ///< the datagram is not fragmented
@@ -57,8 +58,8 @@ void set_silent(LauncherBeat& beat, std::span<const RobotId> robots);
 void set_late(LauncherBeat& beat, std::span<const LateRobot> robots);
 
 /// The bytes of a beat, without the datagram's header: run, sequence, sent_ns, flags (1: lists_all,
-/// 2: lists_all_late), the number of ranges, the ranges and the late robots, as little-endian
-/// integers of 8, 8, 8, 4, 4, 4 + 4 and 4 + 4 bytes, the latter with two doubles.
+/// 2: lists_all_late) and the number of ranges, as little-endian integers of 8, 8, 8, 4 and 4
+/// bytes; then the members of the ranges and of the late robots as they are declared.
 void encode(const LauncherBeat& beat, std::vector<std::byte>& out);
 
 /// Empty if the bytes are no beat. The ids are not checked.

@@ -140,6 +140,14 @@ TEST_F(WhereaboutsTest, KnowARobotAliveByOneBeatThatDoesNotListItAsLate) {
   EXPECT_FALSE(is_alive(0, 12)) << "not all late robots are listed";
 
   beat_.lists_all_late = true;
+  beat_.lists_all = false;
+  beat_.ranges = link::LauncherBeat::kMaxRanges;
+  ++beat_.sequence;
+  ASSERT_TRUE(sut_.on_beat(beat_, at(12.5), at(12.5)));
+  EXPECT_TRUE(sut_.may_be_late(RobotId(3), at(12.5))) << "not all silent robots are listed";
+
+  beat_.lists_all = true;
+  beat_.ranges = 0;
   ++beat_.sequence;
   ASSERT_TRUE(sut_.on_beat(beat_, at(13), at(12.6)));
   EXPECT_TRUE(is_alive(11.1, 13));
