@@ -23,9 +23,8 @@ if(SWARM_FUZZ)
 endif()
 
 # SWARM_FAST_BUILD makes the compiler read less: headers of others that most sources include are precompiled, and
-# swarm_unity() below compiles a library eight sources at a time. Not the libraries of the control loop (swarm_math,
-# swarm_agent, swarm_simulation): in large units g++ inlines less, which costs 3 % of a control step. A header that
-# compiles only by chance is found by Includes.OfTheStandardLibraryAreDirect and by a build without this option.
+# swarm_unity() below compiles a library eight sources at a time. A header that compiles only by chance is found by
+# Includes.OfTheStandardLibraryAreDirect and by a build without this option.
 option(SWARM_FAST_BUILD "Precompile headers, compile most libraries eight source files at a time" OFF)
 function(swarm_unity)
   if(NOT SWARM_FAST_BUILD)
@@ -34,17 +33,6 @@ function(swarm_unity)
   foreach(target IN LISTS ARGN)
     set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
   endforeach()
-endfunction()
-
-# The same for some sources of a library of the control loop, none of which runs at every step.
-function(swarm_unity_of target)
-  if(NOT SWARM_FAST_BUILD)
-    return()
-  endif()
-  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
-  get_target_property(folder ${target} SOURCE_DIR)
-  list(TRANSFORM ARGN PREPEND ${folder}/ OUTPUT_VARIABLE sources)
-  set_source_files_properties(${sources} TARGET_DIRECTORY ${target} PROPERTIES UNITY_GROUP not_at_every_step)
 endfunction()
 
 # One precompiled header for targets with the same flags: `owner` builds it, the others read it. ALSO: more headers in it.
@@ -64,12 +52,14 @@ function(swarm_precompile owner)
   endforeach()
 endfunction()
 
-# The control loop's libraries are compiled with -O3: its rate is what a run of hundreds of robots costs.
+# The control loop's libraries are compiled with -O3: its rate is what a run of hundreds of robots costs. In units of
+# eight sources g++ would inline less, which costs 3 % of a control step, but for these limits.
 function(swarm_hot)
   if(SWARM_SANITIZE)
     return()
   endif()
   foreach(target IN LISTS ARGN)
-    target_compile_options(${target} PRIVATE $<$<CONFIG:RelWithDebInfo>:-O3>)
+    target_compile_options(${target} PRIVATE $<$<CONFIG:RelWithDebInfo>:-O3>
+      --param=large-unit-insns=1000000 --param=inline-unit-growth=400)
   endforeach()
 endfunction()
