@@ -8,7 +8,6 @@
 #include <ctime>
 
 #include <arpa/inet.h>
-#include <poll.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -151,6 +150,14 @@ void DatagramDrain::drain(int fd, DatagramSink& sink) {
     if (batch < static_cast<int>(kBatch)) break;
   }
   if (path_) path_->hand_due(fd, utc_now(), sink);
+}
+
+// With simulated faults a delayed datagram can be due on a socket that holds none.
+void DatagramDrain::drain(std::span<pollfd> sockets, DatagramSink& sink) {
+  const bool all = path_.has_value() || ::poll(sockets.data(), sockets.size(), 0) < 0;
+  for (const pollfd& socket : sockets) {
+    if (all || socket.revents != 0) drain(socket.fd, sink);
+  }
 }
 
 // Receives up to kBatch datagrams with one system call. Returns their number.

@@ -6,9 +6,11 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 
 #include <netinet/in.h>
+#include <poll.h>
 
 #include "swarm_link/channels/faulty_path.hpp"
 
@@ -54,6 +56,9 @@ class DatagramDrain {
   static constexpr int kMaxDatagrams = 8192;
   /// Passes waiting datagrams to the sink, or through the simulated faults if there are any.
   void drain(int fd, DatagramSink& sink);
+  /// The same of many sockets, few of which hold datagrams: one system call finds these. `revents`
+  /// is overwritten.
+  void drain(std::span<pollfd> sockets, DatagramSink& sink);
 
  private:
   int drain_batch(int fd, DatagramSink& sink);

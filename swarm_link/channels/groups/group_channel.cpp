@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <poll.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -126,6 +127,10 @@ class GroupChannel final : public StateChannel, private DatagramSink {
       if (socket.joined()) joined_.insert(at, {group, std::move(socket)});
     }
     receives_all_ = joined_.size() == groups_.size();
+    sockets_.clear();
+    for (const Joined& joined : joined_) {
+      sockets_.push_back({.fd = joined.socket.fd(), .events = POLLIN, .revents = 0});
+    }
   }
 
   bool receives_at(const Vec2& position_m) const override { return interest_.covers(position_m); }
@@ -135,7 +140,7 @@ class GroupChannel final : public StateChannel, private DatagramSink {
   std::size_t take(std::vector<CellStatesMessage>& out) override {
     taking_ = &out;
     const auto before = out.size();
-    for (const Joined& joined : joined_) drain_.drain(joined.socket.fd(), *this);
+    drain_.drain(sockets_, *this);
     return out.size() - before;
   }
 
@@ -176,6 +181,7 @@ class GroupChannel final : public StateChannel, private DatagramSink {
   int sender_;
   DatagramDrain drain_;
   std::vector<Joined> joined_;     // sorted by group
+  std::vector<pollfd> sockets_;    // of these
   std::vector<in_addr_t> groups_;  // reused, as are the next two
   std::vector<std::byte> payload_;
   std::vector<std::byte> datagram_;

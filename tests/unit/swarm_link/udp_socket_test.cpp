@@ -2,11 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "swarm_link/udp_socket.hpp"
 
+#include <array>
+#include <chrono>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <arpa/inet.h>
 #include <gtest/gtest.h>
+#include <poll.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -148,6 +152,36 @@ TEST_F(DrainTest, PassesTheLargestDatagramWhole) {
   const Received received = drained(sut);
   ASSERT_EQ(received.datagrams.size(), 1U);
   EXPECT_EQ(received.datagrams[0], largest);
+}
+
+TEST_F(DrainTest, FindsTheSocketsThatHoldDatagrams) {
+  DatagramDrain sut;
+  std::array sockets{pollfd{.fd = sender, .events = POLLIN, .revents = 0},
+                     pollfd{.fd = receiver, .events = POLLIN, .revents = 0}};
+  const auto drained_all = [&] {
+    Received received;
+    sut.drain(sockets, received);
+    return received.datagrams;
+  };
+  EXPECT_TRUE(drained_all().empty());
+  send({std::byte{1}});
+  send({std::byte{2}});
+  EXPECT_EQ(drained_all(), (std::vector<std::vector<std::byte>>{{std::byte{1}}, {std::byte{2}}}));
+  EXPECT_TRUE(drained_all().empty());
+}
+
+TEST_F(DrainTest, HandsOutWhatIsDueOfASocketThatHoldsNothingMore) {
+  constexpr auto kDelay = std::chrono::milliseconds(20);
+  DatagramDrain sut({.faults = {.delay = kDelay}, .run_began = utc_now()});
+  std::array sockets{pollfd{.fd = receiver, .events = POLLIN, .revents = 0}};
+  Received received;
+  send({std::byte{1}});
+  sut.drain(sockets, received);  // takes it from the socket
+
+  std::this_thread::sleep_for(2 * kDelay);
+  sut.drain(sockets, received);
+
+  EXPECT_EQ(received.datagrams, (std::vector<std::vector<std::byte>>{{std::byte{1}}}));
 }
 
 TEST_F(DrainTest, LosesAndDelaysByItsFaults) {
