@@ -5,25 +5,21 @@
 #include <algorithm>
 #include <csignal>
 #include <cstdio>
-#include <map>
 #include <optional>
 #include <utility>
-#include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
-#include <unistd.h>
 
 #include "swarm_core/app/foreign_settings.hpp"
 #include "swarm_core/app/run_clock.hpp"
 #include "swarm_core/app/run_dir.hpp"
 #include "swarm_core/app/stop_signal.hpp"
 #include "swarm_core/robot_log/robot_log_file.hpp"
+#include "swarm_launcher/hosts/host_processes.hpp"
 #include "swarm_launcher/hosts/line_socket.hpp"
 #include "swarm_launcher/hosts/offer.hpp"
-#include "swarm_launcher/processes/child_process.hpp"
 #include "swarm_launcher/supervision/progress.hpp"
-#include "swarm_launcher/supervision/restart_policy.hpp"
 #include "swarmflow/mission/mission_file.hpp"
 
 namespace swarm::launcher {
@@ -31,7 +27,6 @@ namespace {
 
 constexpr int kStep_ms = 20;
 constexpr Duration kAnswerTimeout = std::chrono::seconds(10);
-constexpr Duration kStartEvery = std::chrono::milliseconds(50);  // starting processes compete
 // Time between the signals of the ladder, as in the supervisor.
 constexpr Duration kGrace = std::chrono::seconds(5);  // of each signal
 constexpr std::size_t kMaxLogBytes = 1U << 30U;
@@ -59,106 +54,6 @@ Result<HostOffer> ask(LineSocket& socket, const JoinOptions& options) {
   }
   return fail(ErrorCode::kEnvironment, "no launcher answers there");
 }
-
-/// The agent processes of this host: started one after the other, restarted as on the launcher's
-/// host (see RestartPolicy), and killed when the object is destroyed.
-class HostProcesses {
- public:
-  HostProcesses(const HostOffer& offer, std::filesystem::path dir, link::Vendor dds,
-                std::uint32_t respawns)
-      : offer_(offer), dir_(std::move(dir)), dds_(dds), respawns_(respawns) {
-    for (std::uint32_t robot = 0; robot < offer.robots; robot += offer.per_process) {
-      waiting_.push_back({.robot = robot});
-    }
-  }
-  ~HostProcesses() { signal(SIGKILL); }
-  HostProcesses(const HostProcesses&) = delete;
-  HostProcesses& operator=(const HostProcesses&) = delete;
-
-  // Reaps processes that ended, queues the restarts, and starts the next process that is due.
-  Result<void> step() {
-    while (const auto child = reap_child()) {
-      const auto known = children_.find(child->pid);
-      if (known == children_.end()) continue;
-      const std::uint32_t robot = known->second;
-      children_.erase(known);
-      if (ending_) continue;
-      ProcessExit exit = child->exit;
-      RestartPolicy& restarts = restarts_[robot];
-      const Duration delay = restarts.on_exit(now());
-      exit.is_restarted = restarts.deaths_in_a_row() <= respawns_;
-      if (exit.is_restarted) waiting_.push_back({.robot = robot, .due = now() + delay});
-      exits_.emplace_back(robot / offer_.per_process, exit);
-    }
-    if (ending_ || waiting_.empty() || now() < next_start_) return {};
-    const auto next = std::find_if(waiting_.begin(), waiting_.end(),
-                                   [at = now()](const Waiting& w) { return w.due <= at; });
-    if (next == waiting_.end()) return {};
-    next_start_ = now() + kStartEvery;
-    const std::uint32_t robot = next->robot;
-    waiting_.erase(next);
-    restarts_[robot].on_start(now());
-    return start(robot);
-  }
-
-  // Numbers of the processes that have ended since the last call, counted from our first.
-  std::vector<std::pair<std::uint32_t, ProcessExit>> take_exits() {
-    return std::exchange(exits_, {});
-  }
-
-  // From the first signal on no process is started or restarted.
-  void signal(int number) {
-    ending_ = true;
-    for (const auto& [pid, robot] : children_) ::kill(pid, number);
-  }
-
-  // All processes have ended and none is to be started.
-  bool over() const { return children_.empty() && (ending_ || waiting_.empty()); }
-  std::size_t living() const { return children_.size(); }
-
- private:
-  /// A process that is to be started.
-  struct Waiting {
-    std::uint32_t robot = 0;  ///< its first robot, counted from our first
-    SteadyTime due{};         ///< not before this
-  };
-
-  Result<void> start(std::uint32_t robot) {
-    const std::uint32_t id = offer_.first_robot + robot;
-    std::vector<std::string> command_line = {
-        sibling_program("robot_agent"),
-        "--run",
-        dir_.string(),
-        "--ids",
-        fmt::format("{}", id),
-        "--count",
-        fmt::format("{}", std::min(offer_.per_process, offer_.robots - robot)),
-        "--number",
-        fmt::format("{}", offer_.first_process + robot / offer_.per_process),
-        "--parent",
-        fmt::format("{}", ::getpid())};
-    if (!offer_.fault.empty()) command_line.insert(command_line.end(), {"--fault", offer_.fault});
-    if (dds_ != link::Vendor::kFastDds) {
-      command_line.insert(command_line.end(), {"--dds", std::string(to_string(dds_))});
-    }
-    const auto pid =
-        start_process(command_line, dir_ / shell::kLogsFolder / fmt::format("agent-{:05}.log", id));
-    if (!pid) return tl::unexpected(pid.error());
-    children_.emplace(*pid, robot);
-    return {};
-  }
-
-  const HostOffer& offer_;
-  std::filesystem::path dir_;
-  link::Vendor dds_;
-  std::uint32_t respawns_;
-  std::vector<Waiting> waiting_;
-  std::map<pid_t, std::uint32_t> children_;          // first robot of each process, as in Waiting
-  std::map<std::uint32_t, RestartPolicy> restarts_;  // by the same number
-  std::vector<std::pair<std::uint32_t, ProcessExit>> exits_;
-  SteadyTime next_start_;
-  bool ending_ = false;
-};
 
 /// Runs the processes until all have ended. They are ended when the launcher requests it, when the
 /// connection is lost, or on a stop signal; a process that does not end gets the next stronger
@@ -274,7 +169,8 @@ Result<ExitCode> join_host(const JoinOptions& options) {
                offer->first_robot + offer->robots - 1, offer->run.interface.c_str());
   Progress progress;
   {
-    HostProcesses processes(*offer, *dir, options.dds, mission->launcher.respawn_agent_max);
+    HostProcesses processes(
+        *offer, {.dir = *dir, .dds = options.dds, .respawns = mission->launcher.respawn_agent_max});
     if (auto flown = fly(processes, *socket, progress); !flown)
       return tl::unexpected(flown.error());
   }

@@ -1,0 +1,65 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <csignal>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include <sys/types.h>
+
+#include "swarm_core/mission/vendor.hpp"
+#include "swarm_launcher/hosts/offer.hpp"
+#include "swarm_launcher/hosts/start_queue.hpp"
+#include "swarm_launcher/processes/child_process.hpp"
+#include "swarmflow/core/result.hpp"
+
+namespace swarm::launcher {
+
+struct HostProcessesOptions {
+  std::filesystem::path dir;  ///< of the run
+  link::Vendor dds = link::Vendor::kFastDds;
+  std::uint32_t respawns = 0;  ///< see StartQueue
+};
+
+/// The agent processes of a joined host: started and restarted by a StartQueue, and killed when the
+/// object is destroyed. One thread.
+class HostProcesses {
+ public:
+  /// The offer outlives the object.
+  HostProcesses(const HostOffer& offer, HostProcessesOptions options);
+  ~HostProcesses() { signal(SIGKILL); }
+  HostProcesses(const HostProcesses&) = delete;
+  HostProcesses& operator=(const HostProcesses&) = delete;
+
+  /// Reaps processes that ended, queues their restarts, and starts the next process that is due.
+  Result<void> step();
+
+  /// Numbers of the processes that have ended since the last call, counted from our first.
+  std::vector<std::pair<std::uint32_t, ProcessExit>> take_exits() {
+    return std::exchange(exits_, {});
+  }
+
+  /// From the first signal on no process is started or restarted.
+  void signal(int number);
+
+  /// All processes have ended and none is to be started.
+  bool over() const { return children_.empty() && (ending_ || queue_.is_empty()); }
+  std::size_t living() const { return children_.size(); }
+
+ private:
+  Result<void> start(std::uint32_t robot);
+
+  const HostOffer& offer_;
+  HostProcessesOptions options_;
+  StartQueue queue_;
+  std::map<pid_t, std::uint32_t> children_;  // first robot of each process, counted from our first
+  std::vector<std::pair<std::uint32_t, ProcessExit>> exits_;
+  bool ending_ = false;
+};
+
+}  // namespace swarm::launcher
