@@ -60,6 +60,6 @@ function(swarm_hot)
   endif()
   foreach(target IN LISTS ARGN)
     target_compile_options(${target} PRIVATE $<$<CONFIG:RelWithDebInfo>:-O3>
-      --param=large-unit-insns=1000000 --param=inline-unit-growth=400)
+      $<$<CXX_COMPILER_ID:GNU>:--param=large-unit-insns=1000000;--param=inline-unit-growth=400>)
   endforeach()
 endfunction()
