@@ -10,6 +10,7 @@ namespace {
 constexpr double kSendsNothingBelow_mps = 0.01;
 constexpr double kOfGap = 0.2;          // tolerated error, as a share of the nearest gap
 constexpr double kLeastError_m = 0.01;  // least tolerated error
+constexpr double kNearGap_m = 0.5;      // nearer robots may rely on where this one comes to rest
 
 }  // namespace
 
@@ -30,9 +31,12 @@ constexpr double kLeastError_m = 0.01;  // least tolerated error
   if (input.link.poor && input.listeners.nearest_gap_m < options_->near_m && !is_stopped)
     return true;
   // Also the error of the extrapolation one period ahead: a robot that has just turned is off only
-  // by then, and cannot publish in between.
+  // by then, and cannot publish in between. Near others two periods: if the process freezes now,
+  // its body drives on until then, and nothing is published.
+  const bool is_near = input.listeners.nearest_gap_m < options_->scale * kNearGap_m;
+  const double ahead_s = is_near ? 2.0 * period_s : period_s;
   const Vec2 off_m = last_->position_m + silent_s * last_->velocity_mps - input.position_m;
-  const Vec2 soon_off_m = off_m + period_s * (last_->velocity_mps - input.velocity_mps);
+  const Vec2 soon_off_m = off_m + ahead_s * (last_->velocity_mps - input.velocity_mps);
   // Where robots nearly touch, a few centimetres decide which of them may move.
   const double error_m =
       std::min(std::max(kOfGap * input.listeners.nearest_gap_m, options_->scale * kLeastError_m),

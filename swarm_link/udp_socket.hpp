@@ -52,7 +52,7 @@ class DatagramDrain {
  public:
   explicit DatagramDrain(const ReceptionFaults& faults = {});
 
-  /// Most datagrams of one call, so that a flood cannot delay the tick.
+  /// Most datagrams of a socket and call, so that a flood cannot delay the tick.
   static constexpr int kMaxDatagrams = 8192;
   /// Passes waiting datagrams to the sink, or through the simulated faults if there are any.
   void drain(int fd, DatagramSink& sink);

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
+#include <iterator>
 #include <limits>
 #include <numbers>
 #include <vector>
@@ -35,6 +37,7 @@ struct SafetyFilter::Lines {
   std::size_t bodies = 0;     // the first of them, but for those of the discs of silent robots
   std::size_t count = 0;
   std::vector<HalfPlane> relaxed;
+  std::vector<Neighbour> sorted;
 
   std::span<const HalfPlane> all() const { return std::span(buffer).first(count); }
   void make_room(std::size_t more) {
@@ -210,29 +213,27 @@ std::optional<HalfPlane> SafetyFilter::off_possible_stop(const Vec2& position_m,
   return found;
 }
 
-/// Where the half-planes have no common point: relaxes some by the same speed, the least that
-/// leaves a common point, found by bisection. Nothing if there is no such speed. Of neighbours,
-/// those that ask to withdraw, and none above 0, so that no gap closes for it; of discs all,
-/// without a limit.
-std::optional<Vec2> SafetyFilter::least_violation(const Vec2& desired_mps, Relaxed which,
-                                                  Lines& lines) const {
+/// Where the half-planes have no common point: relaxes those from `first` on by the same speed, the
+/// least that leaves a common point, found by bisection. Nothing if there is no such speed. Without
+/// `closing` only those that ask to withdraw, and none above 0, so that the robot itself closes no
+/// gap for it; with it all, without a limit.
+std::optional<Vec2> SafetyFilter::least_violation(const Vec2& desired_mps, std::size_t first,
+                                                  bool closing, Lines& lines) const {
   const std::span<const HalfPlane> all = lines.all();
-  const bool of_discs = which == Relaxed::kDiscs;
-  const std::size_t first = of_discs ? lines.bodies : lines.obstacles;
   lines.relaxed.assign(all.begin(), all.end());
   const auto relax = [&](double by_mps) {
     for (std::size_t i = first; i < all.size(); ++i) {
       const double bound = all[i].bound_mps;
-      lines.relaxed[i].bound_mps = of_discs      ? bound + by_mps
+      lines.relaxed[i].bound_mps = closing       ? bound + by_mps
                                    : bound < 0.0 ? std::min(0.0, bound + by_mps)
                                                  : bound;
     }
     return nearest_velocity(desired_mps, lines.relaxed, options_->speed_max_mps);
   };
-  // Relaxed by 2 v_max, no disc bounds the velocity. Relaxed by `high`, all half-planes of
-  // neighbours contain u = 0; only an approaching obstacle can still leave no solution.
+  // Relaxed by 2 v_max, none bounds the velocity. Relaxed by `high`, all of them contain u = 0;
+  // only those before them, as of an approaching obstacle, can still leave no solution.
   double low = 0.0;
-  double high = of_discs ? 2.0 * options_->speed_max_mps : 0.0;
+  double high = closing ? 2.0 * options_->speed_max_mps : 0.0;
   for (const HalfPlane& line : all.subspan(first)) high = std::max(high, -line.bound_mps);
   std::optional<Vec2> best = relax(high);
   for (int i = 0; best && i < kBisections; ++i) {
@@ -247,15 +248,40 @@ std::optional<Vec2> SafetyFilter::least_violation(const Vec2& desired_mps, Relax
   return best;
 }
 
-/// The velocity nearest to the desired one, by relaxed half-planes if there is none by the exact
-/// ones. Discs give way first: a silent robot may be in them, a neighbour is where it is.
-[[gnu::hot]] Vec2 SafetyFilter::nearest(const Vec2& desired_mps, Lines& lines) const {
-  if (auto u = nearest_velocity(desired_mps, lines.all(), options_->speed_max_mps)) return *u;
+/// The half-planes of neighbours again, those of uncertain positions last: neighbours that may have
+/// stopped unnoticed, and discs. Returns the index of the first of them. O(neighbours).
+std::size_t SafetyFilter::collect_uncertain_last(const Vec2& position_m,
+                                                 std::span<const Neighbour> neighbours,
+                                                 Lines& lines) const {
+  const auto is_certain = [](const Neighbour& n) {
+    return !n.is_silent && n.possible_stop_age_s <= 0.0;
+  };
+  lines.sorted.clear();
+  std::ranges::copy_if(neighbours, std::back_inserter(lines.sorted), is_certain);
+  const std::size_t certain = lines.sorted.size();
+  std::ranges::copy_if(neighbours, std::back_inserter(lines.sorted), std::not_fn(is_certain));
+  lines.count = lines.obstacles;
+  collect_neighbours(position_m, std::span(lines.sorted).first(certain), lines);
+  const std::size_t first = lines.count;
+  collect_neighbours(position_m, std::span(lines.sorted).subspan(certain), lines);
+  return first;
+}
+
+/// Where the exact half-planes leave no velocity. Between discs, four steps: uncertain positions
+/// give way, at most until the robot closes no gap to them, so that it stands rather than enters a
+/// disc to keep off a neighbour that it merely extrapolates; discs alone give way without a limit,
+/// as a silent robot may be in them and a neighbour is near where it is extrapolated; all of them
+/// give way, at most until the robot closes no gap; and without discs, as everywhere else.
+Vec2 SafetyFilter::nearest_relaxed(const Vec2& position_m, const Vec2& desired_mps,
+                                   std::span<const Neighbour> neighbours, Lines& lines) const {
   if (lines.bodies < lines.count) {
-    if (auto u = least_violation(desired_mps, Relaxed::kDiscs, lines)) return *u;
+    const std::size_t uncertain = collect_uncertain_last(position_m, neighbours, lines);
+    if (auto u = least_violation(desired_mps, uncertain, false, lines)) return *u;
+    if (auto u = least_violation(desired_mps, lines.bodies, true, lines)) return *u;
+    if (auto u = least_violation(desired_mps, lines.obstacles, false, lines)) return *u;
     lines.count = lines.bodies;
   }
-  return least_violation(desired_mps, Relaxed::kNeighbours, lines).value_or(Vec2::Zero());
+  return least_violation(desired_mps, lines.obstacles, false, lines).value_or(Vec2::Zero());
 }
 
 Vec2 SafetyFilter::stand(const Vec2& position_m, std::span<const Neighbour> neighbours) const {
@@ -263,7 +289,8 @@ Vec2 SafetyFilter::stand(const Vec2& position_m, std::span<const Neighbour> neig
   collect_obstacles(position_m, lines, true);
   collect_approaching(position_m, neighbours, lines);
   lines.bodies = lines.count;
-  return nearest(Vec2::Zero(), lines);
+  if (auto u = nearest_velocity(Vec2::Zero(), lines.all(), options_->speed_max_mps)) return *u;
+  return least_violation(Vec2::Zero(), lines.obstacles, false, lines).value_or(Vec2::Zero());
 }
 
 /// Solves for the desired velocity first. Where that leaves a robot blocked, it tries the desired
@@ -274,7 +301,11 @@ Vec2 SafetyFilter::stand(const Vec2& position_m, std::span<const Neighbour> neig
   Lines& lines = empty_lines();
   collect_obstacles(position_m, lines, false);
   collect_neighbours(position_m, neighbours, lines);
-  const Vec2 u = nearest(desired_mps, lines);
+  const auto nearest = [&](const Vec2& wanted_mps) {
+    const auto exact = nearest_velocity(wanted_mps, lines.all(), options_->speed_max_mps);
+    return exact ? *exact : nearest_relaxed(position_m, wanted_mps, neighbours, lines);
+  };
+  const Vec2 u = nearest(desired_mps);
   const double desired = desired_mps.norm();
   if (!gives_way || desired < options_->scale * kLeastDesired_mps) return u;
   if (u.dot(desired_mps) > kBlocked * desired * desired) return u;
@@ -283,8 +314,7 @@ Vec2 SafetyFilter::stand(const Vec2& position_m, std::span<const Neighbour> neig
     const double c = std::cos(turn_rad);
     const double s = std::sin(turn_rad);
     turned = nearest(
-        {c * desired_mps.x() + s * desired_mps.y(), c * desired_mps.y() - s * desired_mps.x()},
-        lines);
+        {c * desired_mps.x() + s * desired_mps.y(), c * desired_mps.y() - s * desired_mps.x()});
     if (turned.norm() > kFree * desired) break;
   }
   return turned;

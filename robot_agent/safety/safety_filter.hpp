@@ -63,11 +63,12 @@ struct Listeners {
 ///    line demands a retreat as fast as the other approaches. This is possible while there is free
 ///    space to retreat to. A robot that stopped unnoticed is not touched: the third line keeps
 ///    clear of every place where it may have stopped.
-/// 4. No robot that may move freezes. If no velocity meets all lines, those of the discs of silent
-///    robots are relaxed, and if that does not suffice left out; then those that demand a widening
+/// 4. No robot that may move freezes. If no velocity meets all lines, those that demand a widening
 ///    gap are relaxed equally, as little as possible, at most to "do not close". u = 0 then always
-///    qualifies. A robot whose desired velocity is blocked by robots that face it turns it to its
-///    right, as all robots do, so that opposing streams part into lanes.
+///    qualifies. Where the disc of a silent robot bounds it, first only those of discs and of
+///    robots that may have stopped unnoticed; if that does not suffice, those of discs alone, as
+///    far as needed; then all. A robot whose desired velocity is blocked by robots that face it
+///    turns it to its right, as all robots do, so that opposing streams part into lanes.
 ///
 /// λ = 0 for a body that has a commanded velocity at once. A body whose acceleration is limited to
 /// A takes up to λ = v_max/A to reach it, and the lines never demand a deceleration above A:
@@ -113,9 +114,12 @@ class SafetyFilter {
                            Lines& lines) const;
   std::optional<HalfPlane> off_possible_stop(const Vec2& position_m, const Neighbour& n,
                                              double sum_m) const;
-  Vec2 nearest(const Vec2& desired_mps, Lines& lines) const;
-  enum class Relaxed { kNeighbours, kDiscs };
-  std::optional<Vec2> least_violation(const Vec2& desired_mps, Relaxed which, Lines& lines) const;
+  std::size_t collect_uncertain_last(const Vec2& position_m, std::span<const Neighbour> neighbours,
+                                     Lines& lines) const;
+  Vec2 nearest_relaxed(const Vec2& position_m, const Vec2& desired_mps,
+                       std::span<const Neighbour> neighbours, Lines& lines) const;
+  std::optional<Vec2> least_violation(const Vec2& desired_mps, std::size_t first, bool closing,
+                                      Lines& lines) const;
 
   const World& world_;
   Shared<SafetyOptions> options_;

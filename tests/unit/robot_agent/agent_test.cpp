@@ -3,11 +3,15 @@
 #include "robot_agent/agent.hpp"
 
 #include <algorithm>
+#include <array>
+#include <chrono>
 #include <cstdlib>
 #include <new>
 #include <vector>
 
 #include <gtest/gtest.h>
+
+#include "robot_agent/safety/safety_filter.hpp"
 
 namespace {
 std::size_t allocations = 0;
@@ -323,6 +327,20 @@ TEST(Agent, DoesNotAllocateOnceWarm) {
 
   const std::size_t before = allocations;
   for (int i = 0; i < 100; ++i) sut.tick(MissionPhase::kRunning, true);
+
+  EXPECT_EQ(allocations - before, 0U);
+}
+
+TEST(Agent, BetweenADiscAndANeighbourDoesNotAllocateOnceWarm) {
+  const World world = *World::make({{-50, -50}, {50, 50}}, {});
+  const SafetyFilter sut(world, SafetyOptions{.period = std::chrono::milliseconds(100)});
+  const std::array neighbours{
+      Neighbour{.robot = RobotId(1), .position_m = {0.35, 0}, .radius_m = 0.2},
+      Neighbour{.robot = RobotId(2), .position_m = {-1.1, 0}, .radius_m = 0.85, .is_silent = true}};
+  sut.filter({0, 0}, {0, 1}, neighbours, true);
+
+  const std::size_t before = allocations;
+  sut.filter({0, 0}, {0, 1}, neighbours, true);
 
   EXPECT_EQ(allocations - before, 0U);
 }

@@ -41,6 +41,17 @@ TEST(SendPolicy, SendsBeforeATurnInvalidatesTheExtrapolation) {
   EXPECT_TRUE(sut.must_send(state(100, {0.1, 0}, {1, 0.6})));
 }
 
+TEST(SendPolicy, LooksTwoPeriodsAheadNearOthers) {
+  SendPolicy sut(options());
+  sut.record_sent(state(0, {0, 0}, {1, 0}));
+  SendInput turned = state(100, {0.1, 0}, {1, 0.3});
+
+  turned.listeners.nearest_gap_m = 0.6;
+  EXPECT_FALSE(sut.must_send(turned)) << "3 cm until it can publish again";
+  turned.listeners.nearest_gap_m = 0.4;
+  EXPECT_TRUE(sut.must_send(turned)) << "6 cm until the command of a frozen process runs out";
+}
+
 TEST(SendPolicy, IsMoreExactWhereItAlmostTouches) {
   SendPolicy sut(options());
   sut.record_sent(state(0, {0, 0}, {0, 0}));

@@ -3,6 +3,7 @@
 #include "robot_agent/safety/safety_filter.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <deque>
 #include <numbers>
@@ -188,6 +189,50 @@ TEST(SafetyFilter, StopsWhenSqueezedFromBothSides) {
   const Vec2 u = filter.filter({0, 0}, {1.0, 0.0}, neighbours);
 
   EXPECT_NEAR(u.x(), 0.0, 1e-9);
+}
+
+/// At (x, 0), with a gap to a robot at the origin.
+Neighbour disc_at(double x, double gap_m) {
+  return {.robot = RobotId(1),
+          .position_m = {x, 0},
+          .radius_m = std::abs(x) - gap_m - kRadius_m,
+          .information_age_s = kPeriod_s,
+          .is_silent = true};
+}
+
+Neighbour robot_at(const Vec2& position_m, const Vec2& velocity_mps, bool is_uncertain = false) {
+  return {.robot = RobotId(2),
+          .position_m = position_m,
+          .velocity_mps = velocity_mps,
+          .radius_m = kRadius_m,
+          .information_age_s = kPeriod_s,
+          .possible_stop_age_s = is_uncertain ? kPeriod_s : 0.0};
+}
+
+/// The neighbour is where it was extrapolated only if it drove on.
+TEST(SafetyFilter, EntersNoDiscToKeepOffAnExtrapolatedNeighbour) {
+  const World world = empty_world();
+  const SafetyFilter sut(world, options());
+  const Neighbour disc = disc_at(-1.1, 0.05);
+  const Vec2 desired(0, 1);
+
+  const Vec2 between =
+      sut.filter({0, 0}, desired, std::array{robot_at({0.35, 0}, {-1, 0}, true), disc});
+  const Vec2 away = sut.filter({0, 0}, desired, std::array{robot_at({0.35, 0}, {-1, 0}), disc});
+
+  EXPECT_NEAR(between.x(), 0.0, 1e-6);
+  EXPECT_LT(away.x(), -0.5);
+}
+
+TEST(SafetyFilter, EntersNoDiscWhenTwoNeighboursLeaveNoVelocity) {
+  const World world = empty_world();
+  const SafetyFilter sut(world, options());
+
+  const Vec2 u = sut.filter(
+      {0, 0}, {1.5, 0},
+      std::array{robot_at({0, 0.6}, {0, 0}), robot_at({0, -0.6}, {0, 0}), disc_at(1.2, 0.1)});
+
+  EXPECT_LE(u.x(), 0.0);
 }
 
 TEST(SafetyFilter, EvadesAnApproachingObstacle) {
