@@ -22,8 +22,6 @@ constexpr Duration kSceneTimeout = std::chrono::seconds(3);
 constexpr Duration kStuckAfter = std::chrono::seconds(8);
 // Share of the swarm that has to be stuck before the planner changes the route.
 constexpr double kStuckShare = 0.1;
-// Period of planning anew while obstacles move, and while the last attempt failed.
-constexpr Duration kReplanPeriod = std::chrono::seconds(2);
 // The robots' statuses come once a second.
 constexpr Duration kJudgePeriod = std::chrono::seconds(1);
 // A clock that is slow for shorter than this is not worth an event.
@@ -31,6 +29,9 @@ constexpr Duration kSlowFor = std::chrono::seconds(5);
 // Robots this far ahead of the clock follow the clock of an earlier planner.
 constexpr double kRobotsAhead_s = 1.0;
 constexpr std::size_t kNamed = 10;  // robots, in an event
+constexpr std::uint32_t kFirstVersion = 1;
+// No run gets so far; a status that names a later version is not to use up the numbers.
+constexpr std::uint32_t kLastVersion = 1'000'000'000;
 
 }  // namespace
 
@@ -128,6 +129,11 @@ void PlanKeeper::try_again(SteadyTime now, UtcTime utc, Step& step) {
   }
   failed_scene_.reset();
   newest_ = *std::move(planned);
+  planned_for_.clear();
+  for (const ReportedRobot& robot : robots) planned_for_.push_back(robot.robot);
+  // Version 1 is the mission's first plan, and no other plan has the number of one that an earlier
+  // planner published: the run directory keeps plans by version.
+  version_ = std::max(version_, std::max(kFirstVersion, reported_version(now)));
   if (newest_.planned.excess.by_m > 0.0) {
     step.notices.push_back({true, "plan-excess", describe(newest_.planned.excess)});
   }
@@ -135,8 +141,8 @@ void PlanKeeper::try_again(SteadyTime now, UtcTime utc, Step& step) {
 }
 
 /// Decides whether to plan now: on a new scene, periodically while obstacles move or the last
-/// attempt failed, and at the period of the method. The plan made at the start is published as it
-/// is while the scene is the mission's own.
+/// attempt failed, at the period of the method, and with robots that the last plan lacks. The plan
+/// made at the start is published as it is while the scene is the mission's own.
 void PlanKeeper::keep_planned(SteadyTime now, UtcTime utc, Step& step) {
   if (!scene_received_ && now - begun_at_ < kSceneTimeout) return;
   const bool published = version_ > 0;
@@ -149,7 +155,8 @@ void PlanKeeper::keep_planned(SteadyTime now, UtcTime utc, Step& step) {
   const bool is_new = !published || scene_.version != planned_scene_;
   const bool tried = failed_scene_ == scene_.version;
   const bool due = now - tried_at_ >= kReplanPeriod;
-  if ((is_new && (!tried || due)) || (scene_.moves(utc) && due) || is_step_due(now)) {
+  if ((is_new && (!tried || due)) || (scene_.moves(utc) && due) || is_step_due(now) ||
+      lacks_robots(now)) {
     try_again(now, utc, step);
   }
 }
@@ -170,6 +177,15 @@ void PlanKeeper::avoid_jams(SteadyTime now, UtcTime utc, Step& step) {
        fmt::format("{} robots are stuck, about ({:.1f}, {:.1f}) m: the guide takes another route",
                    stuck.size(), at_m.x(), at_m.y())});
   try_again(now, utc, step);
+}
+
+/// The latest version that robots follow; 0: none.
+std::uint32_t PlanKeeper::reported_version(SteadyTime now) const {
+  std::uint32_t latest = 0;
+  for (const ReportedRobot& robot : robots_.fresh(now)) {
+    if (robot.plan_version <= kLastVersion) latest = std::max(latest, robot.plan_version);
+  }
+  return latest;
 }
 
 /// A new version, made for a scene: its clock starts at 0.

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <optional>
 #include <set>
@@ -20,9 +21,10 @@
 namespace swarm::planner {
 
 /// Keeps a plan for the scene as it is: the first one, and a new one when the scene changes, while
-/// obstacles move, at the period of the planning method, and where robots are stuck and the method
-/// finds another route. It also owns the plan's clock. Pure: received messages and the time go in,
-/// plans and clock readings come out; the program around it owns bus and files. One thread.
+/// obstacles move, at the period of the planning method, when robots report that the last one
+/// lacks, and where robots are stuck and the method finds another route. It also owns the plan's
+/// clock. Pure: received messages and the time go in, plans and clock readings come out; the
+/// program around it owns bus and files. One thread.
 class PlanKeeper {
  public:
   /// `planner`: for this mission. \pre the mission outlives the keeper
@@ -64,6 +66,8 @@ class PlanKeeper {
   Step step(SteadyTime now, UtcTime utc);
 
   const Replan& newest() const { return newest_; }
+  /// Of the newest published plan; 0: none. 1 is the mission's first plan; a plan made in flight
+  /// has a later number than those that the robots follow, also those of an earlier planner.
   std::uint32_t version() const { return version_; }
   /// The plan's clock, as of the last step().
   PlanClock clock(UtcTime utc) const { return governor_.reading(utc); }
@@ -80,10 +84,12 @@ class PlanKeeper {
   bool is_in_flight(SteadyTime now) const;
   bool is_in_flight_elsewhere(SteadyTime now) const;
   bool is_waiting_for_robots(SteadyTime now) const;
+  bool lacks_robots(SteadyTime now) const;
   bool is_waiting_for_returned(SteadyTime now);
   std::vector<ReportedRobot> placed(std::vector<ReportedRobot> robots) const;
   Result<Replan> plan_anew(const World& world, std::span<const ReportedRobot> robots);
   Result<Replan> plan_around_bodies(UtcTime utc, std::span<const ReportedRobot> robots, Step& step);
+  std::uint32_t reported_version(SteadyTime now) const;
   void publish(SteadyTime now, std::uint64_t scene_version, Step& step);
   void keep_clock(SteadyTime now, UtcTime utc, Step& step);
   void catch_up(SteadyTime now);
@@ -100,8 +106,13 @@ class PlanKeeper {
   bool scene_received_ = false;
   std::vector<RobotId> returned_{};          // bodies cleared since the last plan
   std::optional<SteadyTime> returned_at_{};  // the first of them
+  // Period of planning anew while obstacles move, while the last attempt failed, and with robots
+  // that reported late.
+  static constexpr Duration kReplanPeriod = std::chrono::seconds(2);
+
   Replan newest_;
-  std::uint32_t version_ = 0;  // 0 = nothing published
+  std::vector<RobotId> planned_for_;  // by id; empty: newest_ begins at the mission's start
+  std::uint32_t version_ = 0;         // 0 = nothing published
   std::uint64_t planned_scene_ = 0;
   std::optional<std::uint64_t> failed_scene_{};  // scene whose failure was reported
   std::uint64_t bodies_left_out_ = 0;            // scene for which bodies-not-planned was reported

@@ -11,8 +11,8 @@
 namespace swarm::planner {
 namespace {
 
-// A planner that restarts in flight, or plans with robots that have returned, waits this long for
-// those that have not reported.
+// A planner that plans with robots that have returned waits this long for their statuses; one that
+// was restarted in flight twice as long, until robots have found it.
 constexpr Duration kReportTimeout = std::chrono::milliseconds(1500);
 // With a plan at each period a status may refer to an earlier plan, up to this many before.
 constexpr std::uint32_t kPlansBack = 3;
@@ -43,7 +43,22 @@ bool PlanKeeper::is_in_flight_elsewhere(SteadyTime now) const {
 
 /// Whether robots may still report for the first time after a start of the planner.
 bool PlanKeeper::is_waiting_for_robots(SteadyTime now) const {
-  return !robots_.received_all(now) && now - begun_at_ < kReportTimeout;
+  if (now - begun_at_ >= 2 * kReportTimeout) return false;
+  for (std::uint32_t id = 0; id < mission_.robots.count; ++id) {
+    if (!robots_.is_received(RobotId(id), now) && !has_body(scene_, RobotId(id))) return true;
+  }
+  return false;
+}
+
+/// Whether robots have reported that the plan in force, made from the positions of the others, does
+/// not count: it would share out the goals as if they did not exist.
+bool PlanKeeper::lacks_robots(SteadyTime now) const {
+  if (phase_ != MissionPhase::kRunning || planned_for_.empty()) return false;
+  if (planned_for_.size() == mission_.robots.count || now - tried_at_ < kReplanPeriod) return false;
+  const std::vector<ReportedRobot> robots = robots_.fresh(now);
+  return std::ranges::any_of(robots, [this](const ReportedRobot& robot) {
+    return !std::ranges::binary_search(planned_for_, robot.robot);
+  });
 }
 
 /// The launcher clears the body of a robot as soon as it receives the robot; here its status may

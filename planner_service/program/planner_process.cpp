@@ -256,7 +256,7 @@ void PlannerProcess::Impl::publish() {
                        newest.planned.plan.nodes().size(), newest.planned.plan.legs().size(),
                        stats.planned_mean_path_m, stats.total_ms,
                        scene == 0 ? "" : fmt::format(", {:.1f} ms after the change", after_ms)));
-  if (version == 1 && scene == 0) return;  // kept when it was made
+  if (version == 1) return;  // the mission's first plan, kept when it was made
   files.replace(plan_file(options.run_dir, version),
                 to_json(newest.planned.plan, newest.planned.excess.by_m));
   if (const std::uint32_t old = outdated_plan(version)) {

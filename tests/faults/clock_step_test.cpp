@@ -116,6 +116,7 @@ TEST_P(ClockStep, ChangesNothingInFlight) {
   EXPECT_EQ(summary["arrived"], 12);
   EXPECT_EQ(summary["collisions_robot"], 0);
   EXPECT_EQ(summary["collisions_obstacle"], 0);
+  EXPECT_TRUE(exists(run.dir() / "plan-0002.json")) << "of the restarted planner";
   EXPECT_LT(summary["mission_s"].get<double>(), 300.0) << "not by the wall clock";
   const std::vector<UtcTime> pauses = pauses_of(run.dir());
   ASSERT_EQ(pauses.size(), kSteps_s.size());

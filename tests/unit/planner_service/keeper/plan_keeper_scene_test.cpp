@@ -1,6 +1,9 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
 // What the keeper does with scenes and statuses that arrive late, twice or out of order.
+#include <algorithm>
+#include <cstdint>
+
 #include <gtest/gtest.h>
 
 #include "swarmflow/mission/scene.hpp"
@@ -120,6 +123,65 @@ TEST(PlanKeeperScene, PublishesTheFirstPlanInFlightWhereThereIsNoneForTheScene) 
   EXPECT_EQ(bench.published, 1) << "once";
 
   EXPECT_TRUE(bench.step_after(RemoveObstacle{bench.scene.obstacles.at(0).id}).publish);
+}
+
+// The run directory keeps plans by version: no plan of the planner before may be overwritten.
+TEST(PlanKeeperScene, NumbersPlansAfterThoseOfAnEarlierPlanner) {
+  for (const std::uint32_t followed : {0U, 1U, 3U}) {
+    KeeperBench bench;  // of a planner that has just been restarted
+    bench.keeper.set_phase(MissionPhase::kRunning);
+    bench.robots_version = followed;
+    bench.report_all();
+
+    EXPECT_TRUE(bench.step_after(GoTo{.goal = bench.mission.start}).publish);
+    EXPECT_EQ(bench.keeper.version(), std::max(followed, 1U) + 1)
+        << "1 is the mission's first plan";
+  }
+}
+
+// Robots find a restarted planner one after the other.
+TEST(PlanKeeperScene, PlansAgainWithRobotsThatReportLate) {
+  KeeperBench bench;
+  bench.keeper.set_phase(MissionPhase::kRunning);
+  for (std::uint32_t robot = 0; robot < 7; ++robot) bench.report(RobotId(robot));
+  EXPECT_TRUE(bench.step_after(AddObstacle{.shape = Circle{{1, 1}, 0.2}}).publish);
+  EXPECT_FALSE(bench.step_after(seconds(3)).publish) << "nothing new is known";
+
+  bench.report_all();
+  EXPECT_TRUE(bench.step_after(milliseconds(50)).publish);
+
+  for (const PlanEntry& entry : bench.keeper.newest().entries) {
+    EXPECT_NE(entry.source, PlanEntry::kAnywhere);
+  }
+  bench.run_for(5.0);
+  EXPECT_EQ(bench.published, 2);
+}
+
+TEST(PlanKeeperScene, ARestartedPlannerWaitsForRobotsButNotForBodies) {
+  KeeperBench bench;
+  bench.keeper.set_phase(MissionPhase::kRunning);
+  bench.keeper.begin(bench.now);
+  bench.scene = after(bench.scene, AddBody{.robot = RobotId(11), .shape = Circle{{1, 1}, 0.2}},
+                      bench.mission.world, bench.utc)
+                    .value();
+  ASSERT_TRUE(bench.keeper.take_scene(bench.scene));
+  for (std::uint32_t robot = 0; robot < 10; ++robot) bench.report(RobotId(robot));
+
+  EXPECT_FALSE(bench.step_after(milliseconds(500)).publish) << "robot 10 has not reported";
+  bench.report(RobotId(10));
+  EXPECT_TRUE(bench.step_after(milliseconds(50)).publish);
+}
+
+TEST(PlanKeeperScene, AnAbsurdReportDoesNotUseUpTheNumbers) {
+  KeeperBench bench;
+  bench.keeper.set_phase(MissionPhase::kRunning);
+  bench.robots_version = 3;
+  bench.report_all();
+  bench.robots_version = 4'294'967'295U;
+  bench.report(RobotId(0));
+
+  EXPECT_TRUE(bench.step_after(GoTo{.goal = bench.mission.start}).publish);
+  EXPECT_EQ(bench.keeper.version(), 4U);
 }
 
 TEST(PlanKeeperScene, DoesNotLeadRobotsBackToAnEarlierGoal) {
