@@ -139,7 +139,7 @@ def main():
     parser.add_argument("cases", nargs="*", metavar="CASE", help=" ".join(CASES))
     parser.add_argument("--robots", type=int, default=100)
     parser.add_argument("--channel", default="auto")
-    parser.add_argument("--clock-shim", type=pathlib.Path, default=BIN.parent / "tests/faults/libclock_shim.so")
+    parser.add_argument("--clock-shim", type=pathlib.Path, default=BIN.parent / "libexec/swarmflow/clock_shim.so")
     options = parser.parse_args()
     failed = False
     for case in options.cases or CASES:
