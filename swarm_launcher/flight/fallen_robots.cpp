@@ -2,24 +2,38 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "swarm_launcher/flight/fallen_robots.hpp"
 
+#include <optional>
 #include <utility>
+#include <variant>
 
 #include <fmt/format.h>
 
 #include "swarm_core/mission/scene_bodies.hpp"
 
 namespace swarm::launcher {
+namespace {
+
+/// The radius of a robot's body as an obstacle; empty if it is none.
+std::optional<double> body_radius_m(const Scene& scene, RobotId robot) {
+  for (const SceneObstacle& obstacle : scene.obstacles) {
+    const auto* circle = std::get_if<Circle>(&obstacle.shape);
+    if (obstacle.owner == robot && circle != nullptr) return circle->radius_m;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
 
 FallenRobots::FallenRobots(const Mission& mission, SceneKeeper& scene, FlightLog& log,
-                           LoggedPosition logged)
+                           Logged logged)
     : mission_(mission),
       scene_(scene),
       log_(log),
       logged_(std::move(logged)),
       reported_(mission.robots.count) {}
 
-/// The newest known position of a robot. Its log, on this host only, has its last control period;
-/// its last status is up to a second old.
+/// The newest known position of a robot. Its log has its last control period; its last status is up
+/// to a second old.
 std::optional<LastKnown> FallenRobots::last_known_of(RobotId robot) const {
   const std::optional<LastKnown>& reported = reported_.at(robot.value());
   const std::optional<LastKnown> logged = logged_(robot);
@@ -56,6 +70,25 @@ void FallenRobots::add(std::span<const RobotId> robots, UtcTime now) {
                    .text = fmt::format("{} of them cannot be obstacles: {}", refused.size(),
                                        refused.front().message)});
   }
+}
+
+void FallenRobots::narrow(std::span<const RobotId> robots, UtcTime now) {
+  std::vector<SceneChange> changes;
+  std::vector<RobotId> narrowed;
+  for (const RobotId robot : robots) {
+    const auto radius_m = body_radius_m(scene_.scene(), robot);
+    const auto known = radius_m ? last_known_of(robot) : std::nullopt;
+    if (!known) continue;
+    const Circle circle = circle_of_fallen(*known, now, mission_, robot);
+    if (circle.radius_m >= *radius_m) continue;
+    changes.emplace_back(AddBody{robot, circle});
+    narrowed.push_back(robot);
+  }
+  if (changes.empty()) return;
+  scene_.change_all(changes, now);
+  log_.log(now, {.code = "body-narrowed",
+                 .text = fmt::format("known better, by their logs on another host: {}",
+                                     describe(narrowed))});
 }
 
 /// Robots that report again. The operator may have cleared the body of some already.

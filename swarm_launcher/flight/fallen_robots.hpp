@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -14,8 +15,10 @@ namespace swarm::launcher {
 /// others, where they were last known to be, and cease to be when they are received again.
 class FallenRobots {
  public:
-  /// \pre all references outlive the object
-  FallenRobots(const Mission& mission, SceneKeeper& scene, FlightLog& log, LoggedPosition logged);
+  using Logged = std::function<std::optional<LastKnown>(RobotId)>;
+
+  /// `logged`: by the robot's log. \pre all references outlive the object
+  FallenRobots(const Mission& mission, SceneKeeper& scene, FlightLog& log, Logged logged);
 
   /// A robot reported its position.
   void on_status(RobotId robot, const LastKnown& reported) {
@@ -23,6 +26,8 @@ class FallenRobots {
   }
 
   void add(std::span<const RobotId> robots, UtcTime now);
+  /// Their logs are known better than before: bodies become smaller where that follows.
+  void narrow(std::span<const RobotId> robots, UtcTime now);
   void clear(std::span<const RobotId> robots, UtcTime now);
 
  private:
@@ -31,7 +36,7 @@ class FallenRobots {
   const Mission& mission_;
   SceneKeeper& scene_;
   FlightLog& log_;
-  LoggedPosition logged_;
+  Logged logged_;
   std::vector<std::optional<LastKnown>> reported_;  // by the newest status of each robot
 };
 

@@ -16,7 +16,7 @@
 #include "swarm_core/app/run_directory.hpp"
 #include "swarm_core/app/stop_signal.hpp"
 #include "swarm_core/base/clock.hpp"
-#include "swarm_core/robot_log/robot_log_file.hpp"
+#include "swarm_launcher/hosts/last_position.hpp"
 #include "swarm_launcher/processes/host_limits.hpp"
 
 namespace swarm::launcher {
@@ -29,8 +29,6 @@ constexpr Duration kLogsTimeout = std::chrono::minutes(3);
 
 constexpr std::ptrdiff_t kMostNamed = 10;  // files that lack something
 constexpr Duration kFilesEvery = std::chrono::seconds(1);
-// The robot of a process that has just died or fallen silent made its last step within this time.
-constexpr Duration kRecent = std::chrono::seconds(60);
 // Thousands of events that wait for the disk.
 constexpr std::size_t kEventsBytes = 4U << 20U;
 
@@ -47,13 +45,14 @@ class SocketRequests final : public ControlRequests {
   shell::ControlServer& server_;
 };
 
-LoggedPosition positions_in_logs(const PreparedRun& run) {
-  return [&run](RobotId robot) -> std::optional<LastKnown> {
-    const std::filesystem::path file = robot_log::file_of(run.dir(), robot);
-    auto steps = robot_log::last_steps(file, utc_now() - kRecent);
-    if (steps && steps->empty()) steps = robot_log::last_steps(file);
-    if (!steps) return std::nullopt;
-    return last_known(*steps, run.options().mission);
+LoggedPosition positions_in_logs(PreparedRun& run) {
+  return [&run](RobotId robot, bool has_ended) -> std::optional<LastKnown> {
+    if (run.hosts() != nullptr) {
+      if (auto known = run.hosts()->last_known(robot)) return known;
+    }
+    auto known = last_known_in_log(run.dir(), robot, run.options().mission);
+    if (known && has_ended) known->is_last = logs_are_whole(run.dir(), run.options().per_process);
+    return known;
   };
 }
 

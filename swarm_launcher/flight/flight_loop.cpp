@@ -40,7 +40,8 @@ FlightLoop::FlightLoop(const FlightOptions& options, const std::filesystem::path
       supervisor_(supervision_of(options), now),
       view_(options.mission.robots.count, options.mission.link.communication_radius_m),
       late_(options.mission.robots.count, options.mission.link.status_hz),
-      fallen_(options.mission, ports_.scene, ports_.log, ports_.logged_position),
+      fallen_(options.mission, ports_.scene, ports_.log,
+              [this](RobotId robot) { return ports_.logged_position(robot, !has_process(robot)); }),
       stamp_tolerance_(from_seconds(options.mission.timing.clock_skew_warn_s)),
       confirmations_(options.mission.robots.count, stamp_tolerance_) {}
 
@@ -59,6 +60,7 @@ Result<void> FlightLoop::step(const FlightTime& now) {
       ports_.log.log(now.utc, event);
     }
     for (const ProcessIndex process : ports_.hosts->take_ended()) release(process, now.utc);
+    fallen_.narrow(ports_.hosts->take_known(), now.utc);
   }
   serve_requests(now);
   for (const Action& action : supervisor_.step(now.steady)) {
@@ -93,6 +95,15 @@ void FlightLoop::reap(const FlightTime& now) {
     release(known->second, now.utc);
     children_.erase(known);
   }
+}
+
+// Whether a process of this host runs the robot.
+bool FlightLoop::has_process(RobotId robot) const {
+  return std::ranges::any_of(children_, [&](const auto& child) {
+    if (child.second == kPlanner) return false;
+    const auto [first, count] = supervisor_.robots_of(child.second);
+    return robot.value() - first.value() < count;
+  });
 }
 
 // The next process of these robots reports from another sender.

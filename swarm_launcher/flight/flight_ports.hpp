@@ -64,8 +64,9 @@ class FlightObserver {
   virtual std::string describe() = 0;
 };
 
-/// The newest position in a robot's log, which only a robot of this host has.
-using LoggedPosition = std::function<std::optional<LastKnown>(RobotId)>;
+/// The newest position in a robot's log, on this host or, as that host has sent it, on another one.
+/// `has_ended`: so has its process.
+using LoggedPosition = std::function<std::optional<LastKnown>(RobotId, bool has_ended)>;
 
 /// All of them outlive the FlightLoop.
 struct FlightPorts {

@@ -24,13 +24,14 @@ Result<LauncherBus> open_launcher_bus(link::Participant& participant,
   if (!scenes) return tl::unexpected(scenes.error());
   if (!status_relay) return tl::unexpected(status_relay.error());
   if (!event_relay) return tl::unexpected(event_relay.error());
-  return LauncherBus{.participant = &participant,
-                     .inbox = HealthInbox(
-                         {std::move(*statuses), std::move(*events), std::move(*heartbeats)}, limits),
-                     .commands = std::move(*commands),
-                     .scenes = std::move(*scenes),
-                     .status_relay = std::move(*status_relay),
-                     .event_relay = std::move(*event_relay)};
+  return LauncherBus{
+      .participant = &participant,
+      .inbox =
+          HealthInbox({std::move(*statuses), std::move(*events), std::move(*heartbeats)}, limits),
+      .commands = std::move(*commands),
+      .scenes = std::move(*scenes),
+      .status_relay = std::move(*status_relay),
+      .event_relay = std::move(*event_relay)};
 }
 
 }  // namespace swarm::launcher

@@ -17,7 +17,9 @@
 #include "swarm_core/app/stop_signal.hpp"
 #include "swarm_core/robot_log/robot_log_file.hpp"
 #include "swarm_launcher/hosts/host_processes.hpp"
+#include "swarm_launcher/hosts/last_position.hpp"
 #include "swarm_launcher/hosts/line_socket.hpp"
+#include "swarm_launcher/hosts/log_watch.hpp"
 #include "swarm_launcher/hosts/offer.hpp"
 #include "swarm_launcher/supervision/progress.hpp"
 #include "swarmflow/mission/mission_file.hpp"
@@ -55,10 +57,34 @@ Result<HostOffer> ask(LineSocket& socket, const JoinOptions& options) {
   return fail(ErrorCode::kEnvironment, "no launcher answers there");
 }
 
+/// The robot logs of this host, of which the launcher receives the ends in flight.
+struct RobotLogs {
+  const HostOffer& offer;
+  const std::filesystem::path& dir;
+  const Mission& mission;
+  LogWatch watch{dir, RobotId(offer.first_robot), offer.robots};
+
+  void send_last(RobotId robot, bool is_last, LineSocket& socket) const {
+    auto known = last_known_in_log(dir, robot, mission);
+    if (!known) return;
+    known->is_last = is_last;
+    socket.send(to_line(LastPosition{robot, *known}));
+  }
+  /// Of the robots of a process that has ended.
+  void send_last_of(std::uint32_t process, LineSocket& socket) const {
+    const std::uint32_t begin = process * offer.per_process;
+    const bool is_last = logs_are_whole(dir, offer.per_process);
+    for (std::uint32_t i = begin; i < std::min(begin + offer.per_process, offer.robots); ++i) {
+      send_last(RobotId(offer.first_robot + i), is_last, socket);
+    }
+  }
+};
+
 /// Runs the processes until all have ended. They are ended when the launcher requests it, when the
 /// connection is lost, or on a stop signal; a process that does not end gets the next stronger
 /// signal.
-Result<void> fly(HostProcesses& processes, LineSocket& socket, Progress& progress) {
+Result<void> fly(HostProcesses& processes, RobotLogs& logs, LineSocket& socket,
+                 Progress& progress) {
   int signalled = -1;
   SteadyTime signalled_at;
   const auto signal_processes = [&](int rung) {
@@ -81,7 +107,9 @@ Result<void> fly(HostProcesses& processes, LineSocket& socket, Progress& progres
     if (signalled >= 0 && signalled < 2 && now() - signalled_at > kGrace)
       signal_processes(signalled + 1);
     if (auto stepped = processes.step(); !stepped) return stepped;
+    for (const RobotId robot : logs.watch.step(now())) logs.send_last(robot, false, socket);
     for (const auto& [process, exit] : processes.take_exits()) {
+      logs.send_last_of(process, socket);  // first, so that the launcher has it at the exit
       socket.send(nlohmann::json{{"exit", process},
                                  {"code", exit.code},
                                  {"signal", exit.signal},
@@ -171,7 +199,8 @@ Result<ExitCode> join_host(const JoinOptions& options) {
   {
     HostProcesses processes(
         *offer, {.dir = *dir, .dds = options.dds, .respawns = mission->launcher.respawn_agent_max});
-    if (auto flown = fly(processes, *socket, progress); !flown)
+    RobotLogs logs{.offer = *offer, .dir = *dir, .mission = *mission};
+    if (auto flown = fly(processes, logs, *socket, progress); !flown)
       return tl::unexpected(flown.error());
   }
   send_logs(*offer, *dir, *socket, progress);

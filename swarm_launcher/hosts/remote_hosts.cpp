@@ -11,6 +11,7 @@
 
 #include "swarm_core/base/clock.hpp"
 #include "swarm_core/robot_log/robot_log_file.hpp"
+#include "swarm_launcher/hosts/last_position.hpp"
 
 namespace swarm::launcher {
 namespace {
@@ -25,6 +26,7 @@ constexpr std::uint64_t kMaxLogBytes = 1ULL << 30U;
 // As kMaxStatusRobots: a process with more robots sends several statuses per period.
 constexpr std::uint32_t kRobotsPerStatus = 100;
 constexpr Duration kRequestTimeout = std::chrono::seconds(10);
+constexpr Duration kClockError = std::chrono::seconds(1);  // of a host against the launcher
 
 std::string describe(std::uint32_t first_robot, std::uint32_t robots) {
   return fmt::format("host of robots {}-{}", first_robot, first_robot + robots - 1);
@@ -118,9 +120,24 @@ bool RemoteHosts::take_exit(Host& host, const nlohmann::json& line) {
   return true;
 }
 
-/// The first line must be a request; then "exit" (a process has ended), "over" (all have), "box" (a
-/// robot log follows) and "bye". The peer is not trusted: a log is accepted for its own robots only
-/// and up to a size limit.
+/// Where the log of one of its robots ends. A later stamp than now would outrank each status.
+bool RemoteHosts::take_last(const Host& host, const nlohmann::json& line) {
+  const auto last = parse_last_position(line);
+  if (!last || last->robot.value() - host.first_robot >= host.robots) return false;
+  if (last->known.at > utc_now() + kClockError) return false;
+  last_known_.insert_or_assign(last->robot, last->known);
+  known_.push_back(last->robot);
+  return true;
+}
+
+std::optional<LastKnown> RemoteHosts::last_known(RobotId robot) const {
+  const auto known = last_known_.find(robot);
+  return known == last_known_.end() ? std::nullopt : std::optional(known->second);
+}
+
+/// The first line must be a request; then "exit" (a process has ended), "last" (where the log of a
+/// robot ends), "over" (all have ended), "box" (a robot log follows) and "bye". The peer is not
+/// trusted: a log is accepted for its own robots only and up to a size limit.
 bool RemoteHosts::take_line(Host& host, const std::string& line) {
   const auto json = nlohmann::json::parse(line, nullptr, false);
   if (!json.is_object()) return false;
@@ -134,6 +151,7 @@ bool RemoteHosts::take_line(Host& host, const std::string& line) {
                   static_cast<std::uint32_t>(std::min<std::uint64_t>(*wanted, offer_.robots)));
   }
   if (json.contains("exit")) return take_exit(host, json);
+  if (json.contains("last")) return take_last(host, json);
   if (json.contains("over")) {
     host.over = true;
     return true;

@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -15,6 +17,7 @@
 #include "swarm_launcher/hosts/host_watch.hpp"
 #include "swarm_launcher/hosts/line_socket.hpp"
 #include "swarm_launcher/hosts/offer.hpp"
+#include "swarm_launcher/supervision/fallen_body.hpp"
 #include "swarm_launcher/supervision/supervisor.hpp"
 
 namespace swarm::launcher {
@@ -52,6 +55,11 @@ class RemoteHosts {
 
   /// Processes of hosts that have ended since the last call.
   std::vector<ProcessIndex> take_ended() { return std::exchange(ended_, {}); }
+
+  /// Where the log of a robot of another host ends, as that host has sent it.
+  std::optional<LastKnown> last_known(RobotId robot) const;
+  /// Robots for which that has arrived since the last call.
+  std::vector<RobotId> take_known() { return std::exchange(known_, {}); }
 
   /// Requests the end of a process of another host, and with it of all processes of that host.
   void end(ProcessIndex process, EndSignal signal);
@@ -93,6 +101,7 @@ class RemoteHosts {
   bool answer(Host& host, std::uint32_t robots);
   bool refuse(Host& host, const char* why);
   bool take_exit(Host& host, const nlohmann::json& line);
+  bool take_last(const Host& host, const nlohmann::json& line);
   void report_exits(Host& host, Supervisor& supervisor, SteadyTime now);
   void watch(Host& host, Supervisor& supervisor, SteadyTime now, std::vector<LogEvent>& log);
   void take_log(Host& host);
@@ -108,11 +117,13 @@ class RemoteHosts {
   std::vector<Host> hosts_;
   std::vector<std::size_t> joined_;  // since the last step: indices of hosts_
   std::vector<ProcessIndex> ended_;  // since the last call of take_ended()
-  std::vector<Block> free_;          // not assigned yet
-  std::vector<bool> collected_;      // robot logs
-  bool paused_ = false;              // by us
-  bool overruled_ = false;           // the user resumed in spite of the cut
-  bool cut_ = false;                 // a host is cut off
+  std::map<RobotId, LastKnown> last_known_;
+  std::vector<RobotId> known_;   // since the last call of take_known()
+  std::vector<Block> free_;      // not assigned yet
+  std::vector<bool> collected_;  // robot logs
+  bool paused_ = false;          // by us
+  bool overruled_ = false;       // the user resumed in spite of the cut
+  bool cut_ = false;             // a host is cut off
   bool begun_ = false;
   SteadyTime now_{};  // of the step in progress
 };

@@ -47,8 +47,8 @@ Circle circle_of_fallen(const LastKnown& known, UtcTime silent_since, const Miss
   const double age_s = std::max(0.0, to_seconds(silent_since - known.at));
   Circle circle{.center_m = known.position_m, .radius_m = body.radius_m};
   if (known.at_rest) return circle;
-  if (!known.command_mps || age_s > kPeriodsOfATick * period_s) {
-    // The log of a robot on this host ends where the robot did. One that is known from its statuses
+  if (!known.command_mps || (!known.is_last && age_s > kPeriodsOfATick * period_s)) {
+    // A log ends where the robot did. A robot that is known from its statuses
     // alone may be cut off and drive on until it holds.
     const double holds_s = known.command_mps ? 0.0 : mission.timing.planner_silence_s;
     const double moving_s = std::min(age_s, 1.0 / mission.link.status_hz + holds_s);

@@ -20,6 +20,7 @@ struct LastKnown {
   std::optional<Vec2> command_mps{};
   std::optional<double> speed_mps{};
   bool at_rest = false;  ///< arrived and settled: it does not move
+  bool is_last = false;  ///< its process has ended: however old this is, no step followed
 };
 
 /// From the last steps of a robot's log, newest last. Empty if there are none.

@@ -9,17 +9,13 @@
 namespace swarm::monitor {
 namespace {
 
-/// Where the log of a dead robot lacks its end, as the disk was full, the launcher knows more: the
-/// last status. Its circle covers the end of every complete log.
-void end_where_it_fell(const FallenBody& body, double fallen_s, Track& track) {
+/// Where the log of a dead robot lacks its end, as the disk was full, the launcher knew more: its
+/// circle covers the end of every complete log. How the robot got there and where in the circle its
+/// body is was not recorded: it is not judged, and its log counts as incomplete.
+bool has_complete_log(const FallenBody& body, double fallen_s, const Track& track) {
   const TrackPoint& last = track.points.back();
-  const bool is_covered = (last.position_m - body.shape.center_m).norm() <= body.shape.radius_m;
-  if (track.body_until_s <= 0.0 || fallen_s <= last.time_s || is_covered) return;
-  TrackPoint fell = last;
-  fell.time_s = fallen_s;
-  fell.position_m = body.shape.center_m;
-  track.points.push_back(fell);
-  ++track.lost;
+  return fallen_s <= last.time_s ||
+         (last.position_m - body.shape.center_m).norm() <= body.shape.radius_m;
 }
 
 }  // namespace
@@ -38,7 +34,11 @@ void lay_fallen_bodies(RecordedRun& run) {
     const std::uint32_t robot = body.robot.value();
     if (robot >= run.tracks.size() || run.tracks[robot].points.empty()) continue;
     Track& track = run.tracks[robot];
-    end_where_it_fell(body, to_seconds(body.from - run.begin), track);
+    if (track.body_until_s > 0.0 &&
+        !has_complete_log(body, to_seconds(body.from - run.begin), track)) {
+      track.body_until_s = 0.0;
+      ++track.lost;
+    }
     if (!body.cleared) continue;
     const double cleared_s = to_seconds(*body.cleared - run.begin);
     // A body of an earlier incarnation was cleared when the robot came back: its log continues

@@ -56,8 +56,8 @@ class Flight:
         with self.offset.open("r+b") as mapped:  # in place, since the programs have it mapped
             mapped.write(struct.pack("q", offset_s))
 
-    def command(self, *words):
-        subprocess.run([BIN / "swarm_launcher", "command", self.dir, *words], stdout=subprocess.DEVNULL, check=True, timeout=60)
+    def command(self, *arguments):
+        subprocess.run([BIN / "swarm_launcher", "command", self.dir, *arguments], stdout=subprocess.DEVNULL, check=True, timeout=60)
 
     def kill_planner(self):
         found = subprocess.run(["pgrep", "-P", str(self.launcher.pid), "-x", "planner_service"], capture_output=True, text=True)
@@ -109,9 +109,9 @@ def main():
             time.sleep(BETWEEN_S)
             for flight in flights:
                 flight.set_clock(number)
-            for words in (["pause"], ["resume"], None, ["add_obstacle", f"circle_m: {{center: [{5 + 2 * number}, 5], radius: 0.3}}"]):
+            for command in (["pause"], ["resume"], None, ["add_obstacle", f"circle_m: {{center: [{5 + 2 * number}, 5], radius: 0.3}}"]):
                 for flight in flights:
-                    flight.command(*words) if words else flight.kill_planner()
+                    flight.command(*command) if command else flight.kill_planner()
                 time.sleep(PAUSE_S)
         for flight in flights:
             flight.launcher.wait(timeout=600)

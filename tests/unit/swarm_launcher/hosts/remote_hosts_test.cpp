@@ -14,6 +14,9 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include "swarm_core/base/clock.hpp"
+#include "swarm_launcher/hosts/last_position.hpp"
+
 namespace swarm::launcher {
 namespace {
 
@@ -163,6 +166,42 @@ TEST(RemoteHosts, AProcessThatItsHostRestartsIsWaitedFor) {
                                           .mode = RobotMode::kMoving,
                                           .sent_at = bench.now});
   EXPECT_TRUE(bench.supervisor.silent().empty());
+}
+
+std::string last_of(std::uint32_t robot, UtcTime at) {
+  return to_line(
+      LastPosition{.robot = RobotId(robot),
+                   .known = {.at = at, .position_m = {3, 4}, .command_mps = Vec2(1, 0)}});
+}
+
+TEST(RemoteHosts, KnowWhereTheLogsOfTheirRobotsEnd) {
+  Bench bench;
+  LineSocket host = bench.join(2);
+
+  host.send(last_of(3, utc_now()));
+  std::vector<RobotId> known;
+  EXPECT_TRUE(bench.until([&] {
+    if (known.empty()) known = bench.hosts.take_known();
+    return !known.empty();
+  }));
+
+  EXPECT_EQ(known, std::vector{RobotId(3)});
+  EXPECT_TRUE(bench.hosts.take_known().empty());
+  ASSERT_TRUE(bench.hosts.last_known(RobotId(3)));
+  EXPECT_EQ(bench.hosts.last_known(RobotId(3))->position_m, Vec2(3, 4));
+  EXPECT_FALSE(bench.hosts.last_known(RobotId(2)));
+}
+
+TEST(RemoteHosts, OneThatReportsTheLogOfAnotherOrOfTheFutureIsDropped) {
+  for (const std::string& line :
+       {last_of(1, utc_now()), last_of(4, utc_now()), last_of(3, utc_now() + seconds(60)),
+        std::string(R"({"last":3})")}) {
+    Bench bench;
+    LineSocket host = bench.join(2);
+    host.send(line);
+    EXPECT_TRUE(bench.is_dropped(host)) << line;
+    EXPECT_FALSE(bench.hosts.last_known(RobotId(3))) << line;
+  }
 }
 
 TEST(RemoteHosts, OneThatReportsAProcessItDoesNotHaveIsDropped) {

@@ -65,6 +65,18 @@ TEST(CircleOfFallen, CoversTheBodyFromTheLastTickToItsRest) {
   }
 }
 
+TEST(CircleOfFallen, OfAProcessThatHasEndedDoesNotGrowWithTime) {
+  LastKnown known{
+      .at = at_s(0.0), .position_m = {3, 4}, .command_mps = Vec2(1, 0), .speed_mps = 1.0};
+  const Mission mission = mission_of("single_integrator");
+  const double at_once_m = circle_of_fallen(known, at_s(0.1), mission, RobotId(0)).radius_m;
+  EXPECT_GT(circle_of_fallen(known, at_s(5.0), mission, RobotId(0)).radius_m, 2.0 * at_once_m);
+
+  known.is_last = true;
+
+  EXPECT_EQ(circle_of_fallen(known, at_s(5.0), mission, RobotId(0)).radius_m, at_once_m);
+}
+
 TEST(CircleOfFallen, IsTheBodyWhereARobotIsAtRest) {
   const Circle by_log = circle_of_fallen(
       {.at = at_s(0.0), .position_m = {3, 4}, .command_mps = Vec2(0, 0), .speed_mps = 0.0},

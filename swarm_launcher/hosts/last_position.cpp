@@ -1,0 +1,93 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#include "swarm_launcher/hosts/last_position.hpp"
+
+#include <chrono>
+#include <cmath>
+#include <cstdint>
+#include <system_error>
+
+#include <nlohmann/json.hpp>
+
+#include "swarm_core/base/clock.hpp"
+#include "swarm_core/robot_log/robot_log_file.hpp"
+
+namespace swarm::launcher {
+namespace {
+
+// The robot of a process that has just died or fallen silent made its last step within this time.
+constexpr Duration kRecent = std::chrono::seconds(60);
+
+constexpr std::uintmax_t kRoom = 1U << 20U;  // a disk with less may have refused the last records
+
+std::optional<double> finite(const nlohmann::json& value) {
+  if (!value.is_number()) return std::nullopt;
+  const auto number = value.get<double>();
+  return std::isfinite(number) ? std::optional(number) : std::nullopt;
+}
+
+std::optional<Vec2> vector(const nlohmann::json& line, const char* key) {
+  const auto field = line.find(key);
+  if (field == line.end() || !field->is_array() || field->size() != 2) return std::nullopt;
+  const auto x = finite((*field)[0]);
+  const auto y = finite((*field)[1]);
+  return x && y ? std::optional(Vec2(*x, *y)) : std::nullopt;
+}
+
+nlohmann::json to_json(const Vec2& v) { return {v.x(), v.y()}; }
+
+}  // namespace
+
+std::optional<LastKnown> last_known_in_log(const std::filesystem::path& run_dir, RobotId robot,
+                                           const Mission& mission) {
+  const std::filesystem::path file = robot_log::file_of(run_dir, robot);
+  auto steps = robot_log::last_steps(file, utc_now() - kRecent);
+  if (steps && steps->empty()) steps = robot_log::last_steps(file);
+  if (!steps) return std::nullopt;
+  return last_known(*steps, mission);
+}
+
+bool logs_are_whole(const std::filesystem::path& run_dir, std::uint32_t robots_per_process) {
+  std::error_code none;
+  const auto space = std::filesystem::space(run_dir, none);
+  return robots_per_process == 1 && !none && space.available > kRoom;
+}
+
+std::string to_line(const LastPosition& last) {
+  const LastKnown& known = last.known;
+  nlohmann::json line = {{"last", last.robot.value()},
+                         {"utc_ns", known.at.time_since_epoch().count()},
+                         {"position_m", to_json(known.position_m)},
+                         {"command_mps", to_json(known.command_mps.value_or(Vec2::Zero()))},
+                         {"speed_mps", nullptr},
+                         {"dead", known.is_last}};
+  if (known.speed_mps) line["speed_mps"] = *known.speed_mps;
+  return line.dump();
+}
+
+std::optional<LastPosition> parse_last_position(const nlohmann::json& line) {
+  const auto robot = line.find("last");
+  const auto utc_ns = line.find("utc_ns");
+  const auto speed = line.find("speed_mps");
+  const auto dead = line.find("dead");
+  for (const auto& field : {robot, utc_ns, speed, dead}) {
+    if (field == line.end()) return std::nullopt;
+  }
+  const auto position_m = vector(line, "position_m");
+  const auto command_mps = vector(line, "command_mps");
+  if (!robot->is_number_unsigned() || !utc_ns->is_number_integer() || !dead->is_boolean()) {
+    return std::nullopt;
+  }
+  const auto id = robot->get<std::uint64_t>();
+  if (id > UINT32_MAX || !position_m || !command_mps) return std::nullopt;
+  const std::optional<double> speed_mps = finite(*speed);
+  if (!speed_mps && !speed->is_null()) return std::nullopt;
+  return LastPosition{.robot = RobotId(static_cast<std::uint32_t>(id)),
+                      .known = {.at = UtcTime(Duration(utc_ns->get<std::int64_t>())),
+                                .position_m = *position_m,
+                                .command_mps = *command_mps,
+                                .speed_mps = speed_mps,
+                                .is_last = dead->get<bool>()}};
+}
+
+}  // namespace swarm::launcher

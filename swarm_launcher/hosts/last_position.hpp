@@ -1,0 +1,40 @@
+// SPDX-FileCopyrightText: The Swarmflow authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "swarm_launcher/supervision/fallen_body.hpp"
+#include "swarmflow/core/ids.hpp"
+#include "swarmflow/mission/mission.hpp"
+
+namespace swarm::launcher {
+
+/// Where the log of a robot ends. A joined host sends it to the launcher when the robot's process
+/// has ended or its log does not grow, as the log is on that host.
+struct LastPosition {
+  RobotId robot;
+  LastKnown known;  ///< from the log: with a command
+};
+
+/// From the end of a robot's log in a run directory. Empty if there is no log or no step in it.
+/// Reads the last minute of the log, or all of it if that is empty. Takes milliseconds.
+std::optional<LastKnown> last_known_in_log(const std::filesystem::path& run_dir, RobotId robot,
+                                           const Mission& mission);
+
+/// Whether the log of a process that has ended has its last step: those of processes with one robot
+/// do, as these write each step at once, unless the disk is full.
+bool logs_are_whole(const std::filesystem::path& run_dir, std::uint32_t robots_per_process);
+
+/// A line of the protocol between host and launcher: {"last": robot, "utc_ns": …, "position_m":
+/// [x, y], "command_mps": [x, y], "speed_mps": v or null, "dead": true or false}.
+std::string to_line(const LastPosition& last);
+/// Empty if fields are missing, of another type, or not finite.
+std::optional<LastPosition> parse_last_position(const nlohmann::json& line);
+
+}  // namespace swarm::launcher
