@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <span>
@@ -17,8 +18,11 @@ class FallenRobots {
  public:
   using Logged = std::function<std::optional<LastKnown>(RobotId)>;
 
-  /// `logged`: by the robot's log. \pre all references outlive the object
-  FallenRobots(const Mission& mission, SceneKeeper& scene, FlightLog& log, Logged logged);
+  /// `robots_here`: the first robots, whose logs are on this host. `log_delay`: by how much a log
+  /// may end before the last status. `logged`: by the robot's log. \pre all references outlive the
+  /// object
+  FallenRobots(const Mission& mission, SceneKeeper& scene, FlightLog& log,
+               std::uint32_t robots_here, Duration log_delay, Logged logged);
 
   /// A robot reported its position.
   void on_status(RobotId robot, const LastKnown& reported) {
@@ -31,11 +35,16 @@ class FallenRobots {
   void clear(std::span<const RobotId> robots, UtcTime now);
 
  private:
-  std::optional<LastKnown> last_known_of(RobotId robot) const;
+  /// The newer of log and status.
+  const std::optional<LastKnown>& newest_of(RobotId robot,
+                                            const std::optional<LastKnown>& logged) const;
+  void report_incomplete_log(RobotId robot, const std::optional<LastKnown>& logged, UtcTime now);
 
   const Mission& mission_;
   SceneKeeper& scene_;
   FlightLog& log_;
+  std::uint32_t robots_here_;
+  Duration log_delay_;
   Logged logged_;
   std::vector<std::optional<LastKnown>> reported_;  // by the newest status of each robot
 };

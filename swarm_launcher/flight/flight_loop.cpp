@@ -30,6 +30,13 @@ SupervisorOptions supervision_of(const FlightOptions& options) {
           .planner_silence = SilenceLimits::of(options.mission.timing.heartbeat_hz)};
 }
 
+/// By how much the log of a robot may end before its last status. Processes with many robots write
+/// logs some records at a time.
+Duration log_delay_of(const FlightOptions& options) {
+  const Duration step = from_seconds(3.0 / options.mission.control.rate_hz);
+  return options.per_process == 1 ? step : step + std::chrono::seconds(1);
+}
+
 }  // namespace
 
 FlightLoop::FlightLoop(const FlightOptions& options, const std::filesystem::path& dir,
@@ -41,6 +48,7 @@ FlightLoop::FlightLoop(const FlightOptions& options, const std::filesystem::path
       view_(options.mission.robots.count, options.mission.link.communication_radius_m),
       late_(options.mission.robots.count, options.mission.link.status_hz),
       fallen_(options.mission, ports_.scene, ports_.log,
+              options.mission.robots.count - options.how.remote, log_delay_of(options),
               [this](RobotId robot) { return ports_.logged_position(robot, !has_process(robot)); }),
       stamp_tolerance_(from_seconds(options.mission.timing.clock_skew_warn_s)),
       confirmations_(options.mission.robots.count, stamp_tolerance_) {}

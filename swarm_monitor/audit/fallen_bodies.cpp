@@ -3,19 +3,40 @@
 #include "swarm_monitor/audit/fallen_bodies.hpp"
 
 #include <algorithm>
+#include <charconv>
+#include <cstdint>
+#include <optional>
+#include <string_view>
 
+#include "swarm_core/app/file_watch.hpp"
 #include "swarm_core/mission/scene_bodies.hpp"
 
 namespace swarm::monitor {
 namespace {
 
-/// Where the log of a dead robot lacks its end, as the disk was full, the launcher knew more: its
-/// circle covers the end of every complete log. How the robot got there and where in the circle its
-/// body is was not recorded: it is not judged, and its log counts as incomplete.
-bool has_complete_log(const FallenBody& body, double fallen_s, const Track& track) {
-  const TrackPoint& last = track.points.back();
-  return fallen_s <= last.time_s ||
-         (last.position_m - body.shape.center_m).norm() <= body.shape.radius_m;
+/// The robot that an event about an incomplete log names; empty for other events.
+std::optional<std::uint32_t> robot_without_end(const RunEvent& event) {
+  constexpr std::string_view kBegin = "robot ";
+  if (event.code != shell::kLogIncomplete || !event.text.starts_with(kBegin)) return std::nullopt;
+  std::uint32_t robot = 0;
+  const char* const end = event.text.data() + event.text.size();
+  const auto parsed = std::from_chars(event.text.data() + kBegin.size(), end, robot);
+  return parsed.ec == std::errc{} ? std::optional(robot) : std::nullopt;
+}
+
+/// Where the log of a dead robot lacks its end, as the disk was full, the launcher knew more. How
+/// the robot drove on and where in the launcher's circle its body is was not recorded: it is not
+/// judged, and its log counts as incomplete.
+void leave_out_body(double known_s, Track& track) {
+  // A frozen robot may have written its log later.
+  if (track.body_until_s <= 0.0 || known_s <= track.points.back().time_s) return;
+  track.body_until_s = 0.0;
+  ++track.lost;
+}
+
+/// The circle of a robot whose log is whole covers the end of the log.
+bool covers_end(const Circle& circle, const Track& track) {
+  return (track.points.back().position_m - circle.center_m).norm() <= circle.radius_m;
 }
 
 }  // namespace
@@ -30,15 +51,15 @@ void lay_fallen_bodies(RecordedRun& run) {
   for (Track& track : run.tracks) {
     if (!track.ended_gracefully && !track.points.empty()) track.body_until_s = end_s;
   }
+  for (const RunEvent& event : run.events) {
+    const auto robot = robot_without_end(event);
+    if (robot && *robot < run.tracks.size()) leave_out_body(event.time_s, run.tracks[*robot]);
+  }
   for (const FallenBody& body : bodies_of(run.scenes)) {
     const std::uint32_t robot = body.robot.value();
     if (robot >= run.tracks.size() || run.tracks[robot].points.empty()) continue;
     Track& track = run.tracks[robot];
-    if (track.body_until_s > 0.0 &&
-        !has_complete_log(body, to_seconds(body.from - run.begin), track)) {
-      track.body_until_s = 0.0;
-      ++track.lost;
-    }
+    if (!covers_end(body.shape, track)) leave_out_body(to_seconds(body.from - run.begin), track);
     if (!body.cleared) continue;
     const double cleared_s = to_seconds(*body.cleared - run.begin);
     // A body of an earlier incarnation was cleared when the robot came back: its log continues

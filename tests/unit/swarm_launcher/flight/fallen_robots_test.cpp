@@ -22,7 +22,12 @@ class FallenRobotsTest : public FlightBench {
   }
 
   std::optional<LastKnown> in_log_;
-  FallenRobots sut_{options.mission, *scene, *log, [this](RobotId) { return in_log_; }};
+  FallenRobots sut_{options.mission,
+                    *scene,
+                    *log,
+                    kRobots - 1,  // the last one is on another host
+                    milliseconds(300),
+                    [this](RobotId) { return in_log_; }};
 };
 
 // Of a robot on another host only the last status is known at first.
@@ -43,6 +48,24 @@ TEST_F(FallenRobotsTest, NarrowABodyOnceTheEndOfItsLogIsKnown) {
   EXPECT_EQ(body_of(RobotId(1))->center_m, Vec2(8.5, 12));
   EXPECT_DOUBLE_EQ(body_of(RobotId(1))->radius_m, options.mission.robots.radius_m);
   EXPECT_TRUE(is_logged("body-narrowed"));
+}
+
+// A full disk. Audits have bodies where the logs end.
+TEST_F(FallenRobotsTest, AreReportedWhereALogOnThisHostLacksItsEnd) {
+  in_log_ = {.at = now.utc, .position_m = {8, 12}, .command_mps = Vec2(1, 0), .speed_mps = 1.0};
+  for (const std::uint32_t robot : {0U, 2U}) {
+    sut_.on_status(RobotId(robot), {.at = now.utc + milliseconds(300), .position_m = {8.3, 12}});
+    sut_.add(std::array{RobotId(robot)}, now.utc + seconds(1));
+    EXPECT_FALSE(is_logged("log-incomplete")) << robot;
+  }
+  sut_.on_status(RobotId(2), {.at = now.utc + milliseconds(301), .position_m = {8.3, 12}});
+  sut_.add(std::array{RobotId(2)}, now.utc + seconds(1));
+  EXPECT_FALSE(is_logged("log-incomplete")) << "its log is on another host";
+
+  sut_.on_status(RobotId(0), {.at = now.utc + milliseconds(301), .position_m = {8.3, 12}});
+  sut_.add(std::array{RobotId(0)}, now.utc + seconds(1));
+
+  EXPECT_TRUE(is_logged("log-incomplete"));
 }
 
 TEST_F(FallenRobotsTest, NarrowNoBodyThatIsNoneOrWouldGrow) {

@@ -18,8 +18,10 @@ Track track_of(std::uint32_t robot, std::vector<double> times_s, bool gracefully
 
 /// A run with the scenes after these changes, each at a time since the begin.
 RecordedRun run_with(std::vector<Track> tracks,
-                     const std::vector<std::pair<double, SceneChange>>& changes) {
+                     const std::vector<std::pair<double, SceneChange>>& changes,
+                     std::vector<RunEvent> events = {}) {
   RecordedRun run;
+  run.events = std::move(events);
   run.begin = kBegin;
   run.tracks = std::move(tracks);
   run.scenes = {first_scene(0)};
@@ -62,6 +64,22 @@ TEST(FallenBodies, AreNotJudgedWhereTheLogLacksItsEnd) {
   EXPECT_EQ(track.points.size(), 2U);
   EXPECT_EQ(track.lost, 1U) << "an incomplete log: the verdict is never ok";
   EXPECT_EQ(track.body_until_s, 0.0);
+}
+
+TEST(FallenBodies, AreNotJudgedWhereTheLauncherFoundTheLogIncomplete) {
+  const RunEvent event{.time_s = 7.0,
+                       .source = "launcher",
+                       .severity = "warning",
+                       .code = "log-incomplete",
+                       .text = "robot 1: its log ends 1.2 s before its last status"};
+  const auto fly = [&](double log_end_s) {
+    return run_with({track_of(0, {0, 30}, true), track_of(1, {0, log_end_s}, false)},
+                    {{7.0, falls(1)}}, {event});
+  };
+
+  EXPECT_EQ(fly(5.0).tracks[1].body_until_s, 0.0);
+  EXPECT_EQ(fly(5.0).tracks[1].lost, 1U);
+  EXPECT_TRUE(has_body(fly(8.0).tracks[1])) << "it was frozen, and has written its log since";
 }
 
 TEST(FallenBodies, OfARobotThatCameBackLeaveItsTrackAsItIs) {
