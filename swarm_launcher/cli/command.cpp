@@ -59,8 +59,9 @@ Command add_command(CLI::App& program) {
       ->type_name("RUN_DIR");
   command->add_option("arguments", o->arguments, "The command and its keys, as in a mission script")
       ->type_name("COMMAND [KEYS]");
-  command->add_option("--domain", o->domain,
-                      "Stop all robots of a DDS domain, without a run directory: --domain N stop")
+  command
+      ->add_option("--domain", o->domain,
+                   "Stop all robots of a DDS domain, without a run directory: --domain N stop")
       ->check(CLI::Range(0, 229));
   command->add_option("--interface", o->interface, "IPv4 address of the interface, with --domain")
       ->check(CLI::ValidIPV4);

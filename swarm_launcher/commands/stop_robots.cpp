@@ -43,8 +43,9 @@ ExitCode report(const StopOrder& order) {
                 order.confirmed());
     return ExitCode::kOk;
   }
-  std::printf("failed: %u robots confirmed that they stopped, not: %s; the launcher did not answer\n",
-              order.confirmed(), list_of(order.unconfirmed()).c_str());
+  std::printf(
+      "failed: %u robots confirmed that they stopped, not: %s; the launcher did not answer\n",
+      order.confirmed(), list_of(order.unconfirmed()).c_str());
   return ExitCode::kCriteriaNotMet;
 }
 

@@ -64,8 +64,7 @@ goal: [{mean_m: [32, 15], covariance_m2: [[2, 0], [0, 2]], weight: 1}]
   EXPECT_EQ(run.launcher().wait(), 1);
 
   EXPECT_EQ(run.summary()["outcome"], "planner_failed");
-  EXPECT_NE(run.launcher().err().find("planner_service:"), std::string::npos)
-      << run.outcome();
+  EXPECT_NE(run.launcher().err().find("planner_service:"), std::string::npos) << run.outcome();
 
   Program plan("swarm_launcher", {"plan", file.string()});
   EXPECT_EQ(plan.wait(), 1);

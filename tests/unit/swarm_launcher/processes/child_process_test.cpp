@@ -146,8 +146,7 @@ TEST_F(ChildProcess, RunsWithoutItsLogAndReportsThat) {
   const std::string reported = testing::internal::GetCapturedStderr();
   ASSERT_TRUE(pid) << pid.error().message;
   EXPECT_EQ(reap().exit.code, 3);
-  EXPECT_NE(reported.find("cannot open " + log.string() + ": Not a directory"),
-            std::string::npos)
+  EXPECT_NE(reported.find("cannot open " + log.string() + ": Not a directory"), std::string::npos)
       << reported;
 }
 

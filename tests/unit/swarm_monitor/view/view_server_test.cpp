@@ -151,8 +151,7 @@ TEST_F(ViewServerTest, OpensThePagesSocketToThePageAlone) {
   for (const auto& [path, headers] : wrong) {
     ViewClient client(server_->port());
     client.upgrade(path, "swarmflow.view.v1", headers);
-    EXPECT_EQ(head(client).substr(8, 4), path == "/ws" ? " 403" : " 404")
-        << headers.substr(0, 60);
+    EXPECT_EQ(head(client).substr(8, 4), path == "/ws" ? " 403" : " 404") << headers.substr(0, 60);
     EXPECT_TRUE(serve_until(client, [&] { return !client.open(); }));
   }
   EXPECT_EQ(server_->clients(), 0U);
