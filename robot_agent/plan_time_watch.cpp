@@ -42,7 +42,7 @@ void PlanTimeWatch::on_heartbeat(const Beat& beat, SteadyTime now) {
 }
 
 /// The same flow keeps the highest plan time, so that it does not go back. Another flow starts over
-/// even under the same version: a restarted planner numbers its plans from 1 again, and its
+/// even under the same version: a restarted planner may begin with version 1 again, and its
 /// predecessor's last heartbeat has the plan time of the flow before.
 void PlanTimeWatch::on_plan(std::uint32_t version, bool same_flow) {
   if (!same_flow) {

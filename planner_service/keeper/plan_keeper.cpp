@@ -30,8 +30,6 @@ constexpr Duration kSlowFor = std::chrono::seconds(5);
 constexpr double kRobotsAhead_s = 1.0;
 constexpr std::size_t kNamed = 10;  // robots, in an event
 constexpr std::uint32_t kFirstVersion = 1;
-// No run gets so far; a status that names a later version is not to use up the numbers.
-constexpr std::uint32_t kLastVersion = 1'000'000'000;
 
 }  // namespace
 
@@ -69,7 +67,8 @@ bool PlanKeeper::take_scene(Scene scene) {
 
 /// Plans for a world: from the robots' positions once they have left their start; before that from
 /// the start mixture of the mission, from which their positions were drawn. The seed depends on the
-/// version, so that each plan has its own random numbers and all are reproducible.
+/// number of plans of this planner, so that each has its own random numbers and all are
+/// reproducible.
 Result<Replan> PlanKeeper::plan_anew(const World& world, std::span<const ReportedRobot> robots) {
   const Mixture& goal = scene_.goal ? *scene_.goal : mission_.goal;
   planner_.set_risk({.alpha = scene_.risk_alpha.value_or(mission_.planner.risk_alpha),
@@ -133,7 +132,7 @@ void PlanKeeper::try_again(SteadyTime now, UtcTime utc, Step& step) {
   for (const ReportedRobot& robot : robots) planned_for_.push_back(robot.robot);
   // Version 1 is the mission's first plan, and no other plan has the number of one that an earlier
   // planner published: the run directory keeps plans by version.
-  version_ = std::max(version_, std::max(kFirstVersion, reported_version(now)));
+  version_ = std::max({version_, kFirstVersion, reported_version_});
   if (newest_.planned.excess.by_m > 0.0) {
     step.notices.push_back({true, "plan-excess", describe(newest_.planned.excess)});
   }
@@ -177,15 +176,6 @@ void PlanKeeper::avoid_jams(SteadyTime now, UtcTime utc, Step& step) {
        fmt::format("{} robots are stuck, about ({:.1f}, {:.1f}) m: the guide takes another route",
                    stuck.size(), at_m.x(), at_m.y())});
   try_again(now, utc, step);
-}
-
-/// The latest version that robots follow; 0: none.
-std::uint32_t PlanKeeper::reported_version(SteadyTime now) const {
-  std::uint32_t latest = 0;
-  for (const ReportedRobot& robot : robots_.fresh(now)) {
-    if (robot.plan_version <= kLastVersion) latest = std::max(latest, robot.plan_version);
-  }
-  return latest;
 }
 
 /// A new version, made for a scene: its clock starts at 0.

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <cstdint>
 #include <optional>
@@ -45,6 +46,9 @@ class PlanKeeper {
   bool take_scene(Scene scene);
   /// \pre the id is below the number of robots
   void receive(const ReportedRobot& robot, bool moving, SteadyTime now) {
+    if (robot.plan_version <= kLastReported) {
+      reported_version_ = std::max(reported_version_, robot.plan_version);
+    }
     // A status sent before the robot failed may arrive after its body became an obstacle.
     if (!has_body(scene_, robot.robot)) robots_.receive(robot, moving, now);
   }
@@ -89,7 +93,6 @@ class PlanKeeper {
   std::vector<ReportedRobot> placed(std::vector<ReportedRobot> robots) const;
   Result<Replan> plan_anew(const World& world, std::span<const ReportedRobot> robots);
   Result<Replan> plan_around_bodies(UtcTime utc, std::span<const ReportedRobot> robots, Step& step);
-  std::uint32_t reported_version(SteadyTime now) const;
   void publish(SteadyTime now, std::uint64_t scene_version, Step& step);
   void keep_clock(SteadyTime now, UtcTime utc, Step& step);
   void catch_up(SteadyTime now);
@@ -110,9 +113,14 @@ class PlanKeeper {
   // that reported late.
   static constexpr Duration kReplanPeriod = std::chrono::seconds(2);
 
+  // Robots refuse plans whose number a planner cannot have reached since its epoch, of a new
+  // planner those from 11 000 on: a forged status must not lead there.
+  static constexpr std::uint32_t kLastReported = 10'000;
+
   Replan newest_;
-  std::vector<RobotId> planned_for_;  // by id; empty: newest_ begins at the mission's start
-  std::uint32_t version_ = 0;         // 0 = nothing published
+  std::vector<RobotId> planned_for_;    // by id; empty: newest_ begins at the mission's start
+  std::uint32_t version_ = 0;           // 0 = nothing published
+  std::uint32_t reported_version_ = 0;  // the latest that robots have followed, of any planner
   std::uint64_t planned_scene_ = 0;
   std::optional<std::uint64_t> failed_scene_{};  // scene whose failure was reported
   std::uint64_t bodies_left_out_ = 0;            // scene for which bodies-not-planned was reported

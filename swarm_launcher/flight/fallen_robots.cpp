@@ -27,7 +27,7 @@ std::optional<double> body_radius_m(const Scene& scene, RobotId robot) {
 }  // namespace
 
 FallenRobots::FallenRobots(const Mission& mission, SceneKeeper& scene, FlightLog& log,
-                           std::uint32_t robots_here, Duration log_delay, Logged logged)
+                           std::uint32_t robots_here, Duration log_delay, LoggedPosition logged)
     : mission_(mission),
       scene_(scene),
       log_(log),

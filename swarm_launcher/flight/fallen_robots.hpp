@@ -16,13 +16,11 @@ namespace swarm::launcher {
 /// others, where they were last known to be, and cease to be when they are received again.
 class FallenRobots {
  public:
-  using Logged = std::function<std::optional<LastKnown>(RobotId)>;
-
   /// `robots_here`: the first robots, whose logs are on this host. `log_delay`: by how much a log
   /// may end before the last status. `logged`: by the robot's log. \pre all references outlive the
   /// object
   FallenRobots(const Mission& mission, SceneKeeper& scene, FlightLog& log,
-               std::uint32_t robots_here, Duration log_delay, Logged logged);
+               std::uint32_t robots_here, Duration log_delay, LoggedPosition logged);
 
   /// A robot reported its position.
   void on_status(RobotId robot, const LastKnown& reported) {
@@ -45,7 +43,7 @@ class FallenRobots {
   FlightLog& log_;
   std::uint32_t robots_here_;
   Duration log_delay_;
-  Logged logged_;
+  LoggedPosition logged_;
   std::vector<std::optional<LastKnown>> reported_;  // by the newest status of each robot
 };
 

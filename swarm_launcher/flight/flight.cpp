@@ -46,13 +46,10 @@ class SocketRequests final : public ControlRequests {
 };
 
 LoggedPosition positions_in_logs(PreparedRun& run) {
-  return [&run](RobotId robot, bool has_ended) -> std::optional<LastKnown> {
-    if (run.hosts() != nullptr) {
-      if (auto known = run.hosts()->last_known(robot)) return known;
-    }
-    auto known = last_known_in_log(run.dir(), robot, run.options().mission);
-    if (known && has_ended) known->is_last = logs_are_whole(run.dir(), run.options().per_process);
-    return known;
+  return [&run](RobotId robot) -> std::optional<LastKnown> {
+    const Mission& mission = run.options().mission;
+    const bool is_here = robot.value() < mission.robots.count - run.options().how.remote;
+    return is_here ? last_known_in_log(run.dir(), robot, mission) : run.hosts()->last_known(robot);
   };
 }
 

@@ -49,7 +49,7 @@ FlightLoop::FlightLoop(const FlightOptions& options, const std::filesystem::path
       late_(options.mission.robots.count, options.mission.link.status_hz),
       fallen_(options.mission, ports_.scene, ports_.log,
               options.mission.robots.count - options.how.remote, log_delay_of(options),
-              [this](RobotId robot) { return ports_.logged_position(robot, !has_process(robot)); }),
+              ports_.logged_position),
       stamp_tolerance_(from_seconds(options.mission.timing.clock_skew_warn_s)),
       confirmations_(options.mission.robots.count, stamp_tolerance_) {}
 
@@ -103,15 +103,6 @@ void FlightLoop::reap(const FlightTime& now) {
     release(known->second, now.utc);
     children_.erase(known);
   }
-}
-
-// Whether a process of this host runs the robot.
-bool FlightLoop::has_process(RobotId robot) const {
-  return std::ranges::any_of(children_, [&](const auto& child) {
-    if (child.second == kPlanner) return false;
-    const auto [first, count] = supervisor_.robots_of(child.second);
-    return robot.value() - first.value() < count;
-  });
 }
 
 // The next process of these robots reports from another sender.

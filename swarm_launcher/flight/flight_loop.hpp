@@ -57,7 +57,6 @@ class FlightLoop {
  private:
   /// The parts of a step, in their order.
   void reap(const FlightTime& now);
-  bool has_process(RobotId robot) const;
   void release(ProcessIndex process, UtcTime now);
   void read_bus(const FlightTime& now);
   void read_events(const FlightTime& now);

@@ -65,8 +65,7 @@ class FlightObserver {
 };
 
 /// The newest position in a robot's log, on this host or, as that host has sent it, on another one.
-/// `has_ended`: so has its process.
-using LoggedPosition = std::function<std::optional<LastKnown>(RobotId, bool has_ended)>;
+using LoggedPosition = std::function<std::optional<LastKnown>(RobotId)>;
 
 /// All of them outlive the FlightLoop.
 struct FlightPorts {

@@ -30,6 +30,7 @@ namespace {
 constexpr int kStep_ms = 20;
 constexpr Duration kAnswerTimeout = std::chrono::seconds(10);
 // Time between the signals of the ladder, as in the supervisor.
+constexpr int kPeriodsOfAnEnd = 3;                    // as FallenBody has it
 constexpr Duration kGrace = std::chrono::seconds(5);  // of each signal
 constexpr std::size_t kMaxLogBytes = 1U << 30U;
 
@@ -63,19 +64,21 @@ struct RobotLogs {
   const std::filesystem::path& dir;
   const Mission& mission;
   LogWatch watch{dir, RobotId(offer.first_robot), offer.robots};
+  Duration period = from_seconds(1.0 / mission.control.rate_hz);
 
-  void send_last(RobotId robot, bool is_last, LineSocket& socket) const {
+  /// A log that ends a few control periods before the end of its process has its last step; one
+  /// that ends earlier may lack some, as the disk was slow or full.
+  void send_last(RobotId robot, bool has_ended, LineSocket& socket) const {
     auto known = last_known_in_log(dir, robot, mission);
     if (!known) return;
-    known->is_last = is_last;
+    known->is_last = has_ended && utc_now() - known->at <= kPeriodsOfAnEnd * period;
     socket.send(to_line(LastPosition{robot, *known}));
   }
   /// Of the robots of a process that has ended.
   void send_last_of(std::uint32_t process, LineSocket& socket) const {
     const std::uint32_t begin = process * offer.per_process;
-    const bool is_last = logs_are_whole(dir, offer.per_process);
     for (std::uint32_t i = begin; i < std::min(begin + offer.per_process, offer.robots); ++i) {
-      send_last(RobotId(offer.first_robot + i), is_last, socket);
+      send_last(RobotId(offer.first_robot + i), true, socket);
     }
   }
 };

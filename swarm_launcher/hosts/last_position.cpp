@@ -5,7 +5,6 @@
 #include <chrono>
 #include <cmath>
 #include <cstdint>
-#include <system_error>
 
 #include <nlohmann/json.hpp>
 
@@ -18,19 +17,20 @@ namespace {
 // The robot of a process that has just died or fallen silent made its last step within this time.
 constexpr Duration kRecent = std::chrono::seconds(60);
 
-constexpr std::uintmax_t kRoom = 1U << 20U;  // a disk with less may have refused the last records
+// As in scenes and states: a body beyond it would make all robots refuse the scene.
+constexpr double kMost = 1e6;
 
-std::optional<double> finite(const nlohmann::json& value) {
+std::optional<double> number(const nlohmann::json& value) {
   if (!value.is_number()) return std::nullopt;
   const auto number = value.get<double>();
-  return std::isfinite(number) ? std::optional(number) : std::nullopt;
+  return std::abs(number) <= kMost ? std::optional(number) : std::nullopt;
 }
 
 std::optional<Vec2> vector(const nlohmann::json& line, const char* key) {
   const auto field = line.find(key);
   if (field == line.end() || !field->is_array() || field->size() != 2) return std::nullopt;
-  const auto x = finite((*field)[0]);
-  const auto y = finite((*field)[1]);
+  const auto x = number((*field)[0]);
+  const auto y = number((*field)[1]);
   return x && y ? std::optional(Vec2(*x, *y)) : std::nullopt;
 }
 
@@ -45,12 +45,6 @@ std::optional<LastKnown> last_known_in_log(const std::filesystem::path& run_dir,
   if (steps && steps->empty()) steps = robot_log::last_steps(file);
   if (!steps) return std::nullopt;
   return last_known(*steps, mission);
-}
-
-bool logs_are_whole(const std::filesystem::path& run_dir, std::uint32_t robots_per_process) {
-  std::error_code none;
-  const auto space = std::filesystem::space(run_dir, none);
-  return robots_per_process == 1 && !none && space.available > kRoom;
 }
 
 std::string to_line(const LastPosition& last) {
@@ -75,15 +69,16 @@ std::optional<LastPosition> parse_last_position(const nlohmann::json& line) {
   }
   const auto position_m = vector(line, "position_m");
   const auto command_mps = vector(line, "command_mps");
-  if (!robot->is_number_unsigned() || !utc_ns->is_number_integer() || !dead->is_boolean()) {
+  if (!robot->is_number_unsigned() || !utc_ns->is_number_unsigned() || !dead->is_boolean()) {
     return std::nullopt;
   }
   const auto id = robot->get<std::uint64_t>();
-  if (id > UINT32_MAX || !position_m || !command_mps) return std::nullopt;
-  const std::optional<double> speed_mps = finite(*speed);
+  const auto at_ns = utc_ns->get<std::uint64_t>();
+  if (id > UINT32_MAX || at_ns > INT64_MAX || !position_m || !command_mps) return std::nullopt;
+  const std::optional<double> speed_mps = number(*speed);
   if (!speed_mps && !speed->is_null()) return std::nullopt;
   return LastPosition{.robot = RobotId(static_cast<std::uint32_t>(id)),
-                      .known = {.at = UtcTime(Duration(utc_ns->get<std::int64_t>())),
+                      .known = {.at = UtcTime(Duration(static_cast<std::int64_t>(at_ns))),
                                 .position_m = *position_m,
                                 .command_mps = *command_mps,
                                 .speed_mps = speed_mps,

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -27,14 +26,10 @@ struct LastPosition {
 std::optional<LastKnown> last_known_in_log(const std::filesystem::path& run_dir, RobotId robot,
                                            const Mission& mission);
 
-/// Whether the log of a process that has ended has its last step: those of processes with one robot
-/// do, as these write each step at once, unless the disk is full.
-bool logs_are_whole(const std::filesystem::path& run_dir, std::uint32_t robots_per_process);
-
 /// A line of the protocol between host and launcher: {"last": robot, "utc_ns": …, "position_m":
 /// [x, y], "command_mps": [x, y], "speed_mps": v or null, "dead": true or false}.
 std::string to_line(const LastPosition& last);
-/// Empty if fields are missing, of another type, or not finite.
+/// Empty if fields are missing, of another type, or beyond what a run can have.
 std::optional<LastPosition> parse_last_position(const nlohmann::json& line);
 
 }  // namespace swarm::launcher

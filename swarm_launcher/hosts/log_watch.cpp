@@ -28,7 +28,7 @@ std::vector<RobotId> LogWatch::step(SteadyTime now) {
       log.bytes = bytes;
       log.grew_at = now;
       log.is_reported = false;
-    } else if (!log.is_reported && now - log.grew_at >= kSilent) {
+    } else if (!log.is_reported && now - log.grew_at >= kSilent && silent.size() < kMostAtOnce) {
       log.is_reported = true;
       silent.emplace_back(first_.value() + static_cast<std::uint32_t>(i));
     }

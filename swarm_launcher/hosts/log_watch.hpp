@@ -3,6 +3,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <vector>
@@ -16,14 +17,17 @@ namespace swarm::launcher {
 /// for the size of each log, a few microseconds, four times a second. The time is passed in.
 class LogWatch {
  public:
-  /// Logs are written at least every second.
+  /// Logs are written at least every second, at control rates of 1 Hz or more.
   static constexpr Duration kSilent = std::chrono::milliseconds(1250);
   static constexpr Duration kPeriod = std::chrono::milliseconds(250);
 
   LogWatch(std::filesystem::path run_dir, RobotId first, std::uint32_t robots);
 
-  /// Robots whose log has not grown for kSilent, each once until it grows again. A robot without a
-  /// log is not among them.
+  /// Most robots of one step, as the caller reads their logs.
+  static constexpr std::size_t kMostAtOnce = 8;
+
+  /// Robots whose log has not grown for kSilent, each once until it grows again, at most
+  /// kMostAtOnce a step. A robot without a log is not among them.
   std::vector<RobotId> step(SteadyTime now);
 
  private:

@@ -26,7 +26,6 @@ constexpr std::uint64_t kMaxLogBytes = 1ULL << 30U;
 // As kMaxStatusRobots: a process with more robots sends several statuses per period.
 constexpr std::uint32_t kRobotsPerStatus = 100;
 constexpr Duration kRequestTimeout = std::chrono::seconds(10);
-constexpr Duration kClockError = std::chrono::seconds(1);  // of a host against the launcher
 
 std::string describe(std::uint32_t first_robot, std::uint32_t robots) {
   return fmt::format("host of robots {}-{}", first_robot, first_robot + robots - 1);
@@ -120,11 +119,16 @@ bool RemoteHosts::take_exit(Host& host, const nlohmann::json& line) {
   return true;
 }
 
-/// Where the log of one of its robots ends. A later stamp than now would outrank each status.
+/// Where the log of one of its robots ends. A later stamp than now, by a clock that differs, would
+/// outrank each status.
 bool RemoteHosts::take_last(const Host& host, const nlohmann::json& line) {
-  const auto last = parse_last_position(line);
+  auto last = parse_last_position(line);
   if (!last || last->robot.value() - host.first_robot >= host.robots) return false;
-  if (last->known.at > utc_now() + kClockError) return false;
+  // A log that does not grow is reported again after the end of its process.
+  if (const auto before = last_known(last->robot); before && before->at == last->known.at) {
+    last->known.is_last = last->known.is_last || before->is_last;
+  }
+  last->known.at = std::min(last->known.at, utc_now());
   last_known_.insert_or_assign(last->robot, last->known);
   known_.push_back(last->robot);
   return true;

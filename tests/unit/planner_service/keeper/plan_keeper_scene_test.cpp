@@ -121,8 +121,12 @@ TEST(PlanKeeperScene, PublishesTheFirstPlanInFlightWhereThereIsNoneForTheScene) 
   EXPECT_EQ(bench.keeper.planned_scene(), 0U);
   bench.run_for(5.0);
   EXPECT_EQ(bench.published, 1) << "once";
+  EXPECT_EQ(bench.keeper.version(), 1U);
+  bench.robots_version = 1;
+  bench.report_all();
 
   EXPECT_TRUE(bench.step_after(RemoveObstacle{bench.scene.obstacles.at(0).id}).publish);
+  EXPECT_EQ(bench.keeper.version(), 4U) << "an earlier planner made the third";
 }
 
 // The run directory keeps plans by version: no plan of the planner before may be overwritten.
@@ -177,8 +181,10 @@ TEST(PlanKeeperScene, AnAbsurdReportDoesNotUseUpTheNumbers) {
   bench.keeper.set_phase(MissionPhase::kRunning);
   bench.robots_version = 3;
   bench.report_all();
-  bench.robots_version = 4'294'967'295U;
-  bench.report(RobotId(0));
+  for (const std::uint32_t absurd : {10'001U, 4'294'967'295U}) {
+    bench.robots_version = absurd;
+    bench.report(RobotId(0));
+  }
 
   EXPECT_TRUE(bench.step_after(GoTo{.goal = bench.mission.start}).publish);
   EXPECT_EQ(bench.keeper.version(), 4U);

@@ -102,10 +102,7 @@ class FlightBench : public ::testing::Test {
                              .helpers = helpers,
                              .log = *log,
                              .display = display,
-                             .logged_position =
-                                 [this](RobotId robot, bool has_ended) {
-                                   return logged_position(robot, has_ended);
-                                 }},
+                             .logged_position = [](RobotId) { return std::nullopt; }},
                  now.steady);
   }
 
@@ -172,7 +169,6 @@ class FlightBench : public ::testing::Test {
 
   std::unique_ptr<link::Participant> own;
   std::optional<LauncherBus> launcher_bus;
-  LoggedPosition logged_position = [](RobotId, bool) { return std::nullopt; };
   std::optional<SceneKeeper> scene;
   std::optional<EventLog> event_log;
   std::optional<FlightLog> log;

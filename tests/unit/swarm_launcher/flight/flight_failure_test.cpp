@@ -62,24 +62,6 @@ TEST_F(FlightLoopFailure, MakesAnAgentThatDiesAnObstacleUntilItsSuccessorReports
   EXPECT_EQ(outcome(), Outcome::kCompleted);
 }
 
-// The log of a process that has ended has its last step; a frozen one may write on.
-TEST_F(FlightLoopFailure, AsksForLogsOfProcessesThatHaveEnded) {
-  options.mission.launcher.respawn_agent_max = 0;
-  std::vector<std::pair<RobotId, bool>> asked;
-  logged_position = [&](RobotId robot, bool has_ended) -> std::optional<LastKnown> {
-    asked.emplace_back(robot, has_ended);
-    return std::nullopt;
-  };
-  ASSERT_TRUE(run_to_phase(MissionPhase::kRunning));
-
-  robots[2].silent = true;
-  spawner.end(spawner.agent(1), kCrash);
-  run_for(seconds(5));
-
-  EXPECT_EQ(asked,
-            (std::vector<std::pair<RobotId, bool>>{{RobotId(1), true}, {RobotId(2), false}}));
-}
-
 TEST_F(FlightLoopFailure, CompletesWithoutAnAgentWhoseRestartsAreSpent) {
   options.mission.launcher.respawn_agent_max = 1;
   ASSERT_TRUE(run_to_phase(MissionPhase::kRunning));

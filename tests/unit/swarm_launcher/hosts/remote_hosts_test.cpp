@@ -192,10 +192,37 @@ TEST(RemoteHosts, KnowWhereTheLogsOfTheirRobotsEnd) {
   EXPECT_FALSE(bench.hosts.last_known(RobotId(2)));
 }
 
-TEST(RemoteHosts, OneThatReportsTheLogOfAnotherOrOfTheFutureIsDropped) {
+// The clock of a host may differ.
+TEST(RemoteHosts, ALogOfTheFutureEndsNow) {
+  Bench bench;
+  LineSocket host = bench.join(2);
+
+  host.send(last_of(3, utc_now() + seconds(60)));
+  EXPECT_TRUE(bench.until([&] { return bench.hosts.last_known(RobotId(3)).has_value(); }));
+
+  EXPECT_LE(bench.hosts.last_known(RobotId(3))->at, utc_now());
+}
+
+TEST(RemoteHosts, RememberThatALogHasItsLastStep) {
+  Bench bench;
+  LineSocket host = bench.join(2);
+  const UtcTime at = utc_now() - seconds(2);
+  const LastPosition last{.robot = RobotId(3),
+                          .known = {.at = at, .command_mps = Vec2(1, 0), .is_last = true}};
+  host.send(to_line(last));
+  host.send(last_of(3, at));  // reported once more, as it does not grow
+  host.send(last_of(2, at));
+  EXPECT_TRUE(bench.until([&] { return bench.hosts.last_known(RobotId(2)).has_value(); }));
+  EXPECT_TRUE(bench.hosts.last_known(RobotId(3))->is_last);
+
+  host.send(last_of(3, at + seconds(1)));  // of its next process
+  EXPECT_TRUE(bench.until([&] { return bench.hosts.last_known(RobotId(3))->at > at; }));
+  EXPECT_FALSE(bench.hosts.last_known(RobotId(3))->is_last);
+}
+
+TEST(RemoteHosts, OneThatReportsTheLogOfAnotherIsDropped) {
   for (const std::string& line :
-       {last_of(1, utc_now()), last_of(4, utc_now()), last_of(3, utc_now() + seconds(60)),
-        std::string(R"({"last":3})")}) {
+       {last_of(1, utc_now()), last_of(4, utc_now()), std::string(R"({"last":3})")}) {
     Bench bench;
     LineSocket host = bench.join(2);
     host.send(line);
