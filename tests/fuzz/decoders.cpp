@@ -9,6 +9,7 @@
 #include <optional>
 #include <utility>
 
+#include <nlohmann/json.hpp>
 #include <sys/mman.h>
 #include <unistd.h>
 
@@ -19,6 +20,7 @@
 #include "swarm_core/robot_log/reader.hpp"
 #include "swarm_core/robot_log/record_codec.hpp"
 #include "swarm_core/robot_log/robot_log_file.hpp"
+#include "swarm_launcher/hosts/last_position.hpp"
 #include "swarm_launcher/hosts/line_socket.hpp"
 #include "swarm_launcher/hosts/offer.hpp"
 #include "swarm_link/cdr/codec.hpp"
@@ -136,6 +138,23 @@ void offer(Input bytes) {
   const auto read = launcher::parse_offer(std::string(text_of(bytes)));
   if (read) require(launcher::parse_offer(launcher::to_line(*read)).has_value());
 }
+
+void last_position(Input bytes) {
+  const auto json = nlohmann::json::parse(text_of(bytes), nullptr, false);
+  const auto read = launcher::parse_last_position(json);
+  if (!read) return;
+  const auto line = nlohmann::json::parse(launcher::to_line(*read));
+  require(launcher::parse_last_position(line).has_value());
+}
+std::vector<Bytes> last_positions() {
+  return {bytes_of(launcher::to_line(
+      launcher::LastPosition{.robot = RobotId(7),
+                             .known = {.at = UtcTime(std::chrono::seconds(1'700'000'000)),
+                                       .position_m = {1, 2},
+                                       .command_mps = Vec2(0.5, 0),
+                                       .speed_mps = 0.5}}))};
+}
+
 std::vector<Bytes> offers() {
   return {bytes_of(launcher::to_line({.run = {.relays = 4},
                                       .first_robot = 8,
@@ -309,6 +328,7 @@ const std::vector<Decoder>& decoders() {
                                            {"scene_change", scene_change, scene_changes},
                                            {"small_texts", small_texts, small_text_seeds},
                                            {"offer", offer, offers},
+                                           {"last_position", last_position, last_positions},
                                            {"plan_json", plan_json, plan_jsons},
                                            {"view_request", view_request, view_requests},
                                            {"rtps", rtps, datagrams},
