@@ -102,7 +102,8 @@ void Simulation::add_bodies(std::span<const RobotId> robots) {
   std::vector<SceneChange> changes;
   for (const RobotId robot : robots) {
     const LastKnown placed{.position_m = robots_[robot.value()].loop.position_m(), .at_rest = true};
-    const LastKnown known = last_known(recording_.last_steps(robot), mission_).value_or(placed);
+    LastKnown known = last_known(recording_.last_steps(robot), mission_).value_or(placed);
+    known.is_last = true;
     changes.emplace_back(AddBody{robot, circle_of_fallen(known, utc(now_), mission_, robot)});
   }
   change_scene(changes);

@@ -73,6 +73,9 @@ std::int32_t to_us(Duration d) {
                                          .silent = tick.silent},
                                         parts.rng)
                           : without_position(tick.phase);
+  // Before the command: the last step of a process that is killed in between has its new velocity.
+  late_ticks_ += late_ticks(tick.lateness, tick.period);
+  log_step(tick, parts.log, body.true_position_m.value_or(body.position_m));
   if (output_.mode == RobotMode::kStopped) {
     parts.driver.stop(tick.now, StopKind::kHold);
   } else {
@@ -85,8 +88,6 @@ std::int32_t to_us(Duration d) {
   has_updates_ = mode_changed || (output_.settled && !was_settled);
 
   const bool is_first = ticks_++ == 0;
-  late_ticks_ += late_ticks(tick.lateness, tick.period);
-  log_step(tick, parts.log, body.true_position_m.value_or(body.position_m));
   if (!mode_changed && !is_first) return;
   parts.log.append(
       robot_log::Note{.stamp = tick.utc_now,
@@ -138,9 +139,11 @@ void RobotLoop::update_fault(bool has_position, const Driver& driver) {
                              .plan_time_s = static_cast<float>(tracking.plan_time_s),
                              .reference_x_m = static_cast<float>(tracking.reference_m.x()),
                              .reference_y_m = static_cast<float>(tracking.reference_m.y())});
-  if (ticks_ % kTicksPerEstimate != 0 || output_.estimated.empty()) return;
+  const auto tick_number = ticks_ + 1;
+  if (tick_number % kTicksPerEstimate != 0 || output_.estimated.empty()) return;
   // Each neighbour within reach in turn: the error of estimates is a sample of all pairs.
-  const Neighbour& one = output_.estimated[ticks_ / kTicksPerEstimate % output_.estimated.size()];
+  const Neighbour& one =
+      output_.estimated[tick_number / kTicksPerEstimate % output_.estimated.size()];
   if (one.is_silent) return;  // a disc in which it may be, not an estimate of where it is
   log.append(robot_log::Estimate{
       .stamp = tick.utc_now, .neighbour = one.robot, .position_m = one.position_m});

@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cerrno>
 #include <chrono>
+#include <cstdio>
 #include <ctime>
 #include <optional>
+#include <string>
 #include <thread>
 #include <utility>
 
@@ -18,6 +20,7 @@
 #include "swarm_core/app/file_thread.hpp"
 #include "swarm_core/app/run_inputs.hpp"
 #include "swarm_core/app/run_membership.hpp"
+#include "swarm_core/app/shared_steps.hpp"
 #include "swarm_core/app/stop_signal.hpp"
 #include "swarm_core/base/clock.hpp"
 
@@ -44,6 +47,17 @@ bool parent_is_gone(std::uint32_t parent_pid) {
   return parent_pid != 0 && static_cast<std::uint32_t>(::getppid()) != parent_pid;
 }
 
+/// Robots fly without it, too: their last steps are in their logs then, if the disk takes them.
+std::optional<shell::SharedSteps> open_steps(const ProcessOptions& options) {
+  if (options.steps.empty()) return std::nullopt;
+  auto steps = shell::SharedSteps::open(options.steps);
+  const RobotId last(options.first.value() + options.count - 1);
+  if (steps && steps->has(options.first) && steps->has(last)) return *std::move(steps);
+  const std::string reason = steps ? "it has no place for these robots" : steps.error().message;
+  std::fprintf(stderr, "--steps: %s; flying without\n", reason.c_str());
+  return std::nullopt;
+}
+
 }  // namespace
 
 /// Keeps the headers of mission and loop out of the public interface.
@@ -51,7 +65,8 @@ struct AgentProcess::Impl {
   ProcessOptions options;
   Mission mission;
   std::optional<shell::RobotLock> lock;
-  shell::FileThread files;  // before the loop, whose robots write to it
+  shell::FileThread files;  // these two before the loop, whose robots write to them
+  std::optional<shell::SharedSteps> steps;
   std::optional<ProcessLoop> loop;
 };
 
@@ -87,9 +102,11 @@ Result<std::unique_ptr<AgentProcess>> AgentProcess::make(const ProcessOptions& o
   auto lock = shell::RobotLock::take(options.run_dir, options.first, options.count);
   if (!lock) return tl::unexpected(lock.error());
   impl->lock.emplace(*std::move(lock));
+  impl->steps = open_steps(options);
   auto world = std::make_unique<World>(impl->mission.world);
   auto robots = make_local_robots(impl->mission, *world, registry,
                                   {.files = impl->files,
+                                   .steps = impl->steps ? &*impl->steps : nullptr,
                                    .run_dir = options.run_dir,
                                    .first = options.first,
                                    .count = options.count,

@@ -4,7 +4,9 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -15,18 +17,29 @@
 namespace swarm::agent {
 namespace {
 
-/// A log is written at every step, so that nothing is lost with a process that is killed. With many
-/// robots that would take most of the process's time: their logs are written ten records at a time.
-constexpr std::uint32_t kManyRobots = 20;
-constexpr std::uint32_t kRecordsAtOnce = 10;
 /// Of one robot: a minute and more of a disk that takes nothing. Reserved, and not used until then.
 constexpr std::size_t kWaitingBytes = 128U << 10U;
 
-/// A respawned robot starts where its body came to rest after the last step in its log, a new one,
-/// and one whose log cannot be read, from the position that the mission places it at.
-Vec2 first_position(const std::filesystem::path& log_file, const Vec2& placed_m, Duration period) {
-  const auto last = robot_log::last_steps(log_file);
-  return !last || last->empty() ? placed_m : robot_log::rest_position_m(last->back(), period);
+/// The last step of the robot's process before; empty if there was none, or nothing recorded it.
+/// The disk may lack the end of a log, and a process that was started by hand shares no steps.
+std::optional<robot_log::Step> last_step(const LocalRobotsSpec& spec, RobotId robot) {
+  std::optional<robot_log::Step> last;
+  const auto take = [&last](const std::vector<robot_log::Step>& steps) {
+    if (!steps.empty() && (!last || steps.back().stamp > last->stamp)) last = steps.back();
+  };
+  if (spec.steps != nullptr) take(spec.steps->last(robot));
+  if (const auto logged = robot_log::last_steps(robot_log::file_of(spec.run_dir, robot))) {
+    take(*logged);
+  }
+  return last;
+}
+
+/// A respawned robot starts where its body came to rest after its last step, a new one, and one
+/// whose last step is not known, from the position that the mission places it at.
+Vec2 first_position(const LocalRobotsSpec& spec, RobotId robot, const Vec2& placed_m,
+                    Duration period) {
+  const auto last = last_step(spec, robot);
+  return last ? robot_log::rest_position_m(*last, period) : placed_m;
 }
 
 /// Robots fill their chunks at different steps, so that a process does not write all its logs at
@@ -37,13 +50,14 @@ LogFile open_log(const Mission& mission, const LocalRobotsSpec& spec, RobotId ro
                                  .process_id = static_cast<std::uint32_t>(::getpid()),
                                  .radius_m = body_of(mission.robots, robot).radius_m,
                                  .stamp = spec.utc_now};
-  const bool many = spec.count >= kManyRobots;
+  const bool many = spec.count >= robot_log::kManyRobots;
   auto stream =
       spec.files.append_to(robot_log::format_of(robot_log::file_of(spec.run_dir, robot), header),
                            many ? shell::Flush::kLazily : shell::Flush::kAtOnce, kWaitingBytes);
   return LogFile(robot_log::Writer::to(std::make_unique<QueuedChunks>(std::move(stream)), header,
-                                       many ? kRecordsAtOnce : 1,
-                                       many ? robot.value() % kRecordsAtOnce : 0));
+                                       many ? robot_log::kRecordsAtOnce : 1,
+                                       many ? robot.value() % robot_log::kRecordsAtOnce : 0),
+                 robot, spec.steps);
 }
 
 /// A driver that does not start is shut down again, as it may hold a device.
@@ -82,8 +96,8 @@ Result<LocalRobots> make_local_robots(const Mission& mission, const World& world
   for (std::uint32_t i = 0; i < spec.count; ++i) {
     const RobotId id(spec.first.value() + i);
     const Vec2& placed_m = (*places)[id.value()];
-    const Vec2 position_m = first_position(robot_log::file_of(spec.run_dir, id), placed_m,
-                                           from_seconds(1.0 / mission.control.rate_hz));
+    const Vec2 position_m =
+        first_position(spec, id, placed_m, from_seconds(1.0 / mission.control.rate_hz));
     AgentIdentity self = agent_identity(mission, id);
     // A position other than the placed one means that the robot has driven before.
     self.underway = position_m != placed_m;

@@ -11,6 +11,7 @@
 #include "robot_agent/loop/robot_loop.hpp"
 #include "robot_agent/program/log_file.hpp"
 #include "swarm_core/app/file_thread.hpp"
+#include "swarm_core/app/shared_steps.hpp"
 #include "swarmflow/core/result.hpp"
 #include "swarmflow/robot/driver.hpp"
 #include "swarmflow/robot/run_robot.hpp"
@@ -26,9 +27,10 @@ struct LocalRobot {
   EchoGuard echo{};  ///< of the states it published
 };
 
-/// Which robots a process flies, and where their logs are.
+/// Which robots a process flies, and where their steps are recorded.
 struct LocalRobotsSpec {
-  shell::FileThread& files;  ///< writes the logs
+  shell::FileThread& files;             ///< writes the logs
+  shell::SharedSteps* steps = nullptr;  ///< with a place for each robot; null: there is none
   std::filesystem::path run_dir;
   RobotId first;
   std::uint32_t count = 1;
@@ -44,7 +46,7 @@ struct LocalRobots {
   bool read_density = false;     ///< their control method reads the planned density
 };
 
-/// Makes robots at their positions in the mission, or at the last ones in their logs, with the
+/// Makes robots at their positions in the mission, or at the last ones recorded, with the
 /// control method and the drivers that the mission names, begins their logs and starts their
 /// drivers. Fails where robots cannot be placed, the registry lacks a name, or a driver does not
 /// start; a log that cannot be written or read does not keep a robot from flying. \pre the world

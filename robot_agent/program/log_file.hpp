@@ -8,6 +8,7 @@
 
 #include "robot_agent/loop/robot_log.hpp"
 #include "swarm_core/app/file_thread.hpp"
+#include "swarm_core/app/shared_steps.hpp"
 #include "swarm_core/robot_log/robot_log_file.hpp"
 
 namespace swarm::agent {
@@ -26,12 +27,18 @@ class QueuedChunks final : public robot_log::ChunkSink {
   shell::AppendStream stream_;
 };
 
-/// A robot's log as a file; records that find no room are dropped and counted.
+/// A robot's log as a file; records that find no room are dropped and counted. Steps also go to the
+/// memory that the process shares with its launcher, if it has one.
 class LogFile final : public RobotLog {
  public:
-  explicit LogFile(robot_log::Writer writer) : writer_(std::move(writer)) {}
+  /// `steps` outlives the object and has a place for the robot; null: there is none.
+  LogFile(robot_log::Writer writer, RobotId robot, shell::SharedSteps* steps)
+      : writer_(std::move(writer)), robot_(robot), steps_(steps) {}
 
-  void append(const robot_log::Step& step) override { writer_.append(step); }
+  void append(const robot_log::Step& step) override {
+    if (steps_ != nullptr) steps_->record(robot_, step);
+    writer_.append(step);
+  }
   void append(const robot_log::Estimate& estimate) override { writer_.append(estimate); }
   void append(robot_log::Note note) override { writer_.append(std::move(note)); }
   void append(const robot_log::LinkStats& stats) { writer_.append(stats); }
@@ -40,6 +47,8 @@ class LogFile final : public RobotLog {
 
  private:
   robot_log::Writer writer_;
+  RobotId robot_;
+  shell::SharedSteps* steps_;
 };
 
 }  // namespace swarm::agent

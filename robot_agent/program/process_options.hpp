@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
 
 #include "swarm_core/mission/link_faults.hpp"
 #include "swarm_link/vendor.hpp"
@@ -15,6 +16,7 @@ namespace swarm::agent {
 struct ProcessOptions {
   std::filesystem::path run_dir;
   std::filesystem::path inputs{};  ///< see shell::read_run_inputs(); empty: those of run_dir
+  std::string steps{};             ///< path of the launcher's shell::SharedSteps; empty: none
   RobotId first;                   ///< the robots first … first + count − 1 run in this process
   std::uint32_t count = 1;
   std::uint32_t number = 0;  ///< of this process among the agents of the run

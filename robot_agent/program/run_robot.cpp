@@ -27,6 +27,8 @@ void add_options(CLI::App& app, CommandLine& line) {
   app.add_option("--run", line.options.run_dir, "Run directory made by the launcher");
   app.add_option("--inputs", line.options.inputs,
                  "Run and mission in one file; without it those of the run directory");
+  app.add_option("--steps", line.options.steps,
+                 "Memory in which the launcher finds the robots' last control steps");
   app.add_option("--ids", line.first,
                  "Id of the first robot of this process; it hosts the ids that follow");
   app.add_option("--count", line.options.count, "Number of robots in this process (default: 1)");

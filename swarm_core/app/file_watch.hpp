@@ -17,7 +17,7 @@ inline constexpr std::string_view kDiskWorks = "disk-works";
 /// Something that was handed over to be written is missing: the evidence of the run is not whole.
 inline constexpr std::string_view kRecordsLost = "records-lost";
 /// Code of the launcher's event about the log of a dead or silent robot that ends before its last
-/// status. Its text begins with "robot" and the robot's number.
+/// step. Its text begins with "robot" and the robot's number.
 inline constexpr std::string_view kLogIncomplete = "log-incomplete";
 
 /// Turns the health of a process' files into events: one when writing begins to fail, one when it

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <chrono>
 #include <cstdint>
 #include <string>
 #include <variant>
@@ -44,6 +45,19 @@ struct Step {
 
 /// How long a driver executes the command of a step. `period`: of control.
 constexpr Duration command_lifetime(Duration period) { return 2 * period; }
+
+/// A log is written at every step, so that nothing is lost with a process that is killed. With many
+/// robots that would take most of the process's time: from this number on, their logs are written
+/// some records at a time.
+constexpr std::uint32_t kManyRobots = 20;
+constexpr std::uint32_t kRecordsAtOnce = 10;
+
+/// The largest time between the last step of a robot whose process was killed and the end of its
+/// log, with a disk that keeps up. `robots`: of its process; `period`: of control.
+constexpr Duration log_delay(std::uint32_t robots, Duration period) {
+  const Duration step = 3 * period;
+  return robots < kManyRobots ? step : step + kRecordsAtOnce * period + std::chrono::seconds(1);
+}
 
 /// Where the body of a robot comes to rest whose process died after this step: its driver executes
 /// the last command until that runs out.

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "swarm_launcher/flight/fallen_robots.hpp"
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <utility>
@@ -15,102 +16,144 @@
 namespace swarm::launcher {
 namespace {
 
-/// The radius of a robot's body as an obstacle; empty if it is none.
-std::optional<double> body_radius_m(const Scene& scene, RobotId robot) {
-  for (const SceneObstacle& obstacle : scene.obstacles) {
-    const auto* circle = std::get_if<Circle>(&obstacle.shape);
-    if (obstacle.owner == robot && circle != nullptr) return circle->radius_m;
-  }
-  return std::nullopt;
+/// A circle that would become smaller by less stays.
+constexpr double kSmaller_m = 0.05;
+constexpr Duration kStarting = std::chrono::seconds(5);
+
+bool contains(const Circle& outer, const Circle& inner) {
+  constexpr double kRounding_m = 1e-6;
+  const double apart_m = (inner.center_m - outer.center_m).norm();
+  return apart_m + inner.radius_m <= outer.radius_m + kRounding_m;
+}
+
+/// Whether a robot that makes steps stands, as one does that is cut off or has just been restarted.
+bool stands(const LastKnown& known) {
+  constexpr double kNone_mps = 0.01;
+  return known.command_mps->norm() < kNone_mps && known.speed_mps.value_or(1.0) < kNone_mps;
 }
 
 }  // namespace
 
-FallenRobots::FallenRobots(const Mission& mission, SceneKeeper& scene, FlightLog& log,
-                           std::uint32_t robots_here, Duration log_delay, LoggedPosition logged)
+FallenRobots::FallenRobots(const Mission& mission, SceneKeeper& scene, FlightLog& log, Here here,
+                           RecordedPositions recorded)
     : mission_(mission),
       scene_(scene),
       log_(log),
-      robots_here_(robots_here),
-      log_delay_(log_delay),
-      logged_(std::move(logged)),
+      here_(std::move(here)),
+      recorded_(std::move(recorded)),
       reported_(mission.robots.count) {}
 
-/// The newest known position of a robot. Its log has its last control period; its last status is up
-/// to a second old.
-const std::optional<LastKnown>& FallenRobots::newest_of(
-    RobotId robot, const std::optional<LastKnown>& logged) const {
+/// Whether the process of a robot on this host was started a short time ago: it may make steps
+/// before its first status arrives, which clears the body.
+bool FallenRobots::is_starting(RobotId robot, SteadyTime now) const {
+  if (robot.value() >= here_.robots) return false;
+  const std::optional<Duration> runs_for = here_.runs_for(robot, now);
+  return runs_for && *runs_for < kStarting;
+}
+
+/// Whether no step follows this one: the process of a robot on this host has ended or is frozen. If
+/// it was started again it has not made a step yet.
+bool FallenRobots::is_last(RobotId robot, const LastKnown& step, const FlightTime& now) const {
+  const Duration age = now.utc - step.at;
+  const std::optional<Duration> runs_for = here_.runs_for(robot, now.steady);
+  return !runs_for || *runs_for < age || age > longest_between_steps(mission_) || stands(step);
+}
+
+/// A stamp of the future would outrank each status. A robot on another host may have driven on
+/// unless that host has denied it: then its motion since is unknown.
+std::optional<LastKnown> FallenRobots::last_step(RobotId robot, const FlightTime& now) const {
+  std::optional<LastKnown> known = recorded_.last_step(robot);
+  if (!known) return std::nullopt;
+  known->at = std::min(known->at, now.utc);
+  if (robot.value() < here_.robots) {
+    known->is_last = is_last(robot, *known, now);
+  } else if (!known->is_last) {
+    known->command_mps.reset();
+  }
+  return known;
+}
+
+/// The newest known position of a robot: its last step has a command and is exact, a status is up
+/// to a second old, and the disk may lack the end of a log.
+std::optional<LastKnown> FallenRobots::newest_of(RobotId robot, const FlightTime& now) const {
+  std::optional<LastKnown> newest = last_step(robot, now);
+  if (!newest) newest = recorded_.in_log(robot);
   const std::optional<LastKnown>& reported = reported_.at(robot.value());
-  return !logged || (reported && reported->at > logged->at) ? reported : logged;
+  return !newest || (reported && reported->at > newest->at) ? reported : newest;
 }
 
 /// An audit has the body of a dead robot where its log ends: it has to know of one that the disk
 /// has not taken whole.
-void FallenRobots::report_incomplete_log(RobotId robot, const std::optional<LastKnown>& logged,
-                                         UtcTime now) {
-  const std::optional<LastKnown>& reported = reported_.at(robot.value());
-  if (robot.value() >= robots_here_ || !reported || !logged) return;
-  const Duration lacks = reported->at - logged->at;
-  if (lacks <= log_delay_) return;
-  log_.log(now, {.warning = true,
-                 .code = std::string(shell::kLogIncomplete),
-                 .text = fmt::format("robot {}: its log ends {:.1f} s before its last status",
-                                     robot.value(), to_seconds(lacks))});
+void FallenRobots::report_incomplete_log(RobotId robot, const FlightTime& now) {
+  if (robot.value() >= here_.robots) return;
+  const std::optional<LastKnown> logged = recorded_.in_log(robot);
+  const std::optional<LastKnown> newest = newest_of(robot, now);
+  if (!logged || !newest) return;
+  const Duration lacks = newest->at - logged->at;
+  if (lacks <= here_.log_delay) return;
+  log_.log(now.utc, {.warning = true,
+                     .code = std::string(shell::kLogIncomplete),
+                     .text = fmt::format("robot {}: its log ends {:.1f} s before its last step",
+                                         robot.value(), to_seconds(lacks))});
 }
 
-// All bodies in one change of the scene, since each change causes a new plan.
-void FallenRobots::add(std::span<const RobotId> robots, UtcTime now) {
+// All bodies in one change of the scene, since each change causes a new plan. Before anything is
+// read from the disk, which may be slow.
+void FallenRobots::add(std::span<const RobotId> robots, const FlightTime& now) {
   std::vector<SceneChange> changes;
   std::vector<RobotId> added, unknown;
   for (const RobotId robot : robots) {
-    const std::optional<LastKnown> logged = logged_(robot);
-    const std::optional<LastKnown>& known = newest_of(robot, logged);
+    const std::optional<LastKnown> known = newest_of(robot, now);
     (known ? added : unknown).push_back(robot);
-    if (!known) continue;
-    changes.emplace_back(AddBody{robot, circle_of_fallen(*known, now, mission_, robot)});
-    report_incomplete_log(robot, logged, now);
+    if (known)
+      changes.emplace_back(AddBody{robot, circle_of_fallen(*known, now.utc, mission_, robot)});
   }
-  const std::vector<Error> refused = scene_.change_all(changes, now);
+  const std::vector<Error> refused = scene_.change_all(changes, now.utc);
   if (!added.empty()) {
-    log_.log(now, {.warning = true,
-                   .code = "body-added",
-                   .text = fmt::format(
-                       "robots not received any more stay where they are, as obstacles: {}",
-                       describe(added))});
+    log_.log(now.utc, {.warning = true,
+                       .code = "body-added",
+                       .text = fmt::format(
+                           "robots not received any more stay where they are, as obstacles: {}",
+                           describe(added))});
   }
   if (!unknown.empty()) {
-    log_.log(now, {.warning = true,
-                   .code = "body-unknown",
-                   .text = fmt::format("robots at unknown positions, others may touch them: {}",
-                                       describe(unknown))});
+    log_.log(now.utc, {.warning = true,
+                       .code = "body-unknown",
+                       .text = fmt::format("robots at unknown positions, others may touch them: {}",
+                                           describe(unknown))});
   }
   if (!refused.empty()) {
-    log_.log(now, {.warning = true,
-                   .code = "body-refused",
-                   .text = fmt::format("{} of them cannot be obstacles: {}", refused.size(),
-                                       refused.front().message)});
+    log_.log(now.utc, {.warning = true,
+                       .code = "body-refused",
+                       .text = fmt::format("{} of them cannot be obstacles: {}", refused.size(),
+                                           refused.front().message)});
   }
+  for (const RobotId robot : added) report_incomplete_log(robot, now);
 }
 
-void FallenRobots::narrow(std::span<const RobotId> robots, UtcTime now) {
+void FallenRobots::update(const FlightTime& now) {
+  if (now.steady < next_update_) return;
+  next_update_ = now.steady + kPeriod;
   std::vector<SceneChange> changes;
-  std::vector<RobotId> narrowed;
-  for (const RobotId robot : robots) {
-    const auto radius_m = body_radius_m(scene_.scene(), robot);
-    if (!radius_m) continue;
-    const std::optional<LastKnown> logged = logged_(robot);
-    const std::optional<LastKnown>& known = newest_of(robot, logged);
-    if (!known) continue;
-    const Circle circle = circle_of_fallen(*known, now, mission_, robot);
-    if (circle.radius_m >= *radius_m) continue;
+  std::vector<RobotId> changed;
+  for (const SceneObstacle& obstacle : scene_.scene().obstacles) {
+    const auto* body = std::get_if<Circle>(&obstacle.shape);
+    if (!obstacle.owner || body == nullptr) continue;
+    const RobotId robot = *obstacle.owner;
+    if (is_starting(robot, now.steady)) continue;
+    const std::optional<LastKnown> known = last_step(robot, now);
+    const std::optional<LastKnown>& reported = reported_.at(robot.value());
+    if (!known || (reported && reported->at > known->at)) continue;
+    const Circle circle = circle_of_fallen(*known, now.utc, mission_, robot);
+    if (contains(*body, circle) && circle.radius_m > body->radius_m - kSmaller_m) continue;
     changes.emplace_back(AddBody{robot, circle});
-    narrowed.push_back(robot);
+    changed.push_back(robot);
   }
   if (changes.empty()) return;
-  scene_.change_all(changes, now);
-  log_.log(now, {.code = "body-narrowed",
-                 .text = fmt::format("known better, by their logs on another host: {}",
-                                     describe(narrowed))});
+  scene_.change_all(changes, now.utc);
+  log_.log(now.utc, {.code = "body-changed",
+                     .text = fmt::format("their last steps are known better, or they made more: {}",
+                                         describe(changed))});
 }
 
 /// Robots that report again. The operator may have cleared the body of some already.

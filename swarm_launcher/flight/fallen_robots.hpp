@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "swarm_launcher/flight/flight_ports.hpp"
+#include "swarm_launcher/flight/flight_time.hpp"
 
 namespace swarm::launcher {
 
@@ -16,35 +18,45 @@ namespace swarm::launcher {
 /// others, where they were last known to be, and cease to be when they are received again.
 class FallenRobots {
  public:
-  /// `robots_here`: the first robots, whose logs are on this host. `log_delay`: by how much a log
-  /// may end before the last status. `logged`: by the robot's log. \pre all references outlive the
-  /// object
-  FallenRobots(const Mission& mission, SceneKeeper& scene, FlightLog& log,
-               std::uint32_t robots_here, Duration log_delay, LoggedPosition logged);
+  /// The robots of this host.
+  struct Here {
+    std::uint32_t robots = 0;  ///< the first ones of the mission
+    Duration log_delay{};      ///< robot_log::log_delay()
+    /// How long the process of a robot has been running; empty: it has ended.
+    std::function<std::optional<Duration>(RobotId, SteadyTime)> runs_for;
+  };
+  /// Period in which bodies are looked at again.
+  static constexpr Duration kPeriod = std::chrono::seconds(1);
+
+  /// \pre all references outlive the object
+  FallenRobots(const Mission& mission, SceneKeeper& scene, FlightLog& log, Here here,
+               RecordedPositions recorded);
 
   /// A robot reported its position.
   void on_status(RobotId robot, const LastKnown& reported) {
     reported_.at(robot.value()) = reported;
   }
 
-  void add(std::span<const RobotId> robots, UtcTime now);
-  /// Their logs are known better than before: bodies become smaller where that follows.
-  void narrow(std::span<const RobotId> robots, UtcTime now);
+  void add(std::span<const RobotId> robots, const FlightTime& now);
+  /// Changes the bodies of which the last step is known better than before, or has changed: one
+  /// that is on another host, or a robot that makes steps although it is not received.
+  void update(const FlightTime& now);
   void clear(std::span<const RobotId> robots, UtcTime now);
 
  private:
-  /// The newer of log and status.
-  const std::optional<LastKnown>& newest_of(RobotId robot,
-                                            const std::optional<LastKnown>& logged) const;
-  void report_incomplete_log(RobotId robot, const std::optional<LastKnown>& logged, UtcTime now);
+  bool is_starting(RobotId robot, SteadyTime now) const;
+  bool is_last(RobotId robot, const LastKnown& step, const FlightTime& now) const;
+  std::optional<LastKnown> last_step(RobotId robot, const FlightTime& now) const;
+  std::optional<LastKnown> newest_of(RobotId robot, const FlightTime& now) const;
+  void report_incomplete_log(RobotId robot, const FlightTime& now);
 
   const Mission& mission_;
   SceneKeeper& scene_;
   FlightLog& log_;
-  std::uint32_t robots_here_;
-  Duration log_delay_;
-  LoggedPosition logged_;
+  Here here_;
+  RecordedPositions recorded_;
   std::vector<std::optional<LastKnown>> reported_;  // by the newest status of each robot
+  SteadyTime next_update_{};
 };
 
 }  // namespace swarm::launcher

@@ -45,12 +45,16 @@ class SocketRequests final : public ControlRequests {
   shell::ControlServer& server_;
 };
 
-LoggedPosition positions_in_logs(PreparedRun& run) {
-  return [&run](RobotId robot) -> std::optional<LastKnown> {
-    const Mission& mission = run.options().mission;
-    const bool is_here = robot.value() < mission.robots.count - run.options().how.remote;
-    return is_here ? last_known_in_log(run.dir(), robot, mission) : run.hosts()->last_known(robot);
+RecordedPositions recorded_positions(PreparedRun& run) {
+  const auto last_step = [&run](RobotId robot) -> std::optional<LastKnown> {
+    if (!run.steps().has(robot)) return run.hosts()->last_known(robot);
+    return last_known(run.steps().last(robot), run.options().mission);
   };
+  const auto in_log = [&run](RobotId robot) -> std::optional<LastKnown> {
+    if (!run.steps().has(robot)) return std::nullopt;
+    return last_known_in_log(run.dir(), robot, run.options().mission);
+  };
+  return {.last_step = last_step, .in_log = in_log};
 }
 
 link::StopChannelOptions stop_channel_of(const PreparedRun& run) {
@@ -109,8 +113,9 @@ Flight::Flight(std::unique_ptr<PreparedRun> run, FlightObserver* observer)
                             .helpers = helpers_,
                             .log = log_,
                             .display = progress_,
-                            .logged_position = positions_in_logs(*run_),
+                            .recorded = recorded_positions(*run_),
                             .inputs = run_->inputs(),
+                            .steps = run_->steps().path(),
                             .hosts = run_->hosts(),
                             .observer = observer,
                             .stop = stop_ ? &*stop_ : nullptr,

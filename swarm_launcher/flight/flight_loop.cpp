@@ -30,13 +30,6 @@ SupervisorOptions supervision_of(const FlightOptions& options) {
           .planner_silence = SilenceLimits::of(options.mission.timing.heartbeat_hz)};
 }
 
-/// By how much the log of a robot may end before its last status. Processes with many robots write
-/// logs some records at a time.
-Duration log_delay_of(const FlightOptions& options) {
-  const Duration step = from_seconds(3.0 / options.mission.control.rate_hz);
-  return options.per_process == 1 ? step : step + std::chrono::seconds(1);
-}
-
 }  // namespace
 
 FlightLoop::FlightLoop(const FlightOptions& options, const std::filesystem::path& dir,
@@ -48,8 +41,12 @@ FlightLoop::FlightLoop(const FlightOptions& options, const std::filesystem::path
       view_(options.mission.robots.count, options.mission.link.communication_radius_m),
       late_(options.mission.robots.count, options.mission.link.status_hz),
       fallen_(options.mission, ports_.scene, ports_.log,
-              options.mission.robots.count - options.how.remote, log_delay_of(options),
-              ports_.logged_position),
+              {.robots = options.mission.robots.count - options.how.remote,
+               .log_delay = robot_log::log_delay(
+                   options.per_process, from_seconds(1.0 / options.mission.control.rate_hz)),
+               .runs_for = [this](RobotId robot,
+                                  SteadyTime at) { return supervisor_.runs_for(robot, at); }},
+              ports_.recorded),
       stamp_tolerance_(from_seconds(options.mission.timing.clock_skew_warn_s)),
       confirmations_(options.mission.robots.count, stamp_tolerance_) {}
 
@@ -68,12 +65,12 @@ Result<void> FlightLoop::step(const FlightTime& now) {
       ports_.log.log(now.utc, event);
     }
     for (const ProcessIndex process : ports_.hosts->take_ended()) release(process, now.utc);
-    fallen_.narrow(ports_.hosts->take_known(), now.utc);
   }
   serve_requests(now);
   for (const Action& action : supervisor_.step(now.steady)) {
     if (auto done = act(action, now); !done) return done;
   }
+  fallen_.update(now);
   send_stop(now);
   for (const LogEvent& event : ports_.helpers.step(now.steady)) ports_.log.log(now.utc, event);
   if (ports_.beats != nullptr) {
@@ -134,7 +131,7 @@ Result<void> FlightLoop::act(const Action& action, const FlightTime& now) {
   } else if (const auto* to_signal = std::get_if<SignalProcess>(&action)) {
     signal(*to_signal);
   } else if (const auto* fallen = std::get_if<AddBodies>(&action)) {
-    fallen_.add(fallen->robots, now.utc);
+    fallen_.add(fallen->robots, now);
   } else if (const auto* risen = std::get_if<ClearBodies>(&action)) {
     fallen_.clear(risen->robots, now.utc);
   } else if (const auto* event = std::get_if<LogEvent>(&action)) {
@@ -152,6 +149,9 @@ Result<void> FlightLoop::start(ProcessIndex process) {
                                : agent_command(options_.how, dir_, process, first, count);
   if (!ports_.inputs.empty()) {
     command.line.insert(command.line.end(), {"--inputs", ports_.inputs});
+  }
+  if (process != kPlanner && !ports_.steps.empty()) {
+    command.line.insert(command.line.end(), {"--steps", ports_.steps});
   }
   const auto pid = ports_.spawner.start(command.line, command.log);
   if (!pid) return tl::unexpected(pid.error());

@@ -64,8 +64,12 @@ class FlightObserver {
   virtual std::string describe() = 0;
 };
 
-/// The newest position in a robot's log, on this host or, as that host has sent it, on another one.
-using LoggedPosition = std::function<std::optional<LastKnown>(RobotId)>;
+/// What a robot's process has recorded of its steps.
+struct RecordedPositions {
+  using Of = std::function<std::optional<LastKnown>(RobotId)>;
+  Of last_step;  ///< of its process on this host, or as another host has sent it
+  Of in_log;     ///< the newest in its log, if that is on this host
+};
 
 /// All of them outlive the FlightLoop.
 struct FlightPorts {
@@ -76,8 +80,9 @@ struct FlightPorts {
   HelperProcesses& helpers;
   FlightLog& log;
   Display& display;
-  LoggedPosition logged_position;
+  RecordedPositions recorded;
   std::string inputs{};          ///< file with what processes read first; empty: run directory
+  std::string steps{};           ///< memory for the last steps of agents' robots; empty: none
   RemoteHosts* hosts = nullptr;  ///< null if all robots are on this host
   FlightObserver* observer = nullptr;   ///< null if there is none
   StopOrder* stop = nullptr;            ///< null if the interface carries no multicast

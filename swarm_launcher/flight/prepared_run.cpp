@@ -95,8 +95,8 @@ Result<void> PreparedRun::join() {
   return {};
 }
 
-// Written here for the first time, so that a directory that cannot be written is refused; the
-// thread writes the files again if others remove them.
+// The files are written here for the first time, so that a directory that cannot be written is
+// refused. The thread writes them again if others remove them.
 Result<void> PreparedRun::write_inputs() {
   const std::string mission = to_yaml(checked_.options.mission);
   const std::string run = shell::to_json(info_);
@@ -108,6 +108,10 @@ Result<void> PreparedRun::write_inputs() {
   auto inputs = shell::MemoryFile::make("swarmflow-inputs", shell::to_json(info_, mission));
   if (!inputs) return tl::unexpected(inputs.error());
   inputs_.emplace(*std::move(inputs));
+  const std::uint32_t here = checked_.options.mission.robots.count - checked_.options.how.remote;
+  auto steps = shell::SharedSteps::make(RobotId(0), here);
+  if (!steps) return tl::unexpected(steps.error());
+  steps_.emplace(*std::move(steps));
   return {};
 }
 

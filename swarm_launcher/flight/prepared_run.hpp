@@ -11,6 +11,7 @@
 #include "swarm_core/app/file_thread.hpp"
 #include "swarm_core/app/memory_file.hpp"
 #include "swarm_core/app/run_directory.hpp"
+#include "swarm_core/app/shared_steps.hpp"
 #include "swarm_launcher/flight/launcher_bus.hpp"
 #include "swarm_launcher/flight/run_checks.hpp"
 #include "swarm_launcher/flight/scene_keeper.hpp"
@@ -38,6 +39,8 @@ class PreparedRun {
   shell::FileThread& files() { return files_; }
   /// File with what planner and agents read first, see shell::read_run_inputs().
   std::string inputs() const { return inputs_->path(); }
+  /// The last control steps of this host's robots.
+  const shell::SharedSteps& steps() const { return *steps_; }
   LauncherBus& bus() { return *bus_; }
   SceneKeeper& scene() { return *scene_; }
   shell::ControlServer& control() { return *control_; }
@@ -59,6 +62,7 @@ class PreparedRun {
   shell::RunInfo info_;
   shell::FileThread files_;
   std::optional<shell::MemoryFile> inputs_;
+  std::optional<shell::SharedSteps> steps_;
   std::unique_ptr<link::DiscoveryServer> server_;  // none with static peers
   std::unique_ptr<link::Participant> participant_;
   std::optional<LauncherBus> bus_;

@@ -47,6 +47,8 @@ Result<void> HostProcesses::start(std::uint32_t robot) {
       sibling_program("robot_agent"),
       "--run",
       options_.dir.string(),
+      "--steps",
+      options_.steps,
       "--ids",
       fmt::format("{}", id),
       "--count",

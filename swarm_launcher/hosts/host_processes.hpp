@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -22,6 +23,7 @@ namespace swarm::launcher {
 
 struct HostProcessesOptions {
   std::filesystem::path dir;  ///< of the run
+  std::string steps;          ///< path of the memory for the robots' last steps
   link::Vendor dds = link::Vendor::kFastDds;
   std::uint32_t respawns = 0;  ///< see StartQueue
 };

@@ -14,13 +14,14 @@
 #include "swarm_core/app/foreign_settings.hpp"
 #include "swarm_core/app/run_clock.hpp"
 #include "swarm_core/app/run_dir.hpp"
+#include "swarm_core/app/shared_steps.hpp"
 #include "swarm_core/app/stop_signal.hpp"
 #include "swarm_core/robot_log/robot_log_file.hpp"
 #include "swarm_launcher/hosts/host_processes.hpp"
 #include "swarm_launcher/hosts/last_position.hpp"
 #include "swarm_launcher/hosts/line_socket.hpp"
-#include "swarm_launcher/hosts/log_watch.hpp"
 #include "swarm_launcher/hosts/offer.hpp"
+#include "swarm_launcher/hosts/step_watch.hpp"
 #include "swarm_launcher/supervision/progress.hpp"
 #include "swarmflow/mission/mission_file.hpp"
 
@@ -30,8 +31,8 @@ namespace {
 constexpr int kStep_ms = 20;
 constexpr Duration kAnswerTimeout = std::chrono::seconds(10);
 // Time between the signals of the ladder, as in the supervisor.
-constexpr int kPeriodsOfAnEnd = 3;                    // as FallenBody has it
 constexpr Duration kGrace = std::chrono::seconds(5);  // of each signal
+constexpr Duration kLeastSilence = std::chrono::milliseconds(1250);
 constexpr std::size_t kMaxLogBytes = 1U << 30U;
 
 SteadyTime now() { return std::chrono::steady_clock::now(); }
@@ -58,27 +59,30 @@ Result<HostOffer> ask(LineSocket& socket, const JoinOptions& options) {
   return fail(ErrorCode::kEnvironment, "no launcher answers there");
 }
 
-/// The robot logs of this host, of which the launcher receives the ends in flight.
-struct RobotLogs {
-  const HostOffer& offer;
-  const std::filesystem::path& dir;
-  const Mission& mission;
-  LogWatch watch{dir, RobotId(offer.first_robot), offer.robots};
-  Duration period = from_seconds(1.0 / mission.control.rate_hz);
+/// A robot that makes no step for this time is frozen, or its process is.
+Duration step_silence(const Mission& mission) {
+  return std::max(kLeastSilence, from_seconds(2.5 / mission.control.rate_hz));
+}
 
-  /// A log that ends a few control periods before the end of its process has its last step; one
-  /// that ends earlier may lack some, as the disk was slow or full.
-  void send_last(RobotId robot, bool has_ended, LineSocket& socket) const {
-    auto known = last_known_in_log(dir, robot, mission);
-    if (!known) return;
-    known->is_last = has_ended && utc_now() - known->at <= kPeriodsOfAnEnd * period;
-    socket.send(to_line(LastPosition{robot, *known}));
+/// The last steps of the robots of this host, which the launcher receives in flight.
+struct LastSteps {
+  const HostOffer& offer;
+  const shell::SharedSteps& steps;
+  const Mission& mission;
+  StepWatch watch{steps, RobotId(offer.first_robot), offer.robots, step_silence(mission)};
+
+  /// `is_last`: the robot makes no steps any more.
+  void send(RobotId robot, bool is_last, LineSocket& socket) const {
+    if (auto known = last_known(steps.last(robot), mission)) {
+      known->is_last = is_last;
+      socket.send(to_line(LastPosition{robot, *known}));
+    }
   }
   /// Of the robots of a process that has ended.
-  void send_last_of(std::uint32_t process, LineSocket& socket) const {
+  void send_of(std::uint32_t process, LineSocket& socket) const {
     const std::uint32_t begin = process * offer.per_process;
     for (std::uint32_t i = begin; i < std::min(begin + offer.per_process, offer.robots); ++i) {
-      send_last(RobotId(offer.first_robot + i), true, socket);
+      send(RobotId(offer.first_robot + i), true, socket);
     }
   }
 };
@@ -86,7 +90,7 @@ struct RobotLogs {
 /// Runs the processes until all have ended. They are ended when the launcher requests it, when the
 /// connection is lost, or on a stop signal; a process that does not end gets the next stronger
 /// signal.
-Result<void> fly(HostProcesses& processes, RobotLogs& logs, LineSocket& socket,
+Result<void> fly(HostProcesses& processes, LastSteps& last, LineSocket& socket,
                  Progress& progress) {
   int signalled = -1;
   SteadyTime signalled_at;
@@ -110,9 +114,11 @@ Result<void> fly(HostProcesses& processes, RobotLogs& logs, LineSocket& socket,
     if (signalled >= 0 && signalled < 2 && now() - signalled_at > kGrace)
       signal_processes(signalled + 1);
     if (auto stepped = processes.step(); !stepped) return stepped;
-    for (const RobotId robot : logs.watch.step(now())) logs.send_last(robot, false, socket);
+    for (const auto& [robot, is_silent] : last.watch.step(now())) {
+      last.send(robot, is_silent, socket);
+    }
     for (const auto& [process, exit] : processes.take_exits()) {
-      logs.send_last_of(process, socket);  // first, so that the launcher has it at the exit
+      last.send_of(process, socket);  // first, so that the launcher has it at the exit
       socket.send(nlohmann::json{{"exit", process},
                                  {"code", exit.code},
                                  {"signal", exit.signal},
@@ -193,6 +199,8 @@ Result<ExitCode> join_host(const JoinOptions& options) {
   if (auto written = shell::write_run_info(*dir, offer->run); !written) {
     return tl::unexpected(written.error());
   }
+  const auto steps = shell::SharedSteps::make(RobotId(offer->first_robot), offer->robots);
+  if (!steps) return tl::unexpected(steps.error());
   if (const auto notice = shell::dropped_settings_notice()) {
     std::fprintf(stderr, "%s\n", notice->c_str());
   }
@@ -200,10 +208,12 @@ Result<ExitCode> join_host(const JoinOptions& options) {
                offer->first_robot + offer->robots - 1, offer->run.interface.c_str());
   Progress progress;
   {
-    HostProcesses processes(
-        *offer, {.dir = *dir, .dds = options.dds, .respawns = mission->launcher.respawn_agent_max});
-    RobotLogs logs{.offer = *offer, .dir = *dir, .mission = *mission};
-    if (auto flown = fly(processes, logs, *socket, progress); !flown)
+    HostProcesses processes(*offer, {.dir = *dir,
+                                     .steps = steps->path(),
+                                     .dds = options.dds,
+                                     .respawns = mission->launcher.respawn_agent_max});
+    LastSteps last{.offer = *offer, .steps = *steps, .mission = *mission};
+    if (auto flown = fly(processes, last, *socket, progress); !flown)
       return tl::unexpected(flown.error());
   }
   send_logs(*offer, *dir, *socket, progress);

@@ -54,7 +54,7 @@ std::string to_line(const LastPosition& last) {
                          {"position_m", to_json(known.position_m)},
                          {"command_mps", to_json(known.command_mps.value_or(Vec2::Zero()))},
                          {"speed_mps", nullptr},
-                         {"dead", known.is_last}};
+                         {"final", known.is_last}};
   if (known.speed_mps) line["speed_mps"] = *known.speed_mps;
   return line.dump();
 }
@@ -63,13 +63,13 @@ std::optional<LastPosition> parse_last_position(const nlohmann::json& line) {
   const auto robot = line.find("last");
   const auto utc_ns = line.find("utc_ns");
   const auto speed = line.find("speed_mps");
-  const auto dead = line.find("dead");
-  for (const auto& field : {robot, utc_ns, speed, dead}) {
+  const auto is_final = line.find("final");
+  for (const auto& field : {robot, utc_ns, speed, is_final}) {
     if (field == line.end()) return std::nullopt;
   }
   const auto position_m = vector(line, "position_m");
   const auto command_mps = vector(line, "command_mps");
-  if (!robot->is_number_unsigned() || !utc_ns->is_number_unsigned() || !dead->is_boolean()) {
+  if (!robot->is_number_unsigned() || !utc_ns->is_number_unsigned() || !is_final->is_boolean()) {
     return std::nullopt;
   }
   const auto id = robot->get<std::uint64_t>();
@@ -82,7 +82,7 @@ std::optional<LastPosition> parse_last_position(const nlohmann::json& line) {
                                 .position_m = *position_m,
                                 .command_mps = *command_mps,
                                 .speed_mps = speed_mps,
-                                .is_last = dead->get<bool>()}};
+                                .is_last = is_final->get<bool>()}};
 }
 
 }  // namespace swarm::launcher

@@ -14,11 +14,11 @@
 
 namespace swarm::launcher {
 
-/// Where the log of a robot ends. A joined host sends it to the launcher when the robot's process
-/// has ended or its log does not grow, as the log is on that host.
+/// Where a robot made its last step. A joined host sends it to the launcher when the robot's
+/// process has ended or makes no steps.
 struct LastPosition {
   RobotId robot;
-  LastKnown known;  ///< from the log: with a command
+  LastKnown known;  ///< with a command
 };
 
 /// From the end of a robot's log in a run directory. Empty if there is no log or no step in it.
@@ -27,7 +27,7 @@ std::optional<LastKnown> last_known_in_log(const std::filesystem::path& run_dir,
                                            const Mission& mission);
 
 /// A line of the protocol between host and launcher: {"last": robot, "utc_ns": …, "position_m":
-/// [x, y], "command_mps": [x, y], "speed_mps": v or null, "dead": true or false}.
+/// [x, y], "command_mps": [x, y], "speed_mps": v or null, "final": true or false}.
 std::string to_line(const LastPosition& last);
 /// Empty if fields are missing, of another type, or beyond what a run can have.
 std::optional<LastPosition> parse_last_position(const nlohmann::json& line);

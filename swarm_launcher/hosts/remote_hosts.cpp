@@ -119,18 +119,13 @@ bool RemoteHosts::take_exit(Host& host, const nlohmann::json& line) {
   return true;
 }
 
-/// Where the log of one of its robots ends. A later stamp than now, by a clock that differs, would
-/// outrank each status.
+/// Where one of its robots made its last step. A later stamp than now, by a clock that differs,
+/// would outrank each status.
 bool RemoteHosts::take_last(const Host& host, const nlohmann::json& line) {
   auto last = parse_last_position(line);
   if (!last || last->robot.value() - host.first_robot >= host.robots) return false;
-  // A log that does not grow is reported again after the end of its process.
-  if (const auto before = last_known(last->robot); before && before->at == last->known.at) {
-    last->known.is_last = last->known.is_last || before->is_last;
-  }
   last->known.at = std::min(last->known.at, utc_now());
   last_known_.insert_or_assign(last->robot, last->known);
-  known_.push_back(last->robot);
   return true;
 }
 
@@ -139,9 +134,9 @@ std::optional<LastKnown> RemoteHosts::last_known(RobotId robot) const {
   return known == last_known_.end() ? std::nullopt : std::optional(known->second);
 }
 
-/// The first line must be a request; then "exit" (a process has ended), "last" (where the log of a
-/// robot ends), "over" (all have ended), "box" (a robot log follows) and "bye". The peer is not
-/// trusted: a log is accepted for its own robots only and up to a size limit.
+/// The first line must be a request; then "exit" (a process has ended), "last" (where a robot
+/// made its last step), "over" (all have ended), "box" (a robot log follows) and "bye". The peer is
+/// not trusted: a log is accepted for its own robots only and up to a size limit.
 bool RemoteHosts::take_line(Host& host, const std::string& line) {
   const auto json = nlohmann::json::parse(line, nullptr, false);
   if (!json.is_object()) return false;

@@ -56,10 +56,8 @@ class RemoteHosts {
   /// Processes of hosts that have ended since the last call.
   std::vector<ProcessIndex> take_ended() { return std::exchange(ended_, {}); }
 
-  /// Where the log of a robot of another host ends, as that host has sent it.
+  /// Where a robot of another host made its last step, as that host has sent it.
   std::optional<LastKnown> last_known(RobotId robot) const;
-  /// Robots for which that has arrived since the last call.
-  std::vector<RobotId> take_known() { return std::exchange(known_, {}); }
 
   /// Requests the end of a process of another host, and with it of all processes of that host.
   void end(ProcessIndex process, EndSignal signal);
@@ -118,7 +116,6 @@ class RemoteHosts {
   std::vector<std::size_t> joined_;  // since the last step: indices of hosts_
   std::vector<ProcessIndex> ended_;  // since the last call of take_ended()
   std::map<RobotId, LastKnown> last_known_;
-  std::vector<RobotId> known_;   // since the last call of take_known()
   std::vector<Block> free_;      // not assigned yet
   std::vector<bool> collected_;  // robot logs
   bool paused_ = false;          // by us

@@ -7,7 +7,7 @@
 namespace swarm::launcher {
 namespace {
 
-/// Two log records this many periods apart or less are taken as consecutive.
+/// Two steps this many periods apart or less are taken as consecutive.
 constexpr double kPeriodsOfATick = 3.0;
 
 /// Distance [m] that a robot covers from its present speed: first under a command, then braking.
@@ -19,7 +19,19 @@ double travel_m(const BodySpec& body, double speed_mps, double command_mps, doub
   return commanded_m + fastest_mps * fastest_mps / (2.0 * body.acceleration_max_mps2);
 }
 
+/// How long a robot may have driven on, and may still do so, in any direction. [s]
+double moving_s(const LastKnown& known, double age_s, const Mission& mission) {
+  const double status_s = 1.0 / mission.link.status_hz;
+  const double holds_s = mission.timing.planner_silence_s;
+  if (!known.command_mps) return std::min(age_s, status_s + holds_s);
+  return age_s <= to_seconds(longest_between_steps(mission)) ? holds_s : std::min(age_s, status_s);
+}
+
 }  // namespace
+
+Duration longest_between_steps(const Mission& mission) {
+  return from_seconds(kPeriodsOfATick / mission.control.rate_hz);
+}
 
 // The speed is the mean over the last period, if the record before is recent enough.
 std::optional<LastKnown> last_known(std::span<const robot_log::Step> steps,
@@ -31,29 +43,26 @@ std::optional<LastKnown> last_known(std::span<const robot_log::Step> steps,
   if (steps.size() < 2) return known;
   const robot_log::Step& before = steps[steps.size() - 2];
   const double between_s = to_seconds(last.stamp - before.stamp);
-  if (between_s > 0.0 && between_s <= kPeriodsOfATick / mission.control.rate_hz) {
+  if (between_s > 0.0 && between_s <= to_seconds(longest_between_steps(mission))) {
     known.speed_mps = (last.position_m - before.position_m).norm() / between_s;
   }
   return known;
 }
 
-// Three cases after the body at rest: no recent command, a body that follows commands at once, a
-// body with inertia.
-Circle circle_of_fallen(const LastKnown& known, UtcTime silent_since, const Mission& mission,
+// Three cases after the body at rest: its last command is not known, a body that follows commands
+// at once, a body with inertia.
+Circle circle_of_fallen(const LastKnown& known, UtcTime now, const Mission& mission,
                         RobotId robot) {
   const BodySpec& body = body_of(mission.robots, robot);
   const double period_s = 1.0 / mission.control.rate_hz;
   const double command_s = to_seconds(robot_log::command_lifetime(from_seconds(period_s)));
-  const double age_s = std::max(0.0, to_seconds(silent_since - known.at));
+  const double age_s = std::max(0.0, to_seconds(now - known.at));
   Circle circle{.center_m = known.position_m, .radius_m = body.radius_m};
   if (known.at_rest) return circle;
-  if (!known.command_mps || (!known.is_last && age_s > kPeriodsOfATick * period_s)) {
-    // A log ends where the robot did. A robot that is known from its statuses
-    // alone may be cut off and drive on until it holds.
-    const double holds_s = known.command_mps ? 0.0 : mission.timing.planner_silence_s;
-    const double moving_s = std::min(age_s, 1.0 / mission.link.status_hz + holds_s);
+  if (!known.command_mps || !known.is_last) {
     const double fastest_mps = body.speed_max_mps;
-    circle.radius_m += fastest_mps * moving_s + travel_m(body, fastest_mps, fastest_mps, command_s);
+    circle.radius_m += fastest_mps * moving_s(known, age_s, mission) +
+                       travel_m(body, fastest_mps, fastest_mps, command_s);
   } else if (body.model == "single_integrator") {
     circle.center_m += 0.5 * command_s * *known.command_mps;
     circle.radius_m += 0.5 * command_s * known.command_mps->norm();

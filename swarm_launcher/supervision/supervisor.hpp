@@ -117,6 +117,11 @@ class Supervisor {
   Supervisor(const SupervisorOptions& options, SteadyTime now);
 
   std::uint32_t processes() const { return static_cast<std::uint32_t>(processes_.size()); }
+  /// How long the process of a robot has been running; empty: it has ended.
+  std::optional<Duration> runs_for(RobotId robot, SteadyTime now) const {
+    const Process& p = process_of(robot);
+    return p.alive ? std::optional(now - p.started_at) : std::nullopt;
+  }
   /// First robot and number of robots of an agent process; of the planner none.
   std::pair<RobotId, std::uint32_t> robots_of(ProcessIndex process) const;
 

@@ -10,6 +10,7 @@
 
 #include "swarm_core/app/file_watch.hpp"
 #include "swarm_core/mission/scene_bodies.hpp"
+#include "swarm_core/robot_log/record.hpp"
 
 namespace swarm::monitor {
 namespace {
@@ -34,9 +35,22 @@ void leave_out_body(double known_s, Track& track) {
   ++track.lost;
 }
 
-/// The circle of a robot whose log is whole covers the end of the log.
-bool covers_end(const Circle& circle, const Track& track) {
-  return (track.points.back().position_m - circle.center_m).norm() <= circle.radius_m;
+/// How far a robot drives while its process collects records before it writes them: a process that
+/// is killed leaves a log that ends so far from the robot's last step. 0 if it writes at once.
+double unwritten_m(const RecordedRun& run, const Track& track) {
+  if (track.processes.empty()) return 0.0;
+  const auto together = std::ranges::count_if(run.tracks, [&](const Track& other) {
+    return !other.processes.empty() && other.processes.back() == track.processes.back();
+  });
+  const Duration period = from_seconds(1.0 / run.mission.control.rate_hz);
+  const Duration delay = robot_log::log_delay(static_cast<std::uint32_t>(together), period) -
+                         robot_log::log_delay(1, period);
+  return to_seconds(delay) * body_of(run.mission.robots, track.robot).speed_max_mps;
+}
+
+/// The circle of a robot whose log is whole covers the end of the log, or nearly so.
+bool covers_end(const Circle& circle, const Track& track, double unwritten_m) {
+  return (track.points.back().position_m - circle.center_m).norm() <= circle.radius_m + unwritten_m;
 }
 
 }  // namespace
@@ -59,7 +73,9 @@ void lay_fallen_bodies(RecordedRun& run) {
     const std::uint32_t robot = body.robot.value();
     if (robot >= run.tracks.size() || run.tracks[robot].points.empty()) continue;
     Track& track = run.tracks[robot];
-    if (!covers_end(body.shape, track)) leave_out_body(to_seconds(body.from - run.begin), track);
+    if (!covers_end(body.shape, track, unwritten_m(run, track))) {
+      leave_out_body(to_seconds(body.from - run.begin), track);
+    }
     if (!body.cleared) continue;
     const double cleared_s = to_seconds(*body.cleared - run.begin);
     // A body of an earlier incarnation was cleared when the robot came back: its log continues

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <fstream>
 #include <memory>
 #include <string>
 #include <vector>
@@ -16,6 +17,26 @@ namespace swarm::test {
 
 inline const std::string kSmallMission =
     std::string(SWARM_SOURCE_DIR) + "/deploy/missions/small.yaml";
+
+/// The lines of a run's scene.jsonl.
+inline std::vector<nlohmann::json> scene_changes(const std::filesystem::path& run_dir) {
+  std::vector<nlohmann::json> changes;
+  std::ifstream lines(run_dir / "scene.jsonl");
+  for (std::string line; std::getline(lines, line);) {
+    changes.push_back(nlohmann::json::parse(line, nullptr, false));
+  }
+  return changes;
+}
+
+/// Radius of the circle that a line of scene.jsonl adds.
+inline double radius_m(const nlohmann::json& change) {
+  const std::string keys = change["keys"];
+  return std::stod(keys.substr(keys.find("radius: ") + 8));
+}
+
+/// Of the small mission, where the last step of the robot is known: its radius, and half of what
+/// its fastest command takes it on in two control periods.
+constexpr double kLargestBody_m = 0.2 + 0.5 * 1.5 * 0.2 + 1e-9;
 
 /// `swarm_launcher run` of the small mission in a folder of its own.
 class FlownRun {

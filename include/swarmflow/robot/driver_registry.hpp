@@ -19,8 +19,9 @@ namespace swarm::agent {
 struct DriverContext {
   const Mission& mission;  ///< the mission, all defaults filled in
   RobotId robot;           ///< the robot's number
-  /// Position at which the mission starts the robot, or the last logged one of a robot whose
-  /// process was restarted [m]. A simulated body begins there; a real one reports its own.
+  /// Position at which the mission starts the robot, or where the body of a robot came to
+  /// rest whose process was restarted [m]. A simulated body begins there; a real one reports its
+  /// own.
   Vec2 position_m = Vec2::Zero();
   SteadyTime now;          ///< present time, at or before the first Driver::measure()
   std::uint64_t seed = 0;  ///< for noise of a simulated body; differs between robots

@@ -64,7 +64,7 @@ class ProcessBench : public InboxBench {
           {.loop = RobotLoop(world_, agent_options(mission_, id), agent_identity(mission_, id)),
            .driver = std::make_unique<StandingDriver>(),
            .rng = Rng(i),
-           .log = LogFile(robot_log::Writer::open(log_of(id)).value())});
+           .log = LogFile(robot_log::Writer::open(log_of(id)).value(), id, nullptr)});
     }
   }
   ~ProcessBench() override {

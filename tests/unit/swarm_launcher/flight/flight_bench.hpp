@@ -102,7 +102,8 @@ class FlightBench : public ::testing::Test {
                              .helpers = helpers,
                              .log = *log,
                              .display = display,
-                             .logged_position = [](RobotId) { return std::nullopt; }},
+                             .recorded = {.last_step = [](RobotId) { return std::nullopt; },
+                                          .in_log = [](RobotId) { return std::nullopt; }}},
                  now.steady);
   }
 

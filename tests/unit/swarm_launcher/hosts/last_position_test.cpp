@@ -1,11 +1,10 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
-// Where the logs of a joined host end: the lines about them, and which of them do not grow.
+// The last steps of a joined host's robots: the lines about them, and which robots make none.
 #include "swarm_launcher/hosts/last_position.hpp"
 
 #include <chrono>
-#include <filesystem>
-#include <fstream>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <utility>
@@ -14,9 +13,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "swarm_core/robot_log/robot_log_file.hpp"
-#include "swarm_launcher/hosts/log_watch.hpp"
-#include "tests/unit/swarm_core/app/scratch_folder.hpp"
+#include "swarm_core/app/shared_steps.hpp"
+#include "swarm_launcher/hosts/step_watch.hpp"
 
 namespace swarm::launcher {
 namespace {
@@ -46,7 +44,7 @@ TEST(LastPosition, ComesBackAsItWas) {
 
 TEST(LastPosition, OfAnotherFormIsRefused) {
   const nlohmann::json good = nlohmann::json::parse(
-      R"({"last":7,"utc_ns":5,"position_m":[1,2],"command_mps":[0,0],"speed_mps":null,"dead":true})");
+      R"({"last":7,"utc_ns":5,"position_m":[1,2],"command_mps":[0,0],"speed_mps":null,"final":true})");
   ASSERT_TRUE(parse_last_position(good));
   const std::vector<std::pair<const char*, nlohmann::json>> bad = {
       {"last", -1},
@@ -59,7 +57,7 @@ TEST(LastPosition, OfAnotherFormIsRefused) {
       {"position_m", {1, "2"}},
       {"command_mps", nullptr},
       {"speed_mps", "fast"},
-      {"dead", 1},
+      {"final", 1},
   };
   for (const auto& [key, value] : bad) {
     nlohmann::json line = good;
@@ -70,43 +68,52 @@ TEST(LastPosition, OfAnotherFormIsRefused) {
   }
 }
 
-class LogWatchTest : public testing::Test {
+class StepWatchTest : public testing::Test {
  protected:
-  LogWatchTest() { std::filesystem::create_directories(folder_.path() / "blackbox"); }
-  void grow(std::uint32_t robot) const {
-    std::ofstream(robot_log::file_of(folder_.path(), RobotId(robot)), std::ios::app) << "x";
+  void step(std::uint32_t robot) {
+    utc_now_ += milliseconds(100);
+    steps_.record(RobotId(robot), {.stamp = utc_now_});
   }
-  std::vector<RobotId> silent_at(int ms) {
-    return sut_.step(SteadyTime(std::chrono::hours(1) + milliseconds(ms)));
+  /// Robots that have fallen silent, and the ids of those that are back as negative numbers.
+  std::vector<int> changes_at(int ms) {
+    std::vector<int> ids;
+    for (const auto& change : sut_.step(SteadyTime(std::chrono::hours(1) + milliseconds(ms)))) {
+      const auto id = static_cast<int>(change.robot.value());
+      ids.push_back(change.is_silent ? id : -id);
+    }
+    return ids;
   }
 
  private:
-  ScratchFolder folder_;
-  LogWatch sut_{folder_.path(), RobotId(5), 3};
+  UtcTime utc_now_{std::chrono::hours(400'000)};
+  shell::SharedSteps steps_ = shell::SharedSteps::make(RobotId(5), 3).value();
+  StepWatch sut_{steps_, RobotId(5), 3, milliseconds(1250)};
 };
 
-TEST_F(LogWatchTest, FindsALogThatDoesNotGrowOnceUntilItGrows) {
-  grow(5);
-  grow(6);  // 7 has none
-  EXPECT_TRUE(silent_at(0).empty());
-  grow(5);
-  EXPECT_TRUE(silent_at(1000).empty());
+using Ids = std::vector<int>;
 
-  EXPECT_EQ(silent_at(1250), std::vector{RobotId(6)});
-  EXPECT_EQ(silent_at(2250), std::vector{RobotId(5)});
-  EXPECT_TRUE(silent_at(9000).empty());
-  grow(6);
-  EXPECT_TRUE(silent_at(9250).empty());
-  EXPECT_EQ(silent_at(10'500), std::vector{RobotId(6)});
+TEST_F(StepWatchTest, FindsARobotWithoutStepsOnceUntilItMakesOne) {
+  step(5);
+  step(6);  // 7 has made none
+  EXPECT_EQ(changes_at(0), Ids{});
+  step(5);
+  EXPECT_EQ(changes_at(1000), Ids{});
+
+  EXPECT_EQ(changes_at(1250), Ids{6});
+  EXPECT_EQ(changes_at(2250), Ids{5});
+  EXPECT_EQ(changes_at(9000), Ids{});
+  step(6);
+  EXPECT_EQ(changes_at(9250), Ids{-6});
+  EXPECT_EQ(changes_at(10'500), Ids{6});
 }
 
-TEST_F(LogWatchTest, LooksFourTimesASecond) {
-  grow(5);
-  EXPECT_TRUE(silent_at(0).empty());
-  EXPECT_TRUE(silent_at(1100).empty());
+TEST_F(StepWatchTest, LooksFourTimesASecond) {
+  step(5);
+  EXPECT_EQ(changes_at(0), Ids{});
+  EXPECT_EQ(changes_at(1100), Ids{});
 
-  EXPECT_TRUE(silent_at(1300).empty()) << "0.2 s after the last look";
-  EXPECT_EQ(silent_at(1350), std::vector{RobotId(5)});
+  EXPECT_EQ(changes_at(1300), Ids{}) << "0.2 s after the last look";
+  EXPECT_EQ(changes_at(1350), Ids{5});
 }
 
 }  // namespace

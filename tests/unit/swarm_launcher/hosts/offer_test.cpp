@@ -119,11 +119,11 @@ TEST(HostOffer, ReportsARefusalAndAnotherRelease) {
   EXPECT_EQ(refused.error().code, ErrorCode::kEnvironment);
   EXPECT_EQ(refused.error().message, "the launcher refused: the mission has begun");
 
-  const auto other = parse_offer(R"({"version": 6, "new": "form"})");
+  const auto other = parse_offer(R"({"version": 7, "new": "form"})");
   ASSERT_FALSE(other);
   EXPECT_EQ(other.error().code, ErrorCode::kEnvironment);
   EXPECT_EQ(other.error().message,
-            "the launcher speaks version 6 of this protocol, this program 5: use the same release "
+            "the launcher speaks version 7 of this protocol, this program 6: use the same release "
             "on all hosts");
 }
 

@@ -53,8 +53,9 @@ TEST(CircleOfFallen, CoversTheBodyFromTheLastTickToItsRest) {
         body.command(now, command_mps, milliseconds(200));
       }
 
-      const auto known = last_known(log, mission);
+      auto known = last_known(log, mission);
       ASSERT_TRUE(known.has_value());
+      known->is_last = true;
       const Circle circle = circle_of_fallen(*known, at_s(1.2), mission, RobotId(0));
 
       for (int look = 0; look < 30; ++look, now += milliseconds(50)) {
@@ -65,27 +66,44 @@ TEST(CircleOfFallen, CoversTheBodyFromTheLastTickToItsRest) {
   }
 }
 
-TEST(CircleOfFallen, OfAProcessThatHasEndedDoesNotGrowWithTime) {
+TEST(CircleOfFallen, AfterTheLastStepDoesNotGrowWithTime) {
   LastKnown known{
       .at = at_s(0.0), .position_m = {3, 4}, .command_mps = Vec2(1, 0), .speed_mps = 1.0};
   const Mission mission = mission_of("single_integrator");
-  const double at_once_m = circle_of_fallen(known, at_s(0.1), mission, RobotId(0)).radius_m;
-  EXPECT_GT(circle_of_fallen(known, at_s(5.0), mission, RobotId(0)).radius_m, 2.0 * at_once_m);
+  const auto radius_m = [&](double age_s) {
+    return circle_of_fallen(known, at_s(age_s), mission, RobotId(0)).radius_m;
+  };
+  const double by_log_m = radius_m(5.0);
 
   known.is_last = true;
 
-  EXPECT_EQ(circle_of_fallen(known, at_s(5.0), mission, RobotId(0)).radius_m, at_once_m);
+  EXPECT_EQ(radius_m(5.0), radius_m(0.1));
+  EXPECT_LT(radius_m(5.0), 0.5 * by_log_m);
+}
+
+TEST(CircleOfFallen, OfARobotThatMakesStepsCoversItsMotionUntilItHolds) {
+  const Mission mission = mission_of("single_integrator");
+  const LastKnown known{
+      .at = at_s(0.0), .position_m = {3, 4}, .command_mps = Vec2(1, 0), .speed_mps = 1.0};
+
+  const Circle circle = circle_of_fallen(known, at_s(0.1), mission, RobotId(0));
+
+  EXPECT_EQ(circle.center_m, Vec2(3, 4));
+  EXPECT_NEAR(circle.radius_m, 0.2 + 1.5 * (mission.timing.planner_silence_s + 0.2), 1e-9);
 }
 
 TEST(CircleOfFallen, IsTheBodyWhereARobotIsAtRest) {
-  const Circle by_log = circle_of_fallen(
-      {.at = at_s(0.0), .position_m = {3, 4}, .command_mps = Vec2(0, 0), .speed_mps = 0.0},
-      at_s(0.1), mission_of("single_integrator"), RobotId(0));
+  const Circle by_step = circle_of_fallen({.at = at_s(0.0),
+                                           .position_m = {3, 4},
+                                           .command_mps = Vec2(0, 0),
+                                           .speed_mps = 0.0,
+                                           .is_last = true},
+                                          at_s(0.1), mission_of("single_integrator"), RobotId(0));
   const Circle by_status =
       circle_of_fallen({.at = at_s(0.0), .position_m = {3, 4}, .at_rest = true}, at_s(0.9),
                        mission_of("single_integrator"), RobotId(0));
 
-  for (const Circle& circle : {by_log, by_status}) {
+  for (const Circle& circle : {by_step, by_status}) {
     EXPECT_EQ(circle.center_m, Vec2(3, 4));
     EXPECT_EQ(circle.radius_m, 0.2);
   }
@@ -120,9 +138,11 @@ TEST(CircleOfFallen, ShowsByItsSizeWhetherTheRobotFrozeWhereItsLogEnds) {
     const Mission mission = mission_of(model);
     const double frozen_m = frozen_body_radius_m(mission, RobotId(0));
     LastKnown known{.at = at_s(0.0), .position_m = {3, 4}, .command_mps = Vec2(1.5, 0.0)};
-    for (const double age_s : {0.1, 0.5, 3.0, 1000.0}) {
+    for (const double age_s : {0.5, 3.0, 1000.0}) {
       EXPECT_LE(circle_of_fallen(known, at_s(age_s), mission, RobotId(0)).radius_m, frozen_m);
     }
+    EXPECT_GT(circle_of_fallen(known, at_s(0.1), mission, RobotId(0)).radius_m, frozen_m + 1.0)
+        << "it makes steps";
     known.command_mps.reset();
     EXPECT_GT(circle_of_fallen(known, at_s(3.0), mission, RobotId(0)).radius_m, frozen_m + 1.0);
   }

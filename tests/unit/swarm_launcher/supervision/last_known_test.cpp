@@ -62,6 +62,7 @@ TEST(CircleOfFallen, ShrinksWithEveryPieceOfInformation) {
       LastKnown known{.at = at_s(0.0), .position_m = {1, 2}};
       const double by_status_m = radius_m(known, age_s);
       known.command_mps = Vec2(0.5, 0.0);
+      known.is_last = true;
       const double by_command_m = radius_m(known, age_s);
       known.speed_mps = 0.5;
       const double by_speed_m = radius_m(known, age_s);

@@ -71,7 +71,7 @@ TEST(FallenBodies, AreNotJudgedWhereTheLauncherFoundTheLogIncomplete) {
                        .source = "launcher",
                        .severity = "warning",
                        .code = "log-incomplete",
-                       .text = "robot 1: its log ends 1.2 s before its last status"};
+                       .text = "robot 1: its log ends 1.2 s before its last step"};
   const auto fly = [&](double log_end_s) {
     return run_with({track_of(0, {0, 30}, true), track_of(1, {0, log_end_s}, false)},
                     {{7.0, falls(1)}}, {event});
@@ -80,6 +80,25 @@ TEST(FallenBodies, AreNotJudgedWhereTheLauncherFoundTheLogIncomplete) {
   EXPECT_EQ(fly(5.0).tracks[1].body_until_s, 0.0);
   EXPECT_EQ(fly(5.0).tracks[1].lost, 1U);
   EXPECT_TRUE(has_body(fly(8.0).tracks[1])) << "it was frozen, and has written its log since";
+}
+
+// A process with many robots writes their records some at a time: 2 s and 3 m at 1.5 m/s.
+TEST(FallenBodies, LieWhereTheLogsOfAKilledProcessWithManyRobotsEnd) {
+  const auto lost_of_a_process_with = [](std::uint32_t robots, double apart_m) {
+    std::vector<Track> tracks;
+    for (std::uint32_t i = 0; i < robots; ++i) {
+      tracks.push_back(track_of(i, {0, 5}, false));
+      tracks.back().processes = {77};
+    }
+    tracks.push_back(track_of(robots, {0, 30}, true));
+    return run_with(std::move(tracks), {{7.0, AddBody{RobotId(1), Circle{{apart_m, 0}, 0.5}}}})
+        .tracks[1]
+        .lost;
+  };
+
+  EXPECT_EQ(lost_of_a_process_with(19, 3.0), 1U);
+  EXPECT_EQ(lost_of_a_process_with(20, 3.0), 0U);
+  EXPECT_EQ(lost_of_a_process_with(20, 3.6), 1U);
 }
 
 TEST(FallenBodies, OfARobotThatCameBackLeaveItsTrackAsItIs) {
