@@ -51,12 +51,12 @@ LogFile open_log(const Mission& mission, const LocalRobotsSpec& spec, RobotId ro
                                  .radius_m = body_of(mission.robots, robot).radius_m,
                                  .stamp = spec.utc_now};
   const bool many = spec.count >= robot_log::kManyRobots;
+  const std::uint32_t at_once = many ? robot_log::kRecordsOfManyAtOnce : robot_log::kRecordsAtOnce;
   auto stream =
       spec.files.append_to(robot_log::format_of(robot_log::file_of(spec.run_dir, robot), header),
                            many ? shell::Flush::kLazily : shell::Flush::kAtOnce, kWaitingBytes);
   return LogFile(robot_log::Writer::to(std::make_unique<QueuedChunks>(std::move(stream)), header,
-                                       many ? robot_log::kRecordsAtOnce : 1,
-                                       many ? robot.value() % robot_log::kRecordsAtOnce : 0),
+                                       at_once, robot.value() % at_once),
                  robot, spec.steps);
 }
 

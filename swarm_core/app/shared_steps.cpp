@@ -21,8 +21,8 @@
 namespace swarm::shell {
 namespace {
 
-/// A step as it is in memory: words that are written and read one by one, since another process may
-/// do both at the same time.
+/// A step as it is in memory: eight-byte parts that are written and read one by one, since another
+/// process may do both at the same time.
 struct Packed {
   std::int64_t stamp_ns;
   double x_m, y_m, vx_mps, vy_mps;
@@ -32,12 +32,12 @@ struct Packed {
   std::uint32_t plan_version;
   float plan_time_s, reference_x_m, reference_y_m;
 };
-constexpr std::size_t kWords = sizeof(Packed) / sizeof(std::uint64_t);
-using Words = std::array<std::uint64_t, kWords>;
-static_assert(sizeof(Packed) == sizeof(Words));
+constexpr std::size_t kParts = sizeof(Packed) / sizeof(std::uint64_t);
+using Parts = std::array<std::uint64_t, kParts>;
+static_assert(sizeof(Packed) == sizeof(Parts));
 
-using Word = std::atomic<std::uint64_t>;
-static_assert(Word::is_always_lock_free, "a lock cannot be shared with a process that is killed");
+using Part = std::atomic<std::uint64_t>;
+static_assert(Part::is_always_lock_free, "a lock cannot be shared with a process that is killed");
 
 /// Two steps are read while a third one is written; the fourth gives a reader time to finish.
 constexpr std::uint64_t kSteps = 4;
@@ -90,13 +90,13 @@ bool can_be_step(const Packed& p) {
          in_range(p.vy_mps);
 }
 
-Packed load(const std::array<Word, kWords>& words) {
-  Words copy{};
-  for (std::size_t i = 0; i < kWords; ++i) copy[i] = words[i].load(std::memory_order_acquire);
+Packed load(const std::array<Part, kParts>& parts) {
+  Parts copy{};
+  for (std::size_t i = 0; i < kParts; ++i) copy[i] = parts[i].load(std::memory_order_acquire);
   return std::bit_cast<Packed>(copy);
 }
 
-constexpr std::size_t kSlotBytes = sizeof(Word) * (1 + kSteps * kWords);
+constexpr std::size_t kSlotBytes = sizeof(Part) * (1 + kSteps * kParts);
 
 std::size_t bytes_for(std::uint32_t count) { return sizeof(Header) + count * kSlotBytes; }
 
@@ -108,8 +108,8 @@ tl::unexpected<Error> no_memory() {
 }  // namespace
 
 struct SharedSteps::Slot {
-  Word steps_made;  ///< step number n (from 0) is at n % kSteps
-  std::array<std::array<Word, kWords>, kSteps> steps;
+  Part steps_made;  ///< step number n (from 0) is at n % kSteps
+  std::array<std::array<Part, kParts>, kSteps> steps;
 };
 
 // The size is sealed: a process that uses a file which another one has cut is killed. So is one
@@ -176,9 +176,9 @@ SharedSteps::Slot& SharedSteps::slot(RobotId robot) const {
 void SharedSteps::record(RobotId robot, const robot_log::Step& step) {
   Slot& own = slot(robot);
   const std::uint64_t number = own.steps_made.load(std::memory_order_relaxed);
-  const auto words = std::bit_cast<Words>(pack(step));
-  for (std::size_t i = 0; i < kWords; ++i) {
-    own.steps[number % kSteps][i].store(words[i], std::memory_order_release);
+  const auto parts = std::bit_cast<Parts>(pack(step));
+  for (std::size_t i = 0; i < kParts; ++i) {
+    own.steps[number % kSteps][i].store(parts[i], std::memory_order_release);
   }
   own.steps_made.store(number + 1, std::memory_order_release);
 }

@@ -46,17 +46,19 @@ struct Step {
 /// How long a driver executes the command of a step. `period`: of control.
 constexpr Duration command_lifetime(Duration period) { return 2 * period; }
 
-/// A log is written at every step, so that nothing is lost with a process that is killed. With many
-/// robots that would take most of the process's time: from this number on, their logs are written
-/// some records at a time.
+/// Records of a log are handed to the disk some at a time, as each time costs more than a record:
+/// those of a process with many robots more at a time, and when others are written. A process that
+/// is killed loses those that are not handed over yet.
+constexpr std::uint32_t kRecordsAtOnce = 4;
 constexpr std::uint32_t kManyRobots = 20;
-constexpr std::uint32_t kRecordsAtOnce = 10;
+constexpr std::uint32_t kRecordsOfManyAtOnce = 10;
 
 /// The largest time between the last step of a robot whose process was killed and the end of its
 /// log, with a disk that keeps up. `robots`: of its process; `period`: of control.
 constexpr Duration log_delay(std::uint32_t robots, Duration period) {
   const Duration step = 3 * period;
-  return robots < kManyRobots ? step : step + kRecordsAtOnce * period + std::chrono::seconds(1);
+  return robots < kManyRobots ? step + kRecordsAtOnce * period
+                              : step + kRecordsOfManyAtOnce * period + std::chrono::seconds(1);
 }
 
 /// Where the body of a robot comes to rest whose process died after this step: its driver executes

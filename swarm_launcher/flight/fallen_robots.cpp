@@ -12,6 +12,7 @@
 
 #include "swarm_core/app/file_watch.hpp"
 #include "swarm_core/mission/scene_bodies.hpp"
+#include "swarm_core/robot_log/last_step.hpp"
 
 namespace swarm::launcher {
 namespace {
@@ -82,8 +83,20 @@ std::optional<LastKnown> FallenRobots::newest_of(RobotId robot, const FlightTime
   return !newest || (reported && reported->at > newest->at) ? reported : newest;
 }
 
-/// An audit has the body of a dead robot where its log ends: it has to know of one that the disk
-/// has not taken whole.
+/// An audit has the body of a dead robot where its log ends. The log may lack the last records,
+/// which the process had not handed to the disk: this event has the last step.
+void FallenRobots::report_last_step(RobotId robot, const FlightTime& now) {
+  const std::optional<LastKnown> known = last_step(robot, now);
+  if (!known || !known->is_last || !known->command_mps) return;
+  const robot_log::LastStep step{.robot = robot,
+                                 .stamp = known->at,
+                                 .position_m = known->position_m,
+                                 .velocity_mps = *known->command_mps};
+  log_.log(now.utc,
+           {.code = std::string(robot_log::kLastStepCode), .text = robot_log::to_text(step)});
+}
+
+/// An audit has to know of a log of which the disk has not taken more.
 void FallenRobots::report_incomplete_log(RobotId robot, const FlightTime& now) {
   if (robot.value() >= here_.robots) return;
   const std::optional<LastKnown> logged = recorded_.in_log(robot);
@@ -128,7 +141,10 @@ void FallenRobots::add(std::span<const RobotId> robots, const FlightTime& now) {
                        .text = fmt::format("{} of them cannot be obstacles: {}", refused.size(),
                                            refused.front().message)});
   }
-  for (const RobotId robot : added) report_incomplete_log(robot, now);
+  for (const RobotId robot : added) {
+    report_last_step(robot, now);
+    report_incomplete_log(robot, now);
+  }
 }
 
 void FallenRobots::update(const FlightTime& now) {

@@ -48,6 +48,7 @@ class FallenRobots {
   bool is_last(RobotId robot, const LastKnown& step, const FlightTime& now) const;
   std::optional<LastKnown> last_step(RobotId robot, const FlightTime& now) const;
   std::optional<LastKnown> newest_of(RobotId robot, const FlightTime& now) const;
+  void report_last_step(RobotId robot, const FlightTime& now);
   void report_incomplete_log(RobotId robot, const FlightTime& now);
 
   const Mission& mission_;

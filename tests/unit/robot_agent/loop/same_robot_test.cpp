@@ -136,6 +136,7 @@ void fly(const Mission& mission, const FlownTwice& flown) {
     now += kPeriod;
     utc_now += kPeriod;
   }
+  process.end({.now = now, .utc_now = utc_now});
   EXPECT_TRUE(files.finish().empty());
   const auto written = recording.write(flown.simulated.path);
   ASSERT_TRUE(written.has_value()) << written.error().message;

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include "swarm_core/robot_log/last_step.hpp"
+
 namespace swarm::monitor {
 namespace {
 
@@ -82,23 +84,57 @@ TEST(FallenBodies, AreNotJudgedWhereTheLauncherFoundTheLogIncomplete) {
   EXPECT_TRUE(has_body(fly(8.0).tracks[1])) << "it was frozen, and has written its log since";
 }
 
-// A process with many robots writes their records some at a time: 2 s and 3 m at 1.5 m/s.
-TEST(FallenBodies, LieWhereTheLogsOfAKilledProcessWithManyRobotsEnd) {
-  const auto lost_of_a_process_with = [](std::uint32_t robots, double apart_m) {
-    std::vector<Track> tracks;
-    for (std::uint32_t i = 0; i < robots; ++i) {
-      tracks.push_back(track_of(i, {0, 5}, false));
-      tracks.back().processes = {77};
-    }
-    tracks.push_back(track_of(robots, {0, 30}, true));
-    return run_with(std::move(tracks), {{7.0, AddBody{RobotId(1), Circle{{apart_m, 0}, 0.5}}}})
+RunEvent last_step(std::uint32_t robot, double time_s, const Vec2& position_m, const Vec2& v_mps) {
+  return {.time_s = time_s + 0.1,
+          .source = "launcher",
+          .severity = "info",
+          .code = "last-step",
+          .text = to_text(robot_log::LastStep{.robot = RobotId(robot),
+                                              .stamp = kBegin + from_seconds(time_s),
+                                              .position_m = position_m,
+                                              .velocity_mps = v_mps})};
+}
+
+// A killed process has not handed its last records to the disk.
+TEST(FallenBodies, LieWhereTheLauncherHasTheLastStep) {
+  const AddBody falls_there{RobotId(1), Circle{{3.2, 4}, 0.4}};
+  const RecordedRun run = run_with({track_of(0, {0, 30}, true), track_of(1, {0, 5}, false)},
+                                   {{5.5, falls_there}}, {last_step(1, 5.4, {3, 4}, {2, 0})});
+
+  const Track& track = run.tracks[1];
+  ASSERT_EQ(track.points.size(), 4U);
+  EXPECT_NEAR(track.points[2].time_s, 5.4, 1e-9);
+  EXPECT_EQ(track.points[2].position_m, Vec2(3, 4));
+  EXPECT_NEAR(track.points[3].time_s, 5.6, 1e-9) << "two control periods";
+  EXPECT_NEAR((track.points[3].position_m - Vec2(3.4, 4)).norm(), 0.0, 1e-9);
+  EXPECT_EQ(track.lost, 0U);
+  EXPECT_EQ(track.body_until_s, 30.0);
+}
+
+TEST(FallenBodies, HaveNoLastStepWhereTheLogHasItOrLacksALongTime) {
+  const auto points_with = [](const RunEvent& event) {
+    return run_with({track_of(0, {0, 30}, true), track_of(1, {0, 5, 5.2}, false)}, {}, {event})
         .tracks[1]
-        .lost;
+        .points.size();
   };
 
-  EXPECT_EQ(lost_of_a_process_with(19, 3.0), 1U);
-  EXPECT_EQ(lost_of_a_process_with(20, 3.0), 0U);
-  EXPECT_EQ(lost_of_a_process_with(20, 3.6), 1U);
+  EXPECT_EQ(points_with(last_step(1, 5.0, {3, 4}, {2, 0})), 3U) << "step and rest are there";
+  EXPECT_EQ(points_with(last_step(1, 8.0, {3, 4}, {2, 0})), 5U);
+  EXPECT_EQ(points_with(last_step(1, 8.4, {3, 4}, {2, 0})), 3U) << "its path is not known";
+  EXPECT_EQ(points_with(last_step(7, 5.4, {3, 4}, {2, 0})), 3U) << "no robot of the mission";
+  RunEvent damaged = last_step(1, 5.4, {3, 4}, {2, 0});
+  damaged.text.pop_back();
+  EXPECT_EQ(points_with(damaged), 3U);
+}
+
+// It came back and drove on.
+TEST(FallenBodies, OfAnEarlierIncarnationHaveTheirLastStepInTheMiddle) {
+  const RecordedRun run = run_with({track_of(0, {0, 30}, true), track_of(1, {0, 5, 9, 20}, true)},
+                                   {}, {last_step(1, 5.4, {3, 4}, {0, 0})});
+
+  ASSERT_EQ(run.tracks[1].points.size(), 6U);
+  EXPECT_EQ(run.tracks[1].points[2].position_m, Vec2(3, 4));
+  EXPECT_NEAR(run.tracks[1].points[4].time_s, 9.0, 1e-9);
 }
 
 TEST(FallenBodies, OfARobotThatCameBackLeaveItsTrackAsItIs) {
