@@ -52,6 +52,16 @@ function(swarm_precompile owner)
   endforeach()
 endfunction()
 
+# What runs at the start, at a user's request or at the end of a flight: -O1 takes a quarter less time to compile.
+function(swarm_cold)
+  if(SWARM_SANITIZE)
+    return()
+  endif()
+  foreach(target IN LISTS ARGN)
+    target_compile_options(${target} PRIVATE $<$<CONFIG:RelWithDebInfo>:-O1>)
+  endforeach()
+endfunction()
+
 # The control loop's libraries are compiled with -O3: its rate is what a run of hundreds of robots costs. In units of
 # eight sources g++ would inline less, which costs 3 % of a control step, but for these limits.
 function(swarm_hot)
