@@ -21,7 +21,7 @@ namespace {
 // Until the scene with a new obstacle has reached the robots, on a loaded machine, and what a robot
 // drives meanwhile, with the radius of the obstacle.
 constexpr Duration kCommandTime = std::chrono::seconds(3);
-constexpr double kAway_m = 5.0;
+constexpr double kAway_m = 6.0;
 // Places that are tried for an obstacle. Irrational steps spread them over the map.
 constexpr int kPlaces = 16;
 constexpr double kNextX = 0.6180339887;

@@ -43,10 +43,9 @@ struct SilentRobot {
 /// received again, from wherever, or the launcher receives it elsewhere.
 ///
 /// While its body is an obstacle of the scene, it is there (see Whereabouts). That obstacle is a
-/// circle, by the robot's log around the position at which it froze. A circle wider than
-/// frozen_body_radius_m is made of the last status alone: the robot may have been cut off and have
-/// driven on, and is silent as without the obstacle, for 15 s: then robots inside the circle leave
-/// it.
+/// circle, by the robot's last step around the position at which it froze. A circle wider than
+/// frozen_body_radius_m is that of a robot which may have been cut off and have driven on: it is
+/// silent as without the obstacle, for 15 s: then robots inside the circle leave it.
 ///
 /// A robot whose last state lies in a cell that the process does not receive has not fallen silent:
 /// it has left, or was left behind. If it is healthy, it is received again before it is near. It is

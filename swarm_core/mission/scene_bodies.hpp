@@ -21,9 +21,9 @@ Scene without_bodies(Scene scene);
 /// The scene without the bodies of these robots: a robot does not avoid its own body.
 Scene without_bodies_of(Scene scene, RobotId first, std::uint32_t robots);
 
-/// The largest radius [m] of the circle that covers the body of a robot which froze where its log
-/// ends: the log may lack the last 1/status_hz seconds, then the last command runs out and the body
-/// brakes. A wider circle is that of a robot which may have been cut off and have driven on.
+/// The largest radius [m] of the circle that covers the body of a robot which does not drive on:
+/// its position may be 1/status_hz seconds old, then the last command runs out and the body brakes.
+/// A wider circle is that of a robot which may have been cut off and have driven on.
 double frozen_body_radius_m(const Mission& mission, RobotId robot);
 
 /// A body that was an obstacle for a while.

@@ -18,9 +18,9 @@ class Reader {
  public:
   explicit Reader(std::string_view text) : text_(text) {}
 
-  bool take(std::string_view word) {
-    if (!text_.starts_with(word)) return false;
-    text_.remove_prefix(word.size());
+  bool take(std::string_view expected) {
+    if (!text_.starts_with(expected)) return false;
+    text_.remove_prefix(expected.size());
     return true;
   }
   template <class Number>

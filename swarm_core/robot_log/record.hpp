@@ -46,9 +46,9 @@ struct Step {
 /// How long a driver executes the command of a step. `period`: of control.
 constexpr Duration command_lifetime(Duration period) { return 2 * period; }
 
-/// Records of a log are handed to the disk some at a time, as each time costs more than a record:
-/// those of a process with many robots more at a time, and when others are written. A process that
-/// is killed loses those that are not handed over yet.
+/// Records are handed to the disk several at a time, which costs less; a process with many robots
+/// takes more, and lets them wait for up to a second. A process that is killed loses those that it
+/// has not handed over.
 constexpr std::uint32_t kRecordsAtOnce = 4;
 constexpr std::uint32_t kManyRobots = 20;
 constexpr std::uint32_t kRecordsOfManyAtOnce = 10;

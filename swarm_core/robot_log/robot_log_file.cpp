@@ -217,8 +217,8 @@ Result<Damage> read_records(const std::filesystem::path& file,
   return damage;
 }
 
-/// A robot that is started again takes its position from here. A file that does not exist is no
-/// error: the robot had not recorded a step.
+/// A robot that is started again takes its position from here, if no shared memory has it. A file
+/// that does not exist is no error: the robot had not recorded a step.
 Result<std::vector<Step>> last_steps(const std::filesystem::path& file, UtcTime from) {
   std::vector<Step> last;
   if (!std::filesystem::exists(file)) return last;

@@ -22,15 +22,16 @@ constexpr double kSmaller_m = 0.05;
 constexpr Duration kStarting = std::chrono::seconds(5);
 
 bool contains(const Circle& outer, const Circle& inner) {
-  constexpr double kRounding_m = 1e-6;
+  constexpr double kNoise_m = 0.02;
   const double apart_m = (inner.center_m - outer.center_m).norm();
-  return apart_m + inner.radius_m <= outer.radius_m + kRounding_m;
+  return apart_m + inner.radius_m <= outer.radius_m + kNoise_m;
 }
 
-/// Whether a robot that makes steps stands, as one does that is cut off or has just been restarted.
+/// Whether a robot that makes steps stands, as one does that is cut off or has just been restarted:
+/// by its command and by its motion since the step before. Measurements have noise.
 bool stands(const LastKnown& known) {
-  constexpr double kNone_mps = 0.01;
-  return known.command_mps->norm() < kNone_mps && known.speed_mps.value_or(1.0) < kNone_mps;
+  constexpr double kNone_mps = 0.05;
+  return known.command_mps->norm() < kNone_mps && known.speed_mps.value_or(0.0) < kNone_mps;
 }
 
 }  // namespace
@@ -66,11 +67,7 @@ std::optional<LastKnown> FallenRobots::last_step(RobotId robot, const FlightTime
   std::optional<LastKnown> known = recorded_.last_step(robot);
   if (!known) return std::nullopt;
   known->at = std::min(known->at, now.utc);
-  if (robot.value() < here_.robots) {
-    known->is_last = is_last(robot, *known, now);
-  } else if (!known->is_last) {
-    known->command_mps.reset();
-  }
+  if (robot.value() < here_.robots) known->is_last = is_last(robot, *known, now);
   return known;
 }
 
@@ -78,7 +75,10 @@ std::optional<LastKnown> FallenRobots::last_step(RobotId robot, const FlightTime
 /// to a second old, and the disk may lack the end of a log.
 std::optional<LastKnown> FallenRobots::newest_of(RobotId robot, const FlightTime& now) const {
   std::optional<LastKnown> newest = last_step(robot, now);
-  if (!newest) newest = recorded_.in_log(robot);
+  if (!newest) {  // its process was started by hand, and shares no steps
+    newest = recorded_.in_log(robot);
+    if (newest) newest->command_mps.reset();
+  }
   const std::optional<LastKnown>& reported = reported_.at(robot.value());
   return !newest || (reported && reported->at > newest->at) ? reported : newest;
 }
@@ -96,7 +96,7 @@ void FallenRobots::report_last_step(RobotId robot, const FlightTime& now) {
            {.code = std::string(robot_log::kLastStepCode), .text = robot_log::to_text(step)});
 }
 
-/// An audit has to know of a log of which the disk has not taken more.
+/// An audit has to know of a log that ends earlier, as the disk was full or slow.
 void FallenRobots::report_incomplete_log(RobotId robot, const FlightTime& now) {
   if (robot.value() >= here_.robots) return;
   const std::optional<LastKnown> logged = recorded_.in_log(robot);
@@ -170,6 +170,7 @@ void FallenRobots::update(const FlightTime& now) {
   log_.log(now.utc, {.code = "body-changed",
                      .text = fmt::format("their last steps are known better, or they made more: {}",
                                          describe(changed))});
+  for (const RobotId robot : changed) report_last_step(robot, now);
 }
 
 /// Robots that report again. The operator may have cleared the body of some already.

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "swarm_launcher/hosts/step_watch.hpp"
 
+#include <utility>
+
 namespace swarm::launcher {
 
 std::vector<StepWatch::Change> StepWatch::step(SteadyTime now) {
@@ -13,11 +15,14 @@ std::vector<StepWatch::Change> StepWatch::step(SteadyTime now) {
     const RobotId id(first_.value() + i);
     const auto steps = steps_.last(id);
     if (!steps.empty() && steps.back().stamp != robot.last) {
-      const bool is_back = robot.is_silent && robot.last != UtcTime{};
-      robot = {.last = steps.back().stamp, .stepped_at = now, .is_silent = false};
-      if (is_back) changes.push_back({.robot = id, .is_silent = false});
+      robot.last = steps.back().stamp;
+      robot.stepped_at = now;
+      if (std::exchange(robot.is_silent, false)) robot.began_at = now;
+      if (!robot.is_reported || now - robot.began_at < kBack) continue;
+      robot.is_reported = false;
+      changes.push_back({.robot = id, .is_silent = false});
     } else if (!robot.is_silent && now - robot.stepped_at >= silent_) {
-      robot.is_silent = true;
+      robot.is_silent = robot.is_reported = true;
       changes.push_back({.robot = id, .is_silent = true});
     }
   }

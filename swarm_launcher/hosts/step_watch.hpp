@@ -18,6 +18,10 @@ class StepWatch {
  public:
   static constexpr Duration kPeriod = std::chrono::milliseconds(250);
 
+  /// A robot that makes steps again is reported after this time. By then its status has arrived,
+  /// unless it is cut off, and a restarted one has left the place of its last step.
+  static constexpr Duration kBack = std::chrono::seconds(5);
+
   /// `silent`: the time without a step after which a robot is reported. \pre the steps have places
   /// for these robots, and outlive the object
   StepWatch(const shell::SharedSteps& steps, RobotId first, std::uint32_t robots, Duration silent)
@@ -35,7 +39,9 @@ class StepWatch {
   struct Robot {
     UtcTime last{};
     SteadyTime stepped_at{};
+    SteadyTime began_at{};  ///< to make steps, after a silence
     bool is_silent = true;
+    bool is_reported = false;  ///< as silent
   };
 
   const shell::SharedSteps& steps_;

@@ -23,8 +23,7 @@ double travel_m(const BodySpec& body, double speed_mps, double command_mps, doub
 double moving_s(const LastKnown& known, double age_s, const Mission& mission) {
   const double status_s = 1.0 / mission.link.status_hz;
   const double holds_s = mission.timing.planner_silence_s;
-  if (!known.command_mps) return std::min(age_s, status_s + holds_s);
-  return age_s <= to_seconds(longest_between_steps(mission)) ? holds_s : std::min(age_s, status_s);
+  return known.command_mps ? status_s + holds_s : std::min(age_s, status_s + holds_s);
 }
 
 }  // namespace

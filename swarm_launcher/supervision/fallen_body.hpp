@@ -20,8 +20,9 @@ struct LastKnown {
   std::optional<Vec2> command_mps{};
   std::optional<double> speed_mps{};
   bool at_rest = false;  ///< arrived and settled: it does not move
-  /// However old this is, no step followed: the process has ended, or is frozen. One that wakes
-  /// stands until it has received the others (MotionPermit), and is received itself.
+  /// However old this is, the robot has not driven on: its process has ended or is frozen, or it
+  /// stands. A process that wakes stands until it has received the others (MotionPermit), and is
+  /// received itself.
   bool is_last = false;
 };
 
@@ -34,9 +35,9 @@ Duration longest_between_steps(const Mission& mission);
 /// A circle that covers the body of a robot from its last known position to where its driver stops
 /// it. A command is valid for two control periods; then the robot brakes. The less is known, the
 /// larger is the circle. After the robot's last step it covers the motion under the command of that
-/// step only; otherwise every direction at the largest speed: of a robot that makes steps, until it
-/// holds, as it may be cut off; by its log, for the age of that, at most a period of its statuses;
-/// by a status, for the age of that, at most both times.
+/// step only. A robot that makes steps may be cut off and drive on at the largest speed until it
+/// holds, at most a period of its statuses and `planner_silence_s`: the circle covers that. By a
+/// status it covers as much, but not more than the age of the status.
 Circle circle_of_fallen(const LastKnown& known, UtcTime now, const Mission& mission, RobotId robot);
 
 }  // namespace swarm::launcher

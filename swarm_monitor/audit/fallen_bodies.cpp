@@ -8,6 +8,7 @@
 #include <iterator>
 #include <optional>
 #include <string_view>
+#include <vector>
 
 #include "swarm_core/app/file_watch.hpp"
 #include "swarm_core/mission/scene_bodies.hpp"
@@ -42,36 +43,42 @@ bool covers_end(const Circle& circle, const Track& track) {
   return (track.points.back().position_m - circle.center_m).norm() <= circle.radius_m;
 }
 
-/// Adds a point to a track, unless the log has it or another one at that time.
-void add_point(TrackPoint point, Track& track) {
-  constexpr double kSame_s = 1e-6;
-  const auto next =
-      std::ranges::lower_bound(track.points, point.time_s - kSame_s, {}, &TrackPoint::time_s);
-  if (next != track.points.end() && next->time_s <= point.time_s + kSame_s) return;
-  track.points.insert(next, point);
+/// The launcher found at the same time that the log of this robot lacks more than that.
+bool is_incomplete(const RunEvent& last_step, std::uint32_t robot, const RecordedRun& run) {
+  return std::ranges::any_of(run.events, [&](const RunEvent& other) {
+    return other.time_s == last_step.time_s && robot_without_end(other) == robot;
+  });
 }
 
 /// Completes the log of a robot whose process was killed or frozen by its last step, if no more
 /// than the records that the process had not handed to the disk are missing: over a longer time the
-/// path would not be known.
+/// path would not be known. The body then comes to rest after that step, and not after the log's
+/// last one.
 void add_last_step(const RunEvent& event, RecordedRun& run) {
-  constexpr double kLongest_s = 3.0;
-  if (event.code != robot_log::kLastStepCode) return;
+  if (event.source != "launcher" || event.code != robot_log::kLastStepCode) return;
   const auto step = robot_log::parse_last_step(event.text);
   if (!step || step->robot.value() >= run.tracks.size()) return;
-  Track& track = run.tracks[step->robot.value()];
+  if (is_incomplete(event, step->robot.value(), run)) return;
+  std::vector<TrackPoint>& points = run.tracks[step->robot.value()].points;
+  const Duration period = from_seconds(1.0 / run.mission.control.rate_hz);
+  const double longest_s = to_seconds(robot_log::log_delay(robot_log::kManyRobots, period));
+  constexpr double kSame_s = 1e-6;
   const double time_s = to_seconds(step->stamp - run.begin);
-  const auto next = std::ranges::upper_bound(track.points, time_s, {}, &TrackPoint::time_s);
-  if (next == track.points.begin() || time_s - std::prev(next)->time_s > kLongest_s) return;
-  TrackPoint point = *std::prev(next);
+  const auto is_step = [](const TrackPoint& point) { return !point.is_rest; };
+  const auto begin = std::ranges::upper_bound(points, time_s + kSame_s, {}, &TrackPoint::time_s);
+  const auto before = std::find_if(std::reverse_iterator(begin), points.rend(), is_step);
+  if (before == points.rend() || time_s - before->time_s > longest_s) return;
+  if (time_s - before->time_s < kSame_s) return;  // the log has it
+  TrackPoint point = *before;
+  auto next = points.erase(before.base(), std::find_if(begin, points.end(), is_step));
   point.time_s = time_s;
   point.position_m = step->position_m;
-  add_point(point, track);
-  const Duration period = from_seconds(1.0 / run.mission.control.rate_hz);
+  next = std::next(points.insert(next, point));
+  point.is_rest = true;
   point.time_s += to_seconds(robot_log::command_lifetime(period));
   point.position_m = robot_log::rest_position_m(
       {.position_m = step->position_m, .velocity_mps = step->velocity_mps}, period);
-  add_point(point, track);
+  if (next == points.end() || next->time_s > point.time_s) points.insert(next, point);
 }
 
 }  // namespace

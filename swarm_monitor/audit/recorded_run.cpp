@@ -125,6 +125,7 @@ void TrackMaker::let_body_come_to_rest() {
   const bool drives_on = !track_.ended_gracefully && last.velocity_mps != Vec2::Zero();
   if (period_ == Duration::zero() || track_.points.empty() || !drives_on) return;
   TrackPoint rest = track_.points.back();
+  rest.is_rest = true;
   rest.time_s += to_seconds(robot_log::command_lifetime(period_));
   rest.position_m = robot_log::rest_position_m(last, period_);
   track_.points.push_back(rest);

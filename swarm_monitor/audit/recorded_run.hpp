@@ -21,6 +21,7 @@ namespace swarm::monitor {
 struct TrackPoint {
   double time_s = 0.0;  ///< since RecordedRun::begin
   Vec2 position_m = Vec2::Zero();
+  bool is_rest = false;  ///< no step: where the body comes to rest after the step before
   RobotMode mode = RobotMode::kWaiting;
   std::uint8_t goal = robot_log::Step::kNoGoal;
   std::uint16_t neighbours = 0;    ///< in its neighbour table

@@ -35,13 +35,11 @@ TEST_P(FrozenAgents, AreNotTouchedAndArriveAfterTheyWake) {
   EXPECT_EQ(summary["collisions_obstacle"], 0);
   EXPECT_TRUE(has_event(run.dir(), "body-cleared"));
   EXPECT_TRUE(has_event(run.dir(), "woke-late")) << "it receives before it moves";
-  int bodies = 0;
-  for (const auto& change : scene_changes(run.dir())) {
-    if (change["action"] != "add_body") continue;
-    EXPECT_LE(radius_m(change), kLargestBody_m) << change << ": their last steps are known";
-    ++bodies;
+  const auto bodies = first_bodies(run.dir());
+  EXPECT_EQ(bodies.size(), 3U);
+  for (const auto& [robot, radius_m] : bodies) {
+    EXPECT_LE(radius_m, kLargestBody_m) << "the last step of robot " << robot << " is known";
   }
-  EXPECT_EQ(bodies, 3);
 }
 
 INSTANTIATE_TEST_SUITE_P(Channels, FrozenAgents, testing::Values("groups", "topics"),

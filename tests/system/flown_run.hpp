@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -32,6 +33,17 @@ inline std::vector<nlohmann::json> scene_changes(const std::filesystem::path& ru
 inline double radius_m(const nlohmann::json& change) {
   const std::string keys = change["keys"];
   return std::stod(keys.substr(keys.find("radius: ") + 8));
+}
+
+/// The robots whose bodies became obstacles, with the radius of the first circle of each.
+inline std::map<int, double> first_bodies(const std::filesystem::path& run_dir) {
+  std::map<int, double> bodies;
+  for (const nlohmann::json& change : scene_changes(run_dir)) {
+    if (change["action"] != "add_body") continue;
+    const std::string keys = change["keys"];
+    bodies.emplace(std::stoi(keys.substr(keys.find("robot: ") + 7)), radius_m(change));
+  }
+  return bodies;
 }
 
 /// Of the small mission, where the last step of the robot is known: its radius, and half of what

@@ -70,6 +70,7 @@ TEST_F(FallenRobotsTest, HaveASmallerBodyOnceTheirLastStepIsKnown) {
   EXPECT_EQ(body_of(kElsewhere)->center_m, Vec2(8.5, 12));
   EXPECT_DOUBLE_EQ(radius_m(kElsewhere), smallest_m());
   EXPECT_TRUE(is_logged("body-changed"));
+  EXPECT_TRUE(is_logged("last-step"));
 }
 
 // Its host reports a step, and not that it is the last one.

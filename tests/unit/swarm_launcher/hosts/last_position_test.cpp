@@ -103,8 +103,23 @@ TEST_F(StepWatchTest, FindsARobotWithoutStepsOnceUntilItMakesOne) {
   EXPECT_EQ(changes_at(2250), Ids{5});
   EXPECT_EQ(changes_at(9000), Ids{});
   step(6);
-  EXPECT_EQ(changes_at(9250), Ids{-6});
+  EXPECT_EQ(changes_at(9250), Ids{});
   EXPECT_EQ(changes_at(10'500), Ids{6});
+}
+
+// A restarted process makes steps before its status arrives.
+TEST_F(StepWatchTest, ReportsARobotThatHasMadeStepsAgainForFiveSeconds) {
+  step(6);
+  EXPECT_EQ(changes_at(0), Ids{});
+  EXPECT_EQ(changes_at(1250), Ids{6});
+  for (int ms = 2000; ms < 7000; ms += 500) {
+    step(6);
+    EXPECT_EQ(changes_at(ms), Ids{}) << ms;
+  }
+  step(6);
+  EXPECT_EQ(changes_at(7000), Ids{-6});
+  step(6);
+  EXPECT_EQ(changes_at(7500), Ids{});
 }
 
 TEST_F(StepWatchTest, LooksFourTimesASecond) {

@@ -118,13 +118,48 @@ TEST(FallenBodies, HaveNoLastStepWhereTheLogHasItOrLacksALongTime) {
         .points.size();
   };
 
-  EXPECT_EQ(points_with(last_step(1, 5.0, {3, 4}, {2, 0})), 3U) << "step and rest are there";
-  EXPECT_EQ(points_with(last_step(1, 8.0, {3, 4}, {2, 0})), 5U);
-  EXPECT_EQ(points_with(last_step(1, 8.4, {3, 4}, {2, 0})), 3U) << "its path is not known";
+  EXPECT_EQ(points_with(last_step(1, 5.2, {3, 4}, {2, 0})), 3U) << "it has that step";
+  EXPECT_EQ(points_with(last_step(1, 7.4, {3, 4}, {2, 0})), 5U);
+  EXPECT_EQ(points_with(last_step(1, 7.6, {3, 4}, {2, 0})), 3U) << "its path is not known";
   EXPECT_EQ(points_with(last_step(7, 5.4, {3, 4}, {2, 0})), 3U) << "no robot of the mission";
   RunEvent damaged = last_step(1, 5.4, {3, 4}, {2, 0});
   damaged.text.pop_back();
   EXPECT_EQ(points_with(damaged), 3U);
+  RunEvent of_a_robot = last_step(1, 5.4, {3, 4}, {2, 0});
+  of_a_robot.source = "robot-0";
+  EXPECT_EQ(points_with(of_a_robot), 3U);
+}
+
+// The reader lets the body come to rest after the last step that the log has.
+TEST(FallenBodies, ComeToRestAfterTheLastStepOnly) {
+  Track track = track_of(1, {0, 5, 5.2}, false);
+  track.points.back().is_rest = true;
+
+  const RecordedRun run = run_with({track_of(0, {0, 30}, true), std::move(track)}, {},
+                                   {last_step(1, 5.1, {3, 4}, {2, 0})});
+
+  const std::vector<TrackPoint>& points = run.tracks[1].points;
+  ASSERT_EQ(points.size(), 4U);
+  EXPECT_NEAR(points[2].time_s, 5.1, 1e-9);
+  EXPECT_FALSE(points[2].is_rest);
+  EXPECT_NEAR(points[3].time_s, 5.3, 1e-9);
+  EXPECT_TRUE(points[3].is_rest);
+}
+
+TEST(FallenBodies, HaveNoLastStepWhereTheLogIsReportedIncomplete) {
+  const RunEvent step = last_step(1, 5.9, {3, 4}, {2, 0});
+  const RunEvent incomplete{.time_s = step.time_s,
+                            .source = "launcher",
+                            .severity = "warning",
+                            .code = "log-incomplete",
+                            .text = "robot 1: its log ends 0.9 s before its last step"};
+
+  const RecordedRun run =
+      run_with({track_of(0, {0, 30}, true), track_of(1, {0, 5}, false)}, {}, {step, incomplete});
+
+  EXPECT_EQ(run.tracks[1].points.size(), 2U);
+  EXPECT_EQ(run.tracks[1].lost, 1U);
+  EXPECT_EQ(run.tracks[1].body_until_s, 0.0);
 }
 
 // It came back and drove on.
