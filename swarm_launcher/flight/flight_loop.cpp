@@ -74,14 +74,26 @@ Result<void> FlightLoop::step(const FlightTime& now) {
   send_stop(now);
   for (const LogEvent& event : ports_.helpers.step(now.steady)) ports_.log.log(now.utc, event);
   if (ports_.beats != nullptr) {
-    const bool lists_all =
-        supervisor_.knows_silent(now.steady) && !ports_.helpers.is_gateway_down();
+    const bool lists_all = supervisor_.knows_silent(now.steady) && is_gateway_matched(now.steady);
     ports_.beats->step(now, supervisor_, late_, lists_all);
   }
   if (const auto message = ports_.helpers.message()) ports_.display.print(*message);
   if (ports_.observer != nullptr) ports_.observer->on_step(*this, now.steady);
   show(now.steady);
   return {};
+}
+
+/// Whether the gateway, if there is one, receives all robots behind it that the launcher receives.
+/// Otherwise robots that do not receive each other may be near each other although both are well.
+bool FlightLoop::is_gateway_matched(SteadyTime now) const {
+  if (options_.how.by_gateway == 0) return true;
+  const std::uint32_t behind =
+      std::min(options_.how.by_gateway * options_.per_process, options_.mission.robots.count);
+  std::uint32_t received = 0;
+  for (std::uint32_t i = 0; i < behind; ++i) {
+    received += supervisor_.is_received(RobotId(i), now) ? 1 : 0;
+  }
+  return ports_.helpers.robots_of_gateway() >= received;
 }
 
 // Children that are neither planner nor agent are helpers.

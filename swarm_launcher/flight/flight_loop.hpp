@@ -56,6 +56,7 @@ class FlightLoop {
 
  private:
   /// The parts of a step, in their order.
+  bool is_gateway_matched(SteadyTime now) const;
   void reap(const FlightTime& now);
   void release(ProcessIndex process, UtcTime now);
   void read_bus(const FlightTime& now);

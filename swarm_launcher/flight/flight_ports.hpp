@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
@@ -45,9 +46,9 @@ class HelperProcesses {
   virtual std::optional<LogEvent> on_exit(pid_t pid, SteadyTime now) = 0;
   /// Starts those again whose restart is due, and returns what to log.
   virtual std::vector<LogEvent> step(SteadyTime now) = 0;
-  /// Whether robots of the run do not receive each other, since the gateway between them does not
-  /// run. As of the last step().
-  virtual bool is_gateway_down() const = 0;
+  /// The number of robots behind the gateway of the run whose states it receives, as of the last
+  /// step(); 0 without a gateway.
+  virtual std::uint32_t robots_of_gateway() const = 0;
   /// A message for the user that has become available, once.
   virtual std::optional<std::string> message() = 0;
 };

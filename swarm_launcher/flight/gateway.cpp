@@ -45,12 +45,15 @@ Result<ExitCode> run_gateway(const GatewayCommandOptions& options) {
                                          .interface = run->interface,
                                          .limits = link::wire_limits(*mission)});
   if (!gateway) return tl::unexpected(gateway.error());
+  // Robots publish more often than this, however they stand.
+  const Duration recent = from_seconds(mission->link.send_interval_max_s) + std::chrono::seconds(1);
   GatewayBeatSender beat(static_cast<pid_t>(options.parent_pid));
   while (
       shell::stop_requests() == 0 &&
       (options.parent_pid == 0 || static_cast<std::uint32_t>(::getppid()) == options.parent_pid)) {
     (*gateway)->relay(kTimeout, utc_now());
-    beat.step(std::chrono::steady_clock::now());
+    const SteadyTime now = std::chrono::steady_clock::now();
+    if (beat.is_due(now)) beat.send((*gateway)->robots_by_topics(utc_now(), recent), now);
   }
   using link::RefusalReason;
   const link::RefusalCounters& refused = (*gateway)->refused();

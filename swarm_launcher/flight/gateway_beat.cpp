@@ -15,6 +15,11 @@ namespace {
 
 int open_socket() { return ::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0); }
 
+struct Beat {
+  pid_t gateway;
+  std::uint32_t robots;
+};
+
 /// An abstract name: no file that others remove or that a full disk refuses.
 struct Address {
   explicit Address(pid_t launcher) {
@@ -38,26 +43,25 @@ GatewayBeatReceiver::GatewayBeatReceiver(pid_t launcher) : fd_(open_socket()) {
 
 GatewayBeatReceiver::~GatewayBeatReceiver() { ::close(fd_); }
 
-bool GatewayBeatReceiver::take(pid_t gateway) {
-  bool is_received = false;
-  pid_t sender = 0;
+std::optional<std::uint32_t> GatewayBeatReceiver::take(pid_t gateway) {
+  std::optional<std::uint32_t> robots;
+  Beat beat{};
   ssize_t size = 0;
-  while ((size = ::recv(fd_, &sender, sizeof sender, 0)) >= 0) {
-    is_received = is_received || (size == sizeof sender && sender == gateway);
+  while ((size = ::recv(fd_, &beat, sizeof beat, 0)) >= 0) {
+    if (size == sizeof beat && beat.gateway == gateway) robots = beat.robots;
   }
-  return is_received;
+  return robots;
 }
 
 GatewayBeatSender::GatewayBeatSender(pid_t launcher) : launcher_(launcher), fd_(open_socket()) {}
 
 GatewayBeatSender::~GatewayBeatSender() { ::close(fd_); }
 
-void GatewayBeatSender::step(SteadyTime now) {
-  if (now < next_) return;
+void GatewayBeatSender::send(std::uint32_t robots, SteadyTime now) {
   next_ = now + kGatewayBeatPeriod;
   const Address address(launcher_);
-  const pid_t self = ::getpid();
-  (void)::sendto(fd_, &self, sizeof self, MSG_NOSIGNAL, address.get(), address.size);
+  const Beat beat{.gateway = ::getpid(), .robots = robots};
+  (void)::sendto(fd_, &beat, sizeof beat, MSG_NOSIGNAL, address.get(), address.size);
 }
 
 }  // namespace swarm::launcher

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
+#include <optional>
 
 #include <sys/types.h>
 
@@ -23,8 +25,9 @@ class GatewayBeatReceiver {
   GatewayBeatReceiver(const GatewayBeatReceiver&) = delete;
   GatewayBeatReceiver& operator=(const GatewayBeatReceiver&) = delete;
 
-  /// Whether the gateway with this process id has sent a beat since the last call.
-  bool take(pid_t gateway);
+  /// The newest beat that the gateway with this process id has sent since the last call: the number
+  /// of robots behind it whose states it receives. Empty if there is none.
+  std::optional<std::uint32_t> take(pid_t gateway);
 
  private:
   int fd_;
@@ -38,8 +41,10 @@ class GatewayBeatSender {
   GatewayBeatSender(const GatewayBeatSender&) = delete;
   GatewayBeatSender& operator=(const GatewayBeatSender&) = delete;
 
-  /// Sends a beat if one is due. Call it often.
-  void step(SteadyTime now);
+  /// Whether the next beat is due.
+  bool is_due(SteadyTime now) const { return now >= next_; }
+  /// Sends a beat. `robots`: behind the gateway, whose states it receives.
+  void send(std::uint32_t robots, SteadyTime now);
 
  private:
   pid_t launcher_;

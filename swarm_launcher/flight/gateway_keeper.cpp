@@ -18,7 +18,7 @@ Result<void> GatewayKeeper::start(SteadyTime now) {
   if (!pid) return tl::unexpected(pid.error());
   pid_ = *pid;
   is_killed_ = false;
-  started_at_ = sign_of_life_ = now;
+  sign_of_life_ = now;
   restarts_.on_start(now);
   return {};
 }
@@ -26,7 +26,8 @@ Result<void> GatewayKeeper::start(SteadyTime now) {
 std::optional<LogEvent> GatewayKeeper::on_exit(pid_t pid, SteadyTime now) {
   if (pid_ == 0 || pid != pid_) return std::nullopt;
   pid_ = 0;
-  is_up_ = is_connected_ = false;
+  is_up_ = false;
+  robots_received_ = 0;
   return wait_for_restart("the gateway ended, see logs/gateway.log", now);
 }
 
@@ -44,13 +45,14 @@ std::optional<LogEvent> GatewayKeeper::step(SteadyTime now) {
 
 // Its end is handled as any other. A launcher that was suspended finds the beats of that time.
 std::optional<LogEvent> GatewayKeeper::watch(SteadyTime now) {
-  if (means_.is_beat(pid_)) {
+  if (const auto robots = means_.beat(pid_)) {
     is_up_ = true;
+    robots_received_ = *robots;
     sign_of_life_ = now;
   }
-  is_connected_ = is_up_ && now - started_at_ >= kReconnect;
   if (is_killed_ || now - sign_of_life_ <= (is_up_ ? kSilence : kFirstBeat)) return std::nullopt;
-  is_up_ = is_connected_ = false;
+  is_up_ = false;
+  robots_received_ = 0;
   is_killed_ = true;
   means_.kill(pid_);
   return LogEvent{.warning = true,

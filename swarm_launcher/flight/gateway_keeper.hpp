@@ -3,6 +3,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
@@ -27,8 +28,9 @@ class GatewayKeeper {
   struct Means {
     std::function<Result<pid_t>()> start;
     std::function<void(pid_t)> end;
-    std::function<void(pid_t)> kill;     ///< also one that hangs
-    std::function<bool(pid_t)> is_beat;  ///< whether it has sent a beat since the last call
+    std::function<void(pid_t)> kill;  ///< also one that hangs
+    /// The newest beat since the last call: the number of robots that it receives by topics.
+    std::function<std::optional<std::uint32_t>(pid_t)> beat;
   };
   /// Without a beat for longer, a gateway hangs: robots that do not receive each other meet soon.
   static constexpr Duration kSilence = std::chrono::seconds(2);
@@ -46,10 +48,9 @@ class GatewayKeeper {
   std::optional<LogEvent> on_exit(pid_t pid, SteadyTime now);
   /// Starts the gateway again if that is due, and kills it if it hangs: an event of that, too.
   std::optional<LogEvent> step(SteadyTime now);
-  /// Robots behind a restarted gateway were matched with it again after 11 s, in a flight of 60.
-  static constexpr Duration kReconnect = std::chrono::seconds(20);
-  /// Whether it runs, and for long enough to be matched with all robots, as of the last step().
-  bool is_connected() const { return is_connected_; }
+  /// The number of robots behind the gateway whose states it receives, as of the last step(); 0
+  /// while it does not run. A gateway that was restarted is matched with them again one by one.
+  std::uint32_t robots_received() const { return robots_received_; }
 
  private:
   LogEvent wait_for_restart(const std::string& reason, SteadyTime now);
@@ -59,9 +60,8 @@ class GatewayKeeper {
   RestartPolicy restarts_;
   pid_t pid_ = 0;       ///< 0: it does not run
   bool is_up_ = false;  ///< it has sent a beat since its start
-  bool is_connected_ = false;
+  std::uint32_t robots_received_ = 0;
   bool is_killed_ = false;
-  SteadyTime started_at_{};
   SteadyTime sign_of_life_{};  ///< its start, or its last beat
   std::optional<SteadyTime> restart_at_;
 };

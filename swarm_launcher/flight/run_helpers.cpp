@@ -20,8 +20,8 @@ RunHelpers::RunHelpers(const FlightChoices& how, const std::filesystem::path& ru
         GatewayKeeper::Means{.start = [run_dir] { return start_gateway(run_dir); },
                              .end = [](pid_t pid) { ::kill(pid, SIGTERM); },
                              .kill = [](pid_t pid) { ::kill(pid, SIGKILL); },
-                             .is_beat = [beats = std::make_shared<GatewayBeatReceiver>(::getpid())](
-                                            pid_t pid) { return beats->take(pid); }});
+                             .beat = [beats = std::make_shared<GatewayBeatReceiver>(::getpid())](
+                                         pid_t pid) { return beats->take(pid); }});
   }
 }
 

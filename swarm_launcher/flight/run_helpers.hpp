@@ -22,7 +22,9 @@ class RunHelpers final : public HelperProcesses {
   Result<void> start(SteadyTime now);
   std::optional<LogEvent> on_exit(pid_t pid, SteadyTime now) override;
   std::vector<LogEvent> step(SteadyTime now) override;
-  bool is_gateway_down() const override { return gateway_ && !gateway_->is_connected(); }
+  std::uint32_t robots_of_gateway() const override {
+    return gateway_ ? gateway_->robots_received() : 0;
+  }
   /// The address of the view, as soon as it is known.
   std::optional<std::string> message() override;
   /// Ends the monitors, see Monitors::finish(). The gateway ends with the object.

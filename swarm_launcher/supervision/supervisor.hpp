@@ -117,6 +117,11 @@ class Supervisor {
   Supervisor(const SupervisorOptions& options, SteadyTime now);
 
   std::uint32_t processes() const { return static_cast<std::uint32_t>(processes_.size()); }
+  /// Whether the process of a robot runs and a status of it has come since it fell silent, if ever.
+  bool is_received(RobotId robot, SteadyTime now) const {
+    const Robot& r = robots_.at(robot.value());
+    return runs_for(robot, now) && r.received && !r.silent_since;
+  }
   /// How long the process of a robot has been running; empty: it has ended.
   std::optional<Duration> runs_for(RobotId robot, SteadyTime now) const {
     const Process& p = process_of(robot);

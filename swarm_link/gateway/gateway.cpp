@@ -40,7 +40,8 @@ class ChannelGateway final : public Gateway {
         topics_(std::move(topics)),
         groups_(std::move(groups)),
         batches_(options.topic_cell_size_m),
-        inbox_(options.limits) {}
+        inbox_(options.limits),
+        by_topics_at_(options.limits.robots) {}
 
   void relay(Duration timeout, UtcTime now) override {
     participant_.receive();
@@ -67,6 +68,9 @@ class ChannelGateway final : public Gateway {
     received_.clear();
     for (auto& [cell, topic] : topics_) topic.reader->take(received_);
     inbox_.take_fresh(received_, now, fresh_);
+    for (const RobotStateMessage& state : std::span(fresh_).subspan(from_groups)) {
+      by_topics_at_[state.robot_id] = now;  // the inbox has checked the id
+    }
     inbox_.set_undecodable(undecodable());
     to_groups_ += groups_->publish(std::span(fresh_).subspan(from_groups));
     for (const CellStatesMessage& batch : batches_.sort(fresh_)) {
@@ -77,6 +81,10 @@ class ChannelGateway final : public Gateway {
     }
   }
 
+  std::uint32_t robots_by_topics(UtcTime now, Duration within) const override {
+    return static_cast<std::uint32_t>(std::ranges::count_if(
+        by_topics_at_, [&](UtcTime at) { return at != UtcTime{} && now - at <= within; }));
+  }
   bool in_use() const override { return in_use_; }
   std::uint64_t to_topics() const override { return to_topics_; }
   std::uint64_t to_groups() const override { return to_groups_; }
@@ -105,6 +113,7 @@ class ChannelGateway final : public Gateway {
   std::unique_ptr<GroupTap> tap_;
   CellBatches batches_;
   GatewayInbox inbox_;
+  std::vector<UtcTime> by_topics_at_;  // by robot: the last state that arrived by topics
   std::vector<CellStatesMessage> received_;
   std::vector<RobotStateMessage> fresh_;
   UtcTime looked_at_{};

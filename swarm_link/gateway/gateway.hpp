@@ -37,6 +37,9 @@ class Gateway {
   /// has endpoints on the topics it does not receive the groups at all.
   virtual void relay(Duration timeout, UtcTime now) = 0;
 
+  /// Number of robots whose states arrived by topics within this time: with those that publish
+  /// there it is matched. O(robots).
+  virtual std::uint32_t robots_by_topics(UtcTime now, Duration within) const = 0;
   /// Whether another process has a reader or writer on one of the cell topics.
   virtual bool in_use() const = 0;
   virtual std::uint64_t to_topics() const = 0;  ///< states forwarded

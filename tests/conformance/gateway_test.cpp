@@ -98,6 +98,9 @@ TEST_P(GatewayRun, CarriesStatesBothWaysAndEachOnce) {
     topics->publish(std::vector{state(3, 10)});
     return count(by_groups, 3) > 0;
   }));
+  constexpr std::chrono::seconds kRecent{2};
+  EXPECT_EQ(gateway->robots_by_topics(utc_now(), kRecent), 1U) << "3, and not those of groups";
+  EXPECT_EQ(gateway->robots_by_topics(utc_now() + 2 * kRecent, kRecent), 0U);
 
   eventually([n = 0]() mutable { return ++n > 50; });  // what is under way comes
   by_topics.clear();

@@ -133,9 +133,9 @@ class FakeHelpers final : public HelperProcesses {
   }
   std::vector<LogEvent> step(SteadyTime) override { return std::exchange(next_events, {}); }
   std::optional<std::string> message() override { return std::exchange(next_message, {}); }
-  bool is_gateway_down() const override { return gateway_down; }
+  std::uint32_t robots_of_gateway() const override { return by_gateway; }
 
-  bool gateway_down = false;
+  std::uint32_t by_gateway = 0;  ///< robots that it receives
   std::optional<std::string> next_message;
   std::vector<LogEvent> next_events;
 };

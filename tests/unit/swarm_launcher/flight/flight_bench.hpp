@@ -103,7 +103,8 @@ class FlightBench : public ::testing::Test {
                              .log = *log,
                              .display = display,
                              .recorded = {.last_step = [](RobotId) { return std::nullopt; },
-                                          .in_log = [](RobotId) { return std::nullopt; }}},
+                                          .in_log = [](RobotId) { return std::nullopt; }},
+                             .beats = beat_sender ? &*beat_sender : nullptr},
                  now.steady);
   }
 
@@ -162,6 +163,7 @@ class FlightBench : public ::testing::Test {
   OtherSide others;
   FakeSpawner spawner;
   FakeRequests requests;
+  std::optional<BeatSender> beat_sender;  ///< empty: the launcher sends none
   FakeHelpers helpers;
   FakeDisplay display;
   std::vector<FakeRobot> robots{kRobots};

@@ -2,9 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Processes that hang, and senders that flood the launcher.
 #include <algorithm>
+#include <chrono>
 #include <string>
+#include <thread>
 
 #include "swarm_link/event_names.hpp"
+#include "swarm_link/udp_socket.hpp"
 #include "tests/unit/swarm_launcher/flight/flight_bench.hpp"
 
 namespace swarm::launcher {
@@ -92,6 +95,37 @@ TEST_F(FlightLoopSilence, DisplaysADuplicateIdOnce) {
   const auto first = display.printed.find(shown);
   ASSERT_NE(first, std::string::npos) << display.printed;
   EXPECT_EQ(display.printed.find(shown, first + 1), std::string::npos);
+}
+
+// A gateway that was restarted is matched with the robots behind it one by one. Until then two
+// robots that are well may not receive each other.
+TEST_F(FlightLoopSilence, StatesWhoIsWellOnlyWhileTheGatewayReceivesTheRobotsBehindIt) {
+  if (!link::carries_multicast()) GTEST_SKIP() << "loopback carries no multicast here";
+  const auto receiver = *link::StopReceiver::open({.domain = 217});
+  beat_sender.emplace(*link::StopSender::open({.domain = 217}), 77);
+  options.how.by_gateway = 2;
+  const auto lists_all = [&] {
+    receiver->take();  // those of before
+    run_for(milliseconds(600));
+    for (int i = 0; i < 5000; ++i) {
+      receiver->take();
+      if (!receiver->beats().empty()) return receiver->beats().back().lists_all;
+      std::this_thread::sleep_for(milliseconds(1));
+    }
+    ADD_FAILURE() << "no beat";
+    return false;
+  };
+  helpers.by_gateway = 2;
+  ASSERT_TRUE(run_to_phase(MissionPhase::kRunning));
+
+  EXPECT_TRUE(lists_all());
+  helpers.by_gateway = 1;
+  EXPECT_FALSE(lists_all());
+  robots[1].silent = true;
+  run_for(seconds(4));
+  EXPECT_TRUE(lists_all()) << "the launcher does not receive that one either";
+  helpers.by_gateway = 0;
+  EXPECT_FALSE(lists_all()) << "it does not run";
 }
 
 TEST_F(FlightLoopSilence, LogsWhatHelpersReport) {

@@ -18,30 +18,30 @@ TEST(GatewayBeat, IsReceivedOnceFromTheGatewayThatSentIt) {
   GatewayBeatReceiver launcher(kSelf);
   GatewayBeatSender gateway(kSelf);
   EXPECT_FALSE(launcher.take(kSelf));
-  gateway.step(at(Duration{}));
-  EXPECT_TRUE(launcher.take(kSelf));
+  gateway.send(7, at(Duration{}));
+  EXPECT_EQ(launcher.take(kSelf), 7U);
   EXPECT_FALSE(launcher.take(kSelf));
-  gateway.step(at(kGatewayBeatPeriod));
+  gateway.send(8, at(kGatewayBeatPeriod));
+  gateway.send(9, at(2 * kGatewayBeatPeriod));
+  EXPECT_EQ(launcher.take(kSelf), 9U) << "the newest";
+  gateway.send(9, at(3 * kGatewayBeatPeriod));
   EXPECT_FALSE(launcher.take(kSelf + 1)) << "of one before";
 }
 
-TEST(GatewayBeat, IsSentOnceAPeriod) {
-  GatewayBeatReceiver launcher(kSelf);
+TEST(GatewayBeat, IsDueOnceAPeriod) {
   GatewayBeatSender gateway(kSelf);
-  gateway.step(at(Duration{}));
-  ASSERT_TRUE(launcher.take(kSelf));
-  gateway.step(at(kGatewayBeatPeriod - std::chrono::milliseconds(1)));
-  EXPECT_FALSE(launcher.take(kSelf));
-  gateway.step(at(kGatewayBeatPeriod));
-  EXPECT_TRUE(launcher.take(kSelf));
+  EXPECT_TRUE(gateway.is_due(at(Duration{})));
+  gateway.send(0, at(Duration{}));
+  EXPECT_FALSE(gateway.is_due(at(kGatewayBeatPeriod - std::chrono::milliseconds(1))));
+  EXPECT_TRUE(gateway.is_due(at(kGatewayBeatPeriod)));
 }
 
 TEST(GatewayBeat, BlocksNoGatewayWhoseLauncherDoesNotRead) {
   GatewayBeatSender lonely(kSelf);
-  lonely.step(at(Duration{}));
+  lonely.send(0, at(Duration{}));
   GatewayBeatReceiver launcher(kSelf);
   GatewayBeatSender gateway(kSelf);
-  for (int i = 0; i < 10'000; ++i) gateway.step(at(i * kGatewayBeatPeriod));
+  for (int i = 0; i < 10'000; ++i) gateway.send(0, at(i * kGatewayBeatPeriod));
   EXPECT_TRUE(launcher.take(kSelf));
 }
 

@@ -3,6 +3,7 @@
 #include "swarm_launcher/flight/gateway_keeper.hpp"
 
 #include <cmath>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <utility>
@@ -21,8 +22,8 @@ struct GatewayKeeperTest : testing::Test {
   int starts = 0;
   std::vector<pid_t> ended;
   std::vector<pid_t> killed;
-  bool is_beat = false;     ///< since the last step
-  std::string start_error;  ///< why none can be started
+  std::optional<std::uint32_t> beat;  ///< since the last step
+  std::string start_error;            ///< why none can be started
   SteadyTime now{seconds(1000)};
   std::optional<GatewayKeeper> sut{
       std::in_place,
@@ -35,10 +36,10 @@ struct GatewayKeeperTest : testing::Test {
                            },
                            .end = [this](pid_t child) { ended.push_back(child); },
                            .kill = [this](pid_t child) { killed.push_back(child); },
-                           .is_beat = [this](pid_t) { return std::exchange(is_beat, false); }}};
+                           .beat = [this](pid_t) { return std::exchange(beat, std::nullopt); }}};
 
-  std::optional<LogEvent> step_with_beat(SteadyTime at) {
-    is_beat = true;
+  std::optional<LogEvent> step_with_beat(SteadyTime at, std::uint32_t robots = 0) {
+    beat = robots;
     return sut->step(at);
   }
 };
@@ -93,38 +94,32 @@ TEST_F(GatewayKeeperTest, TriesAgainWhenItCannotBeStarted) {
 }
 
 // It is matched with the robots some seconds after its first beat.
-TEST_F(GatewayKeeperTest, IsConnectedFromAWhileAfterEachStartToItsEnd) {
+TEST_F(GatewayKeeperTest, ReceivesTheRobotsOfItsLastBeatUntilItEnds) {
   ASSERT_TRUE(sut->start(now));
-  step_with_beat(now);
-  EXPECT_FALSE(sut->is_connected());
-  now += GatewayKeeper::kReconnect;
-  step_with_beat(now - milliseconds(1));
-  EXPECT_FALSE(sut->is_connected());
-  step_with_beat(now);
-  EXPECT_TRUE(sut->is_connected());
-  sut->on_exit(pid, now);
-  EXPECT_FALSE(sut->is_connected());
-  now += milliseconds(300);
-  ASSERT_TRUE(sut->step(now));
-  step_with_beat(now + GatewayKeeper::kReconnect - milliseconds(1));
-  EXPECT_FALSE(sut->is_connected()) << "its restart counts";
-}
+  sut->step(now + seconds(20));
+  EXPECT_EQ(sut->robots_received(), 0U);
+  step_with_beat(now + seconds(20), 3);
+  sut->step(now + seconds(21));
+  EXPECT_EQ(sut->robots_received(), 3U);
+  step_with_beat(now + seconds(22), 5);
+  EXPECT_EQ(sut->robots_received(), 5U);
 
-TEST_F(GatewayKeeperTest, IsNotConnectedBeforeItsFirstBeat) {
-  ASSERT_TRUE(sut->start(now));
-  sut->step(now + GatewayKeeper::kReconnect);
-  EXPECT_FALSE(sut->is_connected());
+  sut->on_exit(pid, now + seconds(23));
+  EXPECT_EQ(sut->robots_received(), 0U);
+  ASSERT_TRUE(sut->step(now + seconds(24)));
+  step_with_beat(now + seconds(25), 0);
+  EXPECT_EQ(sut->robots_received(), 0U) << "it is not matched yet";
 }
 
 TEST_F(GatewayKeeperTest, KillsOneThatHangsOnceAndStartsItAgain) {
   ASSERT_TRUE(sut->start(now));
-  step_with_beat(now);
+  step_with_beat(now, 4);
   EXPECT_FALSE(sut->step(now + GatewayKeeper::kSilence));
   now += GatewayKeeper::kSilence + milliseconds(1);
   const auto silent = sut->step(now);
   ASSERT_TRUE(silent);
   EXPECT_EQ(silent->code, "gateway-silent");
-  EXPECT_FALSE(sut->is_connected());
+  EXPECT_EQ(sut->robots_received(), 0U);
   EXPECT_FALSE(sut->step(now + seconds(5))) << "once";
   EXPECT_EQ(killed, std::vector{pid});
 
