@@ -52,7 +52,7 @@ function(swarm_precompile owner)
   endforeach()
 endfunction()
 
-# What runs at the start, at a user's request or at the end of a flight: -O1 takes a quarter less time to compile.
+# What runs at the start, at a user's request, or a few times a second: -O1 takes a quarter less time to compile.
 function(swarm_cold)
   if(SWARM_SANITIZE)
     return()
