@@ -13,6 +13,11 @@
 #include "swarm_core/app/run_dir.hpp"
 
 namespace swarm::launcher {
+namespace {
+
+constexpr Duration kStart = std::chrono::seconds(30);
+
+}  // namespace
 
 HostProcesses::HostProcesses(const HostOffer& offer, HostProcessesOptions options)
     : offer_(offer), options_(std::move(options)), queue_(options_.respawns) {
@@ -24,7 +29,7 @@ Result<void> HostProcesses::step() {
   while (const auto child = reap_child()) {
     const auto known = children_.find(child->pid);
     if (known == children_.end()) continue;
-    const std::uint32_t robot = known->second;
+    const std::uint32_t robot = known->second.robot;
     children_.erase(known);
     if (ending_) continue;
     ProcessExit exit = child->exit;
@@ -38,7 +43,15 @@ Result<void> HostProcesses::step() {
 
 void HostProcesses::signal(int number) {
   ending_ = true;
-  for (const auto& [pid, robot] : children_) ::kill(pid, number);
+  for (const auto& [pid, child] : children_) ::kill(pid, number);
+}
+
+void HostProcesses::kill_hung(std::uint32_t process) {
+  const SteadyTime now = std::chrono::steady_clock::now();
+  for (const auto& [pid, child] : children_) {
+    const bool is_meant = child.robot / offer_.per_process == process;
+    if (is_meant && now - child.started_at > kStart) ::kill(pid, SIGKILL);
+  }
 }
 
 Result<void> HostProcesses::start(std::uint32_t robot) {
@@ -64,7 +77,7 @@ Result<void> HostProcesses::start(std::uint32_t robot) {
   const auto log = options_.dir / shell::kLogsFolder / fmt::format("agent-{:05}.log", id);
   const auto pid = start_process(command_line, log);
   if (!pid) return tl::unexpected(pid.error());
-  children_.emplace(*pid, robot);
+  children_.emplace(*pid, Child{.robot = robot, .started_at = std::chrono::steady_clock::now()});
   return {};
 }
 

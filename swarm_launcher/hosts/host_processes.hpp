@@ -18,6 +18,7 @@
 #include "swarm_launcher/hosts/start_queue.hpp"
 #include "swarm_launcher/processes/child_process.hpp"
 #include "swarmflow/core/result.hpp"
+#include "swarmflow/core/time.hpp"
 
 namespace swarm::launcher {
 
@@ -46,6 +47,10 @@ class HostProcesses {
     return std::exchange(exits_, {});
   }
 
+  /// Kills a process that makes no steps, by its number counted from our first, unless it has been
+  /// started within the last half minute: then it may still be joining the bus.
+  void kill_hung(std::uint32_t process);
+
   /// From the first signal on no process is started or restarted.
   void signal(int number);
 
@@ -59,7 +64,11 @@ class HostProcesses {
   const HostOffer& offer_;
   HostProcessesOptions options_;
   StartQueue queue_;
-  std::map<pid_t, std::uint32_t> children_;  // first robot of each process, counted from our first
+  struct Child {
+    std::uint32_t robot = 0;  ///< its first one, counted from our first
+    SteadyTime started_at;
+  };
+  std::map<pid_t, Child> children_;
   std::vector<std::pair<std::uint32_t, ProcessExit>> exits_;
   bool ending_ = false;
 };

@@ -117,6 +117,9 @@ Result<void> fly(HostProcesses& processes, LastSteps& last, LineSocket& socket,
     for (const auto& [robot, is_silent] : last.watch.step(now())) {
       last.send(robot, is_silent, socket);
     }
+    for (const RobotId robot : last.watch.hung(now())) {
+      processes.kill_hung((robot.value() - last.offer.first_robot) / last.offer.per_process);
+    }
     for (const auto& [process, exit] : processes.take_exits()) {
       last.send_of(process, socket);  // first, so that the launcher has it at the exit
       socket.send(nlohmann::json{{"exit", process},

@@ -2,14 +2,25 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "swarm_launcher/hosts/step_watch.hpp"
 
+#include <algorithm>
+#include <cstddef>
 #include <utility>
 
 namespace swarm::launcher {
+namespace {
+
+constexpr Duration kOwnGap = std::chrono::seconds(2);
+
+}  // namespace
 
 std::vector<StepWatch::Change> StepWatch::step(SteadyTime now) {
   std::vector<Change> changes;
   if (now < next_look_) return changes;
   next_look_ = now + kPeriod;
+  // The whole host was suspended, and its robots with it.
+  if (now - std::exchange(looked_at_, now) > kOwnGap) {
+    for (Robot& robot : robots_) robot.stepped_at = now;
+  }
   for (std::uint32_t i = 0; i < robots_.size(); ++i) {
     Robot& robot = robots_[i];
     const RobotId id(first_.value() + i);
@@ -27,6 +38,19 @@ std::vector<StepWatch::Change> StepWatch::step(SteadyTime now) {
     }
   }
   return changes;
+}
+
+std::vector<RobotId> StepWatch::hung(SteadyTime now) const {
+  const auto silent = std::ranges::count_if(robots_, &Robot::is_reported);
+  std::vector<RobotId> hung;
+  if (2 * static_cast<std::size_t>(silent) > robots_.size()) return hung;
+  for (std::uint32_t i = 0; i < robots_.size(); ++i) {
+    const Robot& robot = robots_[i];
+    if (robot.is_silent && robot.is_reported && now - robot.stepped_at >= kHung) {
+      hung.emplace_back(first_.value() + i);
+    }
+  }
+  return hung;
 }
 
 }  // namespace swarm::launcher

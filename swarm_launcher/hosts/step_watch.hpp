@@ -35,6 +35,11 @@ class StepWatch {
   /// never made one is not among them.
   std::vector<Change> step(SteadyTime now);
 
+  /// Robots that have made no step for kHung: their processes are to be killed, as the launcher
+  /// kills those of its own host. None where more than half are silent: the machine is overloaded.
+  static constexpr Duration kHung = std::chrono::seconds(10);
+  std::vector<RobotId> hung(SteadyTime now) const;
+
  private:
   struct Robot {
     UtcTime last{};
@@ -49,6 +54,7 @@ class StepWatch {
   Duration silent_;
   std::vector<Robot> robots_;
   SteadyTime next_look_{};
+  SteadyTime looked_at_{};
 };
 
 }  // namespace swarm::launcher

@@ -84,6 +84,14 @@ class StepWatchTest : public testing::Test {
     return ids;
   }
 
+  std::vector<int> hung_at(int ms) {
+    std::vector<int> ids;
+    for (const RobotId robot : sut_.hung(SteadyTime(std::chrono::hours(1) + milliseconds(ms)))) {
+      ids.push_back(static_cast<int>(robot.value()));
+    }
+    return ids;
+  }
+
  private:
   UtcTime utc_now_{std::chrono::hours(400'000)};
   shell::SharedSteps steps_ = shell::SharedSteps::make(RobotId(5), 3).value();
@@ -101,10 +109,10 @@ TEST_F(StepWatchTest, FindsARobotWithoutStepsOnceUntilItMakesOne) {
 
   EXPECT_EQ(changes_at(1250), Ids{6});
   EXPECT_EQ(changes_at(2250), Ids{5});
-  EXPECT_EQ(changes_at(9000), Ids{});
+  EXPECT_EQ(changes_at(4000), Ids{});
   step(6);
-  EXPECT_EQ(changes_at(9250), Ids{});
-  EXPECT_EQ(changes_at(10'500), Ids{6});
+  EXPECT_EQ(changes_at(4250), Ids{});
+  EXPECT_EQ(changes_at(5500), Ids{6});
 }
 
 // A restarted process makes steps before its status arrives.
@@ -120,6 +128,32 @@ TEST_F(StepWatchTest, ReportsARobotThatHasMadeStepsAgainForFiveSeconds) {
   EXPECT_EQ(changes_at(7000), Ids{-6});
   step(6);
   EXPECT_EQ(changes_at(7500), Ids{});
+}
+
+// Robots 5 to 7.
+TEST_F(StepWatchTest, FindsThatARobotHangsAfterTenSeconds) {
+  for (const std::uint32_t robot : {5U, 6U, 7U}) step(robot);
+  changes_at(0);
+  for (int ms = 500; ms <= 12'000; ms += 500) {
+    step(5);
+    step(7);
+    changes_at(ms);
+    EXPECT_EQ(hung_at(ms), ms < 10'000 ? Ids{} : Ids{6}) << ms;
+  }
+  for (int ms = 12'500; ms <= 23'000; ms += 500) {
+    step(5);
+    changes_at(ms);
+  }
+  EXPECT_EQ(hung_at(23'000), Ids{}) << "most are silent";
+}
+
+TEST_F(StepWatchTest, CountsAnewAfterTheHostWasSuspended) {
+  for (const std::uint32_t robot : {5U, 6U, 7U}) step(robot);
+  changes_at(0);
+  changes_at(500);
+
+  EXPECT_EQ(changes_at(60'000), Ids{});
+  EXPECT_EQ(hung_at(60'000), Ids{});
 }
 
 TEST_F(StepWatchTest, LooksFourTimesASecond) {
