@@ -86,8 +86,8 @@ std::optional<LastKnown> FallenRobots::newest_of(RobotId robot, const FlightTime
 /// An audit has the body of a dead robot where its log ends. The log may lack the last records,
 /// which the process had not handed to the disk: this event has the last step.
 void FallenRobots::report_last_step(RobotId robot, const FlightTime& now) {
-  const std::optional<LastKnown> known = last_step(robot, now);
-  if (!known || !known->is_last || !known->command_mps) return;
+  const std::optional<LastKnown> known = newest_of(robot, now);
+  if (!known || !known->is_last || !known->command_mps) return;  // or a status that is newer
   const robot_log::LastStep step{.robot = robot,
                                  .stamp = known->at,
                                  .position_m = known->position_m,
