@@ -53,16 +53,16 @@ bool FallenRobots::is_starting(RobotId robot, SteadyTime now) const {
   return runs_for && *runs_for < kStarting;
 }
 
-/// Whether no step follows this one: the process of a robot on this host has ended or is frozen. If
-/// it was started again it has not made a step yet.
+/// Whether a robot on this host does not drive on from this step: its process has ended, is frozen,
+/// has been started again and made no step yet, or the robot stands.
 bool FallenRobots::is_last(RobotId robot, const LastKnown& step, const FlightTime& now) const {
   const Duration age = now.utc - step.at;
   const std::optional<Duration> runs_for = here_.runs_for(robot, now.steady);
   return !runs_for || *runs_for < age || age > longest_between_steps(mission_) || stands(step);
 }
 
-/// A stamp of the future would outrank each status. A robot on another host may have driven on
-/// unless that host has denied it: then its motion since is unknown.
+/// A stamp of the future would outrank each status. Of a robot on another host that host reports
+/// whether this is its last step.
 std::optional<LastKnown> FallenRobots::last_step(RobotId robot, const FlightTime& now) const {
   std::optional<LastKnown> known = recorded_.last_step(robot);
   if (!known) return std::nullopt;

@@ -88,6 +88,7 @@ TEST(SharedSteps, SurviveTheProcessThatMadeThem) {
     if (!steps) ::_exit(9);
     for (std::uint32_t number = 1; number < 1'000'000'000; ++number) {
       steps->record(RobotId(1), step_of(number));
+      if (number % 64 == 0) ::usleep(50);  // so that some reads are not overtaken
       if (number == 1000 && ::write(ready[1], "x", 1) != 1) ::_exit(9);
     }
     ::_exit(0);
@@ -98,7 +99,7 @@ TEST(SharedSteps, SurviveTheProcessThatMadeThem) {
   ::close(ready[0]);
   int read = 0;
   const auto limit = std::chrono::steady_clock::now() + std::chrono::seconds(20);
-  // While it writes as fast as it can, and overtakes some reads.
+  // While it writes in bursts as fast as it can, and overtakes some reads.
   while (read < 1000 && std::chrono::steady_clock::now() < limit) {
     for (const robot_log::Step& step : sut.last(RobotId(1))) {
       EXPECT_EQ(step.stamp, step_of(step.plan_version).stamp);
