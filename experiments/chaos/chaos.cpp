@@ -92,7 +92,7 @@ void print_json(const ChaosOptions& options, const ChaosMeans& means, const Chao
                                        {"left_out", means.left_out},
                                        {"lost", result.lost},
                                        {"failures", result.failures}};
-  std::puts(json.dump(2).c_str());
+  std::puts(json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
 }
 
 void print_text(const ChaosMeans& means, const ChaosResult& result) {

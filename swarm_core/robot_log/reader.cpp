@@ -333,7 +333,13 @@ class FileReader {
     // The checksum covers the record's content up to itself.
     const View signed_part = content.first(content.size() - get.rest().size());
     const auto crc = get.number<std::uint32_t>();
-    if (!get.good() || (crc != 0 && crc_of(signed_part) != crc)) return false;
+    if (!get.good()) return false;
+    if (crc != 0 && crc_of(signed_part) != crc) {
+      // With a length that is right the damage costs this attachment alone.
+      if (!could_follow(after_)) return false;
+      ++damage_.damaged;
+      return true;
+    }
     attachment.data.assign(data.begin(), data.end());
     if (handlers_.attachment) handlers_.attachment(attachment);
     return true;

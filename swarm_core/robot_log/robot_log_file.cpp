@@ -194,15 +194,11 @@ std::optional<RobotRecord> decode(const mcap::Message& message, const mcap::Chan
 Result<Damage> read_records(const std::filesystem::path& file,
                             const std::function<void(const Record&)>& take, UtcTime from) {
   std::uint64_t malformed = 0;
-  std::uint64_t lost = 0;
-  std::uint32_t expected = 0;
+  LostRecords lost;
   const auto read = mcap::read(file, {.message =
                                           [&](const mcap::Message& message,
                                               const mcap::Channel& channel, const mcap::Schema&) {
-                                            // An incarnation begins at 0.
-                                            if (message.sequence > expected)
-                                              lost += message.sequence - expected;
-                                            expected = message.sequence + 1;
+                                            lost.add(message.sequence);
                                             if (const auto record = decode(message, channel)) {
                                               take(record->record);
                                             } else {
@@ -213,7 +209,7 @@ Result<Damage> read_records(const std::filesystem::path& file,
   if (!read) return tl::unexpected(read.error());
   Damage damage{*read};
   damage.damaged += malformed;
-  damage.lost = lost;
+  damage.lost = lost.count();
   return damage;
 }
 
@@ -221,7 +217,8 @@ Result<Damage> read_records(const std::filesystem::path& file,
 /// that does not exist is no error: the robot had not recorded a step.
 Result<std::vector<Step>> last_steps(const std::filesystem::path& file, UtcTime from) {
   std::vector<Step> last;
-  if (!std::filesystem::exists(file)) return last;
+  std::error_code unreadable;  // as of a disk that is gone: read_records() reports it
+  if (!std::filesystem::exists(file, unreadable) && !unreadable) return last;
   const auto keep_steps = [&](const Record& record) {
     const auto* step = std::get_if<Step>(&record);
     if (step == nullptr) return;

@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -112,6 +113,26 @@ struct Damage : mcap::Damage {
   /// that damage hides. An incarnation begins with number 0.
   std::uint64_t lost = 0;
 };
+
+/// Counts the records that the numbering of a robot log lacks, by the numbers of its messages in
+/// the order of the file.
+class LostRecords {
+ public:
+  void add(std::uint32_t sequence) {
+    if (sequence > expected_) count_ += sequence - expected_;
+    expected_ = sequence + 1;
+  }
+  std::uint64_t count() const { return count_; }
+
+ private:
+  std::uint64_t count_ = 0;
+  std::uint32_t expected_ = 0;  // an incarnation begins at 0
+};
+
+/// The metadata of a merged recording, and in it the number of records that its logs lacked: the
+/// recording numbers its messages anew.
+inline constexpr std::string_view kMergeMetadata = "swarmflow";
+inline constexpr std::string_view kMergeLost = "lost";
 
 /// The robot-log record in a message of any recording; nothing if the message is not one.
 std::optional<RobotRecord> decode(const mcap::Message& message, const mcap::Channel& channel);

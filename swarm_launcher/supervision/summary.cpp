@@ -161,7 +161,8 @@ Result<ExitCode> summarise(const std::filesystem::path& run_dir, const Measureme
                          : empty_summary(own_part(run_dir, measured), audited.error().message);
   const PlansExcess excess = plans_excess(run_dir);
   complete(summary, measured, excess);
-  const std::string text = summary.dump(2) + "\n";
+  // A path in the text of an error may be no UTF-8.
+  const std::string text = summary.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
   const auto written = own ? shell::write_file(file, text) : own;
   const std::string report = write_report(run_dir, audited);
   if (json) {

@@ -60,10 +60,18 @@ void add_unknown_scenes(const RecordedRun& run, std::vector<std::string>& missin
                                 unknown.size() == 1 ? "" : "s", shell::kSceneFile));
 }
 
-/// The planner removes old plans on purpose; the first and the newest have to be there.
+/// The planner removes old plans on purpose; the first and the newest have to be there. Robots name
+/// plans as well: a planner that was killed may not have written those that they followed.
 void add_unknown_plans(const RecordedRun& run, std::vector<std::string>& missing) {
   std::set<std::uint32_t> unknown;
   for (const PlanClock& reading : run.clock) unknown.insert(reading.plan_version);
+  for (const Track& track : run.tracks) {
+    for (const TrackPoint& point : track.points) {
+      if (unknown.empty() || point.plan_version != *unknown.rbegin()) {
+        unknown.insert(point.plan_version);
+      }
+    }
+  }
   unknown.erase(0);
   if (unknown.empty()) return;
   const std::uint32_t newest = *unknown.rbegin();
@@ -72,8 +80,8 @@ void add_unknown_plans(const RecordedRun& run, std::vector<std::string>& missing
   std::erase_if(unknown,
                 [&](std::uint32_t version) { return version > 1 && version < oldest_kept; });
   if (unknown.empty()) return;
-  missing.push_back(fmt::format("{} plan{} that the clock names: version {}{}", unknown.size(),
-                                unknown.size() == 1 ? "" : "s", *unknown.begin(),
+  missing.push_back(fmt::format("{} plan{} that the clock or robots name: version {}{}",
+                                unknown.size(), unknown.size() == 1 ? "" : "s", *unknown.begin(),
                                 unknown.size() == 1 ? "" : " …"));
 }
 
@@ -98,7 +106,7 @@ void add_reported_losses(const RecordedRun& run, std::vector<std::string>& missi
 }  // namespace
 
 std::vector<std::string> missing_evidence(const RecordedRun& run) {
-  std::vector<std::string> missing;
+  std::vector<std::string> missing = run.gaps;
   add_gaps_in_logs(run, missing);
   add_unknown_scenes(run, missing);
   add_unknown_plans(run, missing);

@@ -317,12 +317,28 @@ Result<RecordedRun> read_directory(const std::filesystem::path& run_dir) {
   return run;
 }
 
+/// What a recording lacks. Unlike those of a robot log, its messages are not numbered by robot:
+/// what damage hides is not known.
+std::vector<std::string> gaps_of(const mcap::Damage& damage, const std::string& lost_before) {
+  std::vector<std::string> gaps;
+  if (damage.damaged > 0) {
+    gaps.push_back(fmt::format("what {} damaged place{} of the recording held", damage.damaged,
+                               damage.damaged == 1 ? "" : "s"));
+  }
+  if (!damage.ended) gaps.emplace_back("the end of the recording");
+  if (!lost_before.empty() && lost_before != "0") {
+    gaps.push_back(fmt::format("{} records of the robot logs that were merged", lost_before));
+  }
+  return gaps;
+}
+
 /// Reads a recording in one pass. The mission must be attached before the first robot record, as
 /// merge writes it, since it sets the number of tracks.
 Result<RecordedRun> read_recording(const std::filesystem::path& file) {
   Texts texts;
   std::optional<TrackTable> tracks;
   std::optional<Result<RecordedRun>> run;
+  std::string lost_before;  // records that the merged logs lacked
   const auto damage = mcap::read(
       file,
       {.message =
@@ -338,6 +354,12 @@ Result<RecordedRun> read_recording(const std::filesystem::path& file) {
              if (attachment.name != shell::kMissionFile || run) return;
              run = with_mission(attachment.data, file);
              if (*run) tracks.emplace((*run)->mission);
+           },
+       .metadata =
+           [&](const mcap::Metadata& metadata) {
+             if (metadata.name != robot_log::kMergeMetadata) return;
+             const auto lost = metadata.values.find(std::string(robot_log::kMergeLost));
+             if (lost != metadata.values.end()) lost_before = lost->second;
            }});
   if (!damage) return tl::unexpected(damage.error());
   if (!run) {
@@ -350,6 +372,7 @@ Result<RecordedRun> read_recording(const std::filesystem::path& file) {
   // The reader cannot attribute damaged bytes of a merged file to a robot, so the first robot
   // carries the count: the audit reports the sum.
   if (damage->damaged > 0) (*run)->tracks.front().damaged += damage->damaged;
+  (*run)->gaps = gaps_of(*damage, lost_before);
   for (Track& track : (*run)->tracks) {
     if (track.points.empty()) track.unreadable = "the recording holds nothing of this robot";
   }

@@ -88,6 +88,7 @@ struct RecordedRun {
   std::string launcher_summary{};            ///< text of summary.json
   std::vector<PlanClock> clock{};            ///< the plan's clock as published; stamps ascend
   std::optional<PlanningRecord> planning{};  ///< what the planning method guarantees, if recorded
+  std::vector<std::string> gaps{};           ///< what a recording lacks, a sentence each
 
   /// The final goal of the swarm: that of the newest scene with a goal, else the mission's.
   const Mixture& goal() const;

@@ -52,6 +52,7 @@ Command add_record(CLI::App& program) {
   record->add_option("--duration-s", o->duration_s, "End after this long (default: with the run)")
       ->check(CLI::PositiveNumber);
   return {record, [o]() -> Result<ExitCode> {
+            shell::catch_stop_signals(shell::Hangup::kStop);
             if (auto joinable = check_in_progress(o->run_dir); !joinable) {
               return tl::unexpected(joinable.error());
             }
@@ -121,7 +122,7 @@ Command add_cat(CLI::App& program) {
             if (done->printed == 0 && !o->topics.empty()) {
               std::fputs(no_topic_matches(done->topics).c_str(), stderr);
             }
-            return ExitCode::kOk;
+            return done->damage.damaged > 0 ? ExitCode::kCriteriaNotMet : ExitCode::kOk;
           }};
 }
 
@@ -138,20 +139,19 @@ Command add_replay(CLI::App& program) {
       ->add_option("--rate", o->rate, "Speed: 2 is twice as fast as recorded (default: 1)")
       ->check(CLI::Range(0.01, 1000.0));
   replay_command->add_option("--from", o->from_s, "Begin this many seconds after the first message")
-      ->check(CLI::NonNegativeNumber);
+      ->check(CLI::Range(0.0, 1e9));
   replay_command
       ->add_option("--topics", o->topics,
                    "Only topics with these prefixes, like swarm/,blackbox/step")
       ->delimiter(',');
   replay_command->add_option("--wait-s", o->wait_s, "Wait this long for a receiver (default: 5)")
-      ->check(CLI::NonNegativeNumber);
+      ->check(CLI::Range(0.0, 1e6));
   replay_command->add_option("--domain", o->domain, "DDS domain (default: a free one)")
       ->check(CLI::Range(0, 229));
   replay_command->add_option("--out", o->out, "Run directory (default: runs/replay-<time>)");
   return {replay_command, [o]() -> Result<ExitCode> {
-            const auto done = replay(*o);
-            if (!done) return tl::unexpected(done.error());
-            return ExitCode::kOk;
+            shell::catch_stop_signals(shell::Hangup::kStop);
+            return replay(*o);
           }};
 }
 

@@ -70,7 +70,8 @@ Result<RecordResult> record_bus(const RecordOptions& options) {
     if (now - flushed_at < kFlushEvery) continue;
     flushed_at = now;
     writer->flush();
-    if (std::filesystem::exists(options.run_dir / shell::kSummaryFile)) break;
+    std::error_code unreadable;
+    if (std::filesystem::exists(options.run_dir / shell::kSummaryFile, unreadable)) break;
   }
   const auto finished = writer->finish();
   result.messages = writer->messages();
@@ -93,7 +94,7 @@ std::string to_json(const RecordResult& result) {
                           {"lost", result.states.lost},
                           {"duplicates", result.states.duplicates}}},
                         {"topics", topics}}
-             .dump(2) +
+             .dump(2, ' ', false, nlohmann::json::error_handler_t::replace) +
          "\n";
 }
 

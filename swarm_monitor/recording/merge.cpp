@@ -11,6 +11,7 @@
 
 #include "swarm_core/app/run_directory.hpp"
 #include "swarm_core/robot_log/reader.hpp"
+#include "swarm_core/robot_log/robot_log_file.hpp"
 #include "swarm_core/robot_log/writer.hpp"
 
 namespace swarm::monitor {
@@ -22,17 +23,22 @@ constexpr std::size_t kMaxTextBytes = 256U << 20U;
 /// All messages of several files in memory, sorted by time when they are written.
 class Pile {
  public:
-  Result<mcap::Damage> add(const std::filesystem::path& file) {
-    return mcap::read(file,
-                      {.message = [&](const mcap::Message& message, const mcap::Channel& channel,
-                                      const mcap::Schema& schema) {
-                        entries_.push_back({.log_time_ns = message.log_time_ns,
-                                            .publish_time_ns = message.publish_time_ns,
-                                            .begin = bytes_.size(),
-                                            .size = static_cast<std::uint32_t>(message.data.size()),
-                                            .channel = number_of(channel, schema)});
-                        bytes_.insert(bytes_.end(), message.data.begin(), message.data.end());
-                      }});
+  /// `lost` counts for robot logs, whose records are numbered.
+  Result<robot_log::Damage> add(const std::filesystem::path& file) {
+    robot_log::LostRecords lost;
+    const auto read =
+        mcap::read(file, {.message = [&](const mcap::Message& message, const mcap::Channel& channel,
+                                         const mcap::Schema& schema) {
+                     lost.add(message.sequence);
+                     entries_.push_back({.log_time_ns = message.log_time_ns,
+                                         .publish_time_ns = message.publish_time_ns,
+                                         .begin = bytes_.size(),
+                                         .size = static_cast<std::uint32_t>(message.data.size()),
+                                         .channel = number_of(channel, schema)});
+                     bytes_.insert(bytes_.end(), message.data.begin(), message.data.end());
+                   }});
+    if (!read) return tl::unexpected(read.error());
+    return robot_log::Damage{*read, lost.count()};
   }
 
   void write(mcap::Writer& writer, const std::function<void(double)>& progress) {
@@ -133,27 +139,30 @@ Result<MergeResult> merge_run(const std::filesystem::path& run_dir,
   }
   MergeResult result{.file = out.empty() ? run_dir / "recording.mcap" : out};
   Pile pile;
-  const auto take = [&](const std::filesystem::path& file, std::uint32_t& count) {
+  const auto take = [&](const std::filesystem::path& file, std::uint32_t& count) -> std::uint64_t {
     const auto damage = pile.add(file);
     if (!damage) {
       ++result.damaged;  // not a recording at all
-      return;
+      return 0;
     }
     ++count;
     result.damaged += damage->damaged;
     result.unended += damage->ended ? 0 : 1;
+    return damage->lost;
   };
-  for (const auto& box : boxes) take(box, result.boxes);
+  for (const auto& box : boxes) result.lost += take(box, result.boxes);
   for (const auto& recording : recordings) take(recording, result.recordings);
 
   auto writer = mcap::Writer::create(result.file);
   if (!writer) return tl::unexpected(writer.error());
   const std::int64_t begin_ns = pile.begin_ns();
-  writer->add(mcap::Metadata{.name = "swarmflow",
-                             .values = {{"version", SWARM_VERSION},
-                                        {"boxes", fmt::format("{}", result.boxes)},
-                                        {"unended", fmt::format("{}", result.unended)},
-                                        {"damaged", fmt::format("{}", result.damaged)}}});
+  writer->add(mcap::Metadata{
+      .name = std::string(robot_log::kMergeMetadata),
+      .values = {{"version", SWARM_VERSION},
+                 {"boxes", fmt::format("{}", result.boxes)},
+                 {"unended", fmt::format("{}", result.unended)},
+                 {"damaged", fmt::format("{}", result.damaged)},
+                 {std::string(robot_log::kMergeLost), fmt::format("{}", result.lost)}}});
   for (const auto& file : files_in(run_dir, is_attached)) {
     const auto text = shell::read_file(file, kMaxTextBytes);
     if (!text) continue;
@@ -171,8 +180,9 @@ Result<MergeResult> merge_run(const std::filesystem::path& run_dir,
 std::string to_json(const MergeResult& result) {
   return nlohmann::json{{"file", result.file.string()}, {"messages", result.messages},
                         {"boxes", result.boxes},        {"recordings", result.recordings},
-                        {"unended", result.unended},    {"damaged", result.damaged}}
-             .dump(2) +
+                        {"unended", result.unended},    {"damaged", result.damaged},
+                        {"lost", result.lost}}
+             .dump(2, ' ', false, nlohmann::json::error_handler_t::replace) +
          "\n";
 }
 

@@ -18,6 +18,7 @@ struct MergeResult {
   std::uint32_t boxes = 0;       ///< that could be read
   std::uint32_t unended = 0;     ///< files whose writers were killed
   std::uint64_t damaged = 0;     ///< stretches of bytes that are not records
+  std::uint64_t lost = 0;        ///< records that the numbering of the robot logs lacks
   std::uint32_t recordings = 0;  ///< of the bus
 };
 

@@ -97,7 +97,7 @@ std::string summary_of(const Score& score) {
 
 /// Makes a run directory like a launcher's, waits for receivers, publishes every message at its
 /// time, and writes the summary, by which recorders and views of the replay end.
-Result<void> replay(const ReplayOptions& options) {
+Result<ExitCode> replay(const ReplayOptions& options) {
   const auto score = read_score(options.file, options.from_s, options.topics);
   if (!score) return tl::unexpected(score.error());
   const link::Meeting star{.relays = 1};
@@ -107,7 +107,9 @@ Result<void> replay(const ReplayOptions& options) {
   if (!lock) return tl::unexpected(lock.error());
   const auto dir = shell::make_run_dir(options.out, "replay");
   if (!dir) return tl::unexpected(dir.error());
-  if (auto written = write_attachments(*score, *dir); !written) return written;
+  if (auto written = write_attachments(*score, *dir); !written) {
+    return tl::unexpected(written.error());
+  }
   const shell::RunInfo run{.domain = lock->domain(),
                            .relays = 1,
                            .channel = Channel::kGroups,
@@ -115,7 +117,9 @@ Result<void> replay(const ReplayOptions& options) {
                            .is_replay = true};
   auto cast = Cast::join(run);
   if (!cast) return tl::unexpected(cast.error());
-  if (auto written = shell::write_run_info(*dir, run); !written) return written;
+  if (auto written = shell::write_run_info(*dir, run); !written) {
+    return tl::unexpected(written.error());
+  }
   std::fprintf(stderr, "run directory: %s\n%zu messages, %llu of other topics left out\n",
                dir->c_str(), score->messages.size(),
                static_cast<unsigned long long>(score->foreign));
@@ -146,10 +150,15 @@ Result<void> replay(const ReplayOptions& options) {
     std::this_thread::sleep_for(kStep);
   }
   if (auto written = shell::write_file(*dir / shell::kSummaryFile, summary_of(*score)); !written) {
-    return written;
+    return tl::unexpected(written.error());
   }
-  if (refused == 0) return {};
-  return fail(ErrorCode::kEnvironment, fmt::format("DDS refused {} messages", refused));
+  if (refused > 0) {
+    return fail(ErrorCode::kEnvironment, fmt::format("DDS refused {} messages", refused));
+  }
+  if (score->damaged == 0) return ExitCode::kOk;
+  std::fprintf(stderr, "%llu damaged places left out\n",
+               static_cast<unsigned long long>(score->damaged));
+  return ExitCode::kCriteriaNotMet;
 }
 
 }  // namespace swarm::monitor

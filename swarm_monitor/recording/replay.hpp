@@ -51,7 +51,8 @@ struct ReplayOptions {
 
 /// Publishes a recording on a bus of its own, as launcher and planner did, with a run directory by
 /// which others join as they join a run: record, view, or an agent. The time of sending is that of
-/// the replay; stamps inside messages stay as they were.
-Result<void> replay(const ReplayOptions& options);
+/// the replay; stamps inside messages stay as they were. kCriteriaNotMet if places of the file were
+/// damaged, whose messages are left out.
+Result<ExitCode> replay(const ReplayOptions& options);
 
 }  // namespace swarm::monitor

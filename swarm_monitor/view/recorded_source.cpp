@@ -111,16 +111,23 @@ void RecordedSource::make_events() {
   for (const RunEvent& event : run_.events) events_.push_back(event_json(event));
 }
 
-/// One row per second with the smallest gap in that second; latency and rate are not in the logs.
+/// One row per second with the smallest gap in that second, or fewer in a long recording: the stamp
+/// of a damaged record may lie years ahead. Latency and rate are not in the logs.
 void RecordedSource::make_series() {
+  constexpr double kMostRows = 20'000.0;
   const Clearance clearance = robot_clearance(run_.tracks);
-  const auto seconds = static_cast<std::size_t>(std::ceil(end_s_)) + 1;
-  for (std::size_t i = 0; i < seconds; ++i) {
+  const auto step_s = static_cast<std::size_t>(std::clamp(std::ceil(end_s_ / kMostRows), 1.0, 1e9));
+  const auto rows =
+      static_cast<std::size_t>(std::ceil(std::min(end_s_, 1e9) / static_cast<double>(step_s))) + 1;
+  for (std::size_t k = 0; k < rows; ++k) {
+    const std::size_t i = k * step_s;
     SeriesRow row{.time_s = static_cast<double>(i),
                   .nearest_gap_m = std::numeric_limits<double>::quiet_NaN(),
                   .latency_ms = std::numeric_limits<double>::quiet_NaN(),
                   .rate_hz = std::numeric_limits<double>::quiet_NaN()};
-    if (i < clearance.by_window_m.size()) row.nearest_gap_m = clearance.by_window_m[i];
+    for (std::size_t s = i; s < std::min(i + step_s, clearance.by_window_m.size()); ++s) {
+      row.nearest_gap_m = std::fmin(row.nearest_gap_m, clearance.by_window_m[s]);
+    }
     for (const Track& track : run_.tracks) {
       const std::size_t at = index_at(track.points, row.time_s);
       if (at == track.points.size()) continue;

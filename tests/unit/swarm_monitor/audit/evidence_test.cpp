@@ -77,9 +77,30 @@ TEST(MissingEvidence, ArePlansThatTheClockNamesButForOldOnes) {
   }
   EXPECT_EQ(missing_evidence(run), Texts{});
   run.plans.pop_back();
-  EXPECT_EQ(missing_evidence(run), Texts{"1 plan that the clock names: version 150"});
+  EXPECT_EQ(missing_evidence(run), Texts{"1 plan that the clock or robots name: version 150"});
   run.plans.erase(run.plans.begin());
-  EXPECT_EQ(missing_evidence(run), Texts{"2 plans that the clock names: version 1 …"});
+  EXPECT_EQ(missing_evidence(run), Texts{"2 plans that the clock or robots name: version 1 …"});
+}
+
+// A planner that was killed while the disk was full wrote neither the plan nor its clock.
+TEST(MissingEvidence, ArePlansThatRobotsFollowed) {
+  RecordedRun run = run_of(2);
+  for (const std::uint32_t v : {1, 3}) {
+    run.clock.push_back({.plan_version = v});
+    run.plans.push_back({v, a_plan()});
+  }
+  for (const std::uint32_t v : {0, 1, 2, 3}) {
+    TrackPoint point;
+    point.plan_version = v;
+    run.tracks[1].points.push_back(point);
+  }
+  EXPECT_EQ(missing_evidence(run), Texts{"1 plan that the clock or robots name: version 2"});
+}
+
+TEST(MissingEvidence, IsWhatARecordingLacks) {
+  RecordedRun run = run_of(1);
+  run.gaps = {"the end of the recording"};
+  EXPECT_EQ(missing_evidence(run), Texts{"the end of the recording"});
 }
 
 TEST(MissingEvidence, IsWhatProcessesReportedAsLost) {

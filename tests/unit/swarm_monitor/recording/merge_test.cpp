@@ -3,13 +3,17 @@
 #include "swarm_monitor/recording/merge.hpp"
 
 #include <fstream>
+#include <iterator>
 #include <map>
+#include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
 #include "swarm_core/robot_log/reader.hpp"
 #include "swarm_core/robot_log/robot_log_file.hpp"
+#include "swarm_monitor/audit/audit.hpp"
 #include "swarm_monitor/audit/recorded_run.hpp"
 #include "swarm_monitor/recording/bus_tap.hpp"
 #include "swarm_monitor/recording/live_recorder.hpp"
@@ -146,6 +150,40 @@ TEST(Merge, GoesOnPastFilesThatAreDamaged) {
   EXPECT_EQ(run->tracks[1].unreadable, "the recording holds nothing of this robot");
 }
 
+/// Overwrites three bytes of a file.
+void damage(const std::filesystem::path& path, std::streamoff at) {
+  std::fstream file(path, std::ios::in | std::ios::out | std::ios::binary);
+  file.seekp(at);
+  file.write("\x01\x02\x03", 3);
+}
+
+TEST(Merge, MakesNoGoodRunOfDamagedLogs) {
+  SyntheticRun files(2);
+  files.write_good_run();
+  damage(robot_log::file_of(files.dir(), RobotId(1)), 4000);  // behind its schemas
+  const auto merged = merge_run(files.dir(), {});
+  ASSERT_TRUE(merged) << merged.error().message;
+  EXPECT_EQ(merged->lost, 1U);
+
+  EXPECT_EQ(audit_run(merged->file).value().reasons,
+            std::vector<std::string>{"missing: 1 records of the robot logs that were merged"});
+}
+
+TEST(Merge, IsNoGoodRunOnceItIsDamaged) {
+  SyntheticRun files(2);
+  files.write_good_run();
+  files.write_file("summary.json", "{\"marker\": 1}\n");  // the last attachment
+  const auto merged = merge_run(files.dir(), {});
+  ASSERT_TRUE(merged) << merged.error().message;
+  EXPECT_TRUE(audit_run(merged->file).value().ok());
+  std::ifstream file(merged->file, std::ios::binary);
+  const std::string bytes((std::istreambuf_iterator<char>(file)), {});
+  damage(merged->file, static_cast<std::streamoff>(bytes.find("marker")));
+
+  EXPECT_EQ(audit_run(merged->file).value().reasons,
+            std::vector<std::string>{"missing: what 1 damaged place of the recording held"});
+}
+
 TEST(Merge, DoesNotOverwriteARecording) {
   SyntheticRun files(1);
   files.write(0, {.positions_m = straight({5, 5}, {6, 5}, 5)});
@@ -165,14 +203,25 @@ TEST(Merge, ReportsADirectoryThatIsNoRun) {
 }
 
 TEST(Merge, ReportsItsCountersAsJson) {
-  const auto json = nlohmann::json::parse(to_json(MergeResult{
-      .file = "a.mcap", .messages = 5, .boxes = 4, .unended = 3, .damaged = 2, .recordings = 1}));
+  const auto json = nlohmann::json::parse(to_json(MergeResult{.file = "a.mcap",
+                                                              .messages = 5,
+                                                              .boxes = 4,
+                                                              .unended = 3,
+                                                              .damaged = 2,
+                                                              .lost = 6,
+                                                              .recordings = 1}));
   EXPECT_EQ(json, (nlohmann::json{{"file", "a.mcap"},
                                   {"messages", 5},
                                   {"boxes", 4},
                                   {"unended", 3},
                                   {"damaged", 2},
+                                  {"lost", 6},
                                   {"recordings", 1}}));
+}
+
+TEST(Merge, ReportsAPathThatIsNotUtf8) {
+  const auto json = nlohmann::json::parse(to_json(MergeResult{.file = "caf\xe9.mcap"}));
+  EXPECT_EQ(json["file"], "caf\xef\xbf\xbd.mcap");
 }
 
 TEST(RecordResult, HasAnObjectOfTopicsAlsoIfNothingWasReceived) {
