@@ -20,6 +20,15 @@ Obstacle shifted(const Obstacle& obstacle, const Vec2& by_m) {
   return std::get<Polygon>(obstacle).shifted(by_m);
 }
 
+/// Whether receivers accept an obstacle at this place (scene_check.cpp). False for NaN.
+bool is_within_limits(const Obstacle& obstacle) {
+  const auto is_place = [](const Vec2& p) {
+    return p.cwiseAbs().maxCoeff() <= Scene::kMaxCoordinate_m;
+  };
+  if (const auto* circle = std::get_if<Circle>(&obstacle)) return is_place(circle->center_m);
+  return std::ranges::all_of(std::get<Polygon>(obstacle).vertices_m(), is_place);
+}
+
 std::size_t vertices_of(const Obstacle& obstacle) {
   const auto* polygon = std::get_if<Polygon>(&obstacle);
   return polygon == nullptr ? 0 : polygon->vertices_m().size();
@@ -54,7 +63,8 @@ Result<void> make(Scene& scene, const AddObstacle& add, const World&, UtcTime) {
 }
 
 /// A move starts from the present position, which also ends a move under way. Speed is constant
-/// over the whole move.
+/// over the whole move. Receivers would refuse an obstacle beyond their limits, and with it every
+/// later scene.
 Result<void> make(Scene& scene, const MoveObstacle& move, const World& mission_world, UtcTime now) {
   const auto found = find(scene, move.obstacle, mission_world);
   if (!found) return tl::unexpected(found.error());
@@ -62,11 +72,20 @@ Result<void> make(Scene& scene, const MoveObstacle& move, const World& mission_w
   obstacle.shape = obstacle.at(now);
   obstacle.velocity_mps = Vec2::Zero();
   obstacle.moving_from = obstacle.moving_until = now;
-  if (move.over_s > 0.0) {
+  const Duration over = from_seconds(move.over_s);
+  const Obstacle moved = shifted(obstacle.shape, move.by_m);
+  const bool is_even = over > Duration::zero();
+  if (is_even) {
     obstacle.velocity_mps = move.by_m / move.over_s;
-    obstacle.moving_until = now + from_seconds(move.over_s);
+    obstacle.moving_until = now + over;
   } else {
-    obstacle.shape = shifted(obstacle.shape, move.by_m);
+    obstacle.shape = moved;
+  }
+  if (!is_within_limits(moved) || !(obstacle.velocity_mps.norm() <= Scene::kMaxSpeed_mps)) {
+    return fail(ErrorCode::kBadInput,
+                fmt::format("the move leads farther than {:g} m from the origin or is faster than "
+                            "{:g} m/s",
+                            Scene::kMaxCoordinate_m, Scene::kMaxSpeed_mps));
   }
   return {};
 }

@@ -3,6 +3,7 @@
 #include "swarm_core/mission_file/yaml_tree.hpp"
 
 #include <istream>
+#include <optional>
 #include <streambuf>
 
 #include <fmt/format.h>
@@ -154,6 +155,22 @@ class ViewBuffer final : public std::streambuf {
   }
 };
 
+/// Where brackets are nested deeper than in any mission. The parser keeps all tokens from the first
+/// open bracket on: a file of them would take gigabytes before the limit of depth is seen.
+/// Brackets in quotes and comments count, too, but close there as well in any text of people.
+std::optional<Position> too_many_brackets(std::string_view text) {
+  constexpr int kMost = 1000;
+  int open = 0;
+  Position at;
+  for (const char c : text) {
+    if (c == '[' || c == '{') ++open;
+    if ((c == ']' || c == '}') && open > 0) --open;
+    if (open > kMost) return at;
+    at = c == '\n' ? Position{at.line + 1, 1} : Position{at.line, at.column + 1};
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 /// Long texts are cut: a message must fit a line.
@@ -182,6 +199,9 @@ tl::expected<Node, ParseError> parse(std::string_view text) {
       at = c == '\n' ? Position{at.line + 1, 1} : Position{at.line, at.column + 1};
     }
     return tl::unexpected(ParseError{at, "a NUL byte; mission files are UTF-8 text"});
+  }
+  if (const auto at = too_many_brackets(text)) {
+    return tl::unexpected(ParseError{*at, "too many brackets are open"});
   }
   try {
     ViewBuffer buffer(text);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <utility>
 
 #include "swarm_core/world/plane.hpp"
@@ -42,6 +43,7 @@ class EarClipper {
     const auto n = static_cast<std::uint32_t>(v_.size());
     next_.resize(n);
     previous_.resize(n);
+    is_ear_.assign(n, Ear::kUnknown);
     for (std::uint32_t i = 0; i < n; ++i) {
       next_[i] = (i + 1) % n;
       previous_[i] = (i + n - 1) % n;
@@ -57,6 +59,7 @@ class EarClipper {
       triangles.push_back({previous_[at], at, next_[at]});
       next_[previous_[at]] = next_[at];
       previous_[next_[at]] = previous_[at];
+      is_ear_[previous_[at]] = is_ear_[next_[at]] = Ear::kUnknown;
       // Going on at the vertex after the next keeps the triangles from fanning around one corner.
       at = next_[next_[at]];
     }
@@ -65,16 +68,19 @@ class EarClipper {
   }
 
  private:
-  // All ears of a polygon together cost O(n²) for most polygons and O(n³) at worst.
-  std::uint32_t find_ear(std::uint32_t start, std::size_t left) const {
-    std::uint32_t at = start;
-    for (std::size_t i = 0; i < left; ++i, at = next_[at]) {
-      if (turns_left(v_[previous_[at]], v_[at], v_[next_[at]]) && is_empty(at)) return at;
-    }
+  enum class Ear : std::uint8_t { kUnknown, kNo, kYes };
+
+  // All ears of a polygon together cost O(n²): cutting one changes only its two neighbours, as a
+  // triangle that holds a vertex holds one that stays. A vertex on its border is an exception, so
+  // the search is repeated without what is known.
+  std::uint32_t find_ear(std::uint32_t start, std::size_t left) {
+    if (const auto ear = next_ear(start, left)) return *ear;
+    std::fill(is_ear_.begin(), is_ear_.end(), Ear::kUnknown);
+    if (const auto ear = next_ear(start, left)) return *ear;
     // Only rounding leads here, in a remainder as thin as the rounding: the flattest corner is cut.
     std::uint32_t flattest = start;
     double least = std::abs(turn(v_[previous_[start]], v_[start], v_[next_[start]]));
-    at = start;
+    std::uint32_t at = start;
     for (std::size_t i = 0; i < left; ++i, at = next_[at]) {
       const double size = std::abs(turn(v_[previous_[at]], v_[at], v_[next_[at]]));
       if (size < least) {
@@ -83,6 +89,19 @@ class EarClipper {
       }
     }
     return flattest;
+  }
+
+  std::optional<std::uint32_t> next_ear(std::uint32_t start, std::size_t left) {
+    std::uint32_t at = start;
+    for (std::size_t i = 0; i < left; ++i, at = next_[at]) {
+      Ear& ear = is_ear_[at];
+      if (ear == Ear::kUnknown) {
+        const bool is_convex = turns_left(v_[previous_[at]], v_[at], v_[next_[at]]);
+        ear = is_convex && is_empty(at) ? Ear::kYes : Ear::kNo;
+      }
+      if (ear == Ear::kYes) return at;
+    }
+    return std::nullopt;
   }
 
   // Whether no remaining vertex lies in the triangle of a corner.
@@ -98,6 +117,7 @@ class EarClipper {
 
   const std::vector<Vec2>& v_;
   std::vector<std::uint32_t> next_, previous_;
+  std::vector<Ear> is_ear_;
 };
 
 std::size_t position_of(const Loop& loop, std::uint32_t vertex) {

@@ -85,6 +85,8 @@ struct Scene {
   static constexpr std::size_t kMaxObstacles = 256;  ///< most moved or added obstacles, with bodies
   static constexpr std::size_t kMaxRemoved = 256;    ///< most removed obstacles
   static constexpr std::size_t kMaxVertices = 4096;  ///< most vertices of all its polygons together
+  static constexpr double kMaxCoordinate_m = 1e6;    ///< largest coordinate of an obstacle [m]
+  static constexpr double kMaxSpeed_mps = 1e6;       ///< largest speed of an obstacle [m/s]
 
   std::uint64_t version = 0;  ///< UTC time of the last change [ns]; 0: as in the mission file
   std::vector<std::uint32_t> removed;    ///< numbers of removed obstacles of the mission file

@@ -74,6 +74,24 @@ TEST(Scene, BeginsAMoveWhereTheLastOneIs) {
   EXPECT_NEAR(world_at(mission_world(), scene, at_s(30)).distance_m({14, 12}), -1.0, 1e-9);
 }
 
+TEST(Scene, RefusesMovesThatReceiversWouldRefuse) {
+  const Scene scene = first_scene(2);
+  const auto is_accepted = [&](const MoveObstacle& move) {
+    return after(scene, move, mission_world(), at_s(1)).has_value();
+  };
+  EXPECT_TRUE(is_accepted({0, {999'990, 0}, 0.0}));
+  EXPECT_FALSE(is_accepted({0, {1'000'000, 0}, 0.0}));
+  EXPECT_FALSE(is_accepted({1, {0, -1'000'020}, 10.0}));
+  EXPECT_TRUE(is_accepted({0, {10, 0}, 1e-4}));
+  EXPECT_FALSE(is_accepted({0, {10, 0}, 1e-6}));
+}
+
+// Shorter than the clock's tick: at once.
+TEST(Scene, MovesAnObstacleAtOnceInNoTime) {
+  const Scene scene = changed(first_scene(2), MoveObstacle{0, {6, 0}, 1e-10}, 10.0);
+  EXPECT_NEAR(world_at(mission_world(), scene, at_s(10)).distance_m({11, 5}), -1.0, 1e-9);
+}
+
 TEST(Scene, KeepsAMapForAWhileWithAllPositionsOfAMove) {
   const Scene scene = changed(first_scene(2), MoveObstacle{0, {4, 0}, 2.0}, 0.0);
 

@@ -110,6 +110,7 @@ TEST(YamlTree, RefusesWhatAMissionDoesNotNeed) {
       {"? [a, b]\n: 1\n", {1, 3}, "a key that is not text; keys are plain text"},
       {"{{a: 1}: 2}", {1, 2}, "a key that is not text; keys are plain text"},
       {"~: 1\n", {1, 1}, "an empty key; keys are plain text"},
+      {"a: 1\nb: " + std::string(2000, '['), {2, 1004}, "too many brackets are open"},
       {std::string("a: 1\nbc\0d: 2", 12), {2, 3}, "a NUL byte; mission files are UTF-8 text"},
   };
   for (const auto& [text, at, what] : cases) {

@@ -118,15 +118,24 @@ TEST(Decomposition, PartitionsCombs) {
   for (const std::size_t teeth : {2U, 3U, 10U, 100U}) expect_partition(test::comb(teeth), rng);
 }
 
-TEST(Decomposition, HandlesTheLargestComb) {
-  const auto polygon = Polygon::make(test::comb(Polygon::kMaxVertices / 4));
-  ASSERT_TRUE(polygon.has_value());
+void expect_whole_area(const std::vector<Vec2>& vertices) {
+  const auto polygon = Polygon::make(vertices);
+  ASSERT_TRUE(polygon.has_value()) << polygon.error().message;
 
   double twice_area = 0.0;
   for (const auto& part : decompose_convex(*polygon)) twice_area += signed_area_twice_m2(part);
 
   const double expected = signed_area_twice_m2(polygon->vertices_m());
   EXPECT_NEAR(twice_area, expected, 1e-9 * expected);
+}
+
+TEST(Decomposition, HandlesTheLargestComb) {
+  expect_whole_area(test::comb(Polygon::kMaxVertices / 4));
+}
+
+// Each search for an ear from one end would pass over the whole band: minutes.
+TEST(Decomposition, HandlesTheLargestZigzag) {
+  expect_whole_area(test::zigzag(Polygon::kMaxVertices / 2 - 1));
 }
 
 }  // namespace

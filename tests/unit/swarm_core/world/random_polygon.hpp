@@ -53,6 +53,19 @@ inline std::vector<Vec2> comb(std::size_t teeth) {
   return vertices;
 }
 
+/// A thin band along a saw-tooth line with `teeth` teeth: ears at its two ends alone.
+inline std::vector<Vec2> zigzag(std::size_t teeth) {
+  constexpr double kWidth_m = 0.01;
+  std::vector<Vec2> vertices;
+  for (std::size_t i = 0; i <= teeth; ++i) {
+    vertices.emplace_back(static_cast<double>(i), i % 2 == 0 ? 0.0 : 5.0);
+  }
+  for (std::size_t i = teeth + 1; i-- > 0;) {
+    vertices.emplace_back(vertices[i] + Vec2(0.0, kWidth_m));
+  }
+  return vertices;
+}
+
 /// Winding number by the sum of angles: an oracle that shares nothing with parity of crossings.
 inline bool winds_around(const std::vector<Vec2>& vertices, const Vec2& p) {
   double angle = 0.0;
