@@ -2,9 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "swarm_core/app/program.hpp"
 
+#include <charconv>
+#include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <exception>
 #include <sstream>
+#include <string_view>
+#include <system_error>
 
 #include <CLI/CLI.hpp>
 
@@ -26,7 +31,45 @@ int report(const std::string& name, const Error& error) {
   return static_cast<int>(exit_code(error.code));
 }
 
+/// Whether the whole text is a decimal number of this type. from_chars() does not depend on the
+/// locale.
+template <class Number>
+bool is_decimal(std::string_view text) {
+  if (text.starts_with('+')) text.remove_prefix(1);
+  Number value{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc{} && end == text.data() + text.size() && std::isfinite(double(value));
+}
+
+/// CLI11 converts by strtod() and strtoull(): NaN passes its ranges, 010 is 8, and -1 is 2^64 - 1.
+void demand_decimals(CLI::App& app) {
+  for (CLI::Option* const option : app.get_options()) {
+    const std::string type = option->get_type_name();
+    if (type.starts_with("FLOAT")) {
+      option->check([](const std::string& text) {
+        return is_decimal<double>(text) ? std::string() : "'" + text + "' is no decimal number";
+      });
+    } else if (type.starts_with("INT") || type.starts_with("UINT")) {
+      const bool has_sign = type.starts_with("INT");
+      option->check([has_sign](const std::string& text) {
+        return is_whole_decimal(text, has_sign) ? std::string()
+                                                : "'" + text + "' is no whole decimal number";
+      });
+    }
+  }
+  for (CLI::App* const command : app.get_subcommands([](CLI::App*) { return true; })) {
+    demand_decimals(*command);
+  }
+}
+
 }  // namespace
+
+/// A leading zero would make it octal.
+bool is_whole_decimal(const std::string& text, bool has_sign) {
+  const std::size_t first = text.find_first_not_of("+-");
+  if (first != std::string::npos && text[first] == '0' && text.size() > first + 1) return false;
+  return has_sign ? is_decimal<std::int64_t>(text) : is_decimal<std::uint64_t>(text);
+}
 
 // Domain code returns errors as values; what is thrown nevertheless (for example std::bad_alloc)
 // ends here with the exit code of a failing environment. A result that could not be printed must
@@ -76,6 +119,7 @@ Result<std::optional<ExitCode>> parse(CLI::App& app, int argc, char** argv,
     std::printf("%s: ok\n", file.c_str());
     return ExitCode::kOk;
   }
+  demand_decimals(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {

@@ -28,9 +28,14 @@ std::string program_name(const char* argv0, const std::string& own);
 /// Adds `--version` and `--check MISSION.yaml` (validate and exit), which every program has.
 void add_common_options(CLI::App& app);
 
-/// Parses the command line. Holds an exit code when there is nothing left to do (help, version,
-/// check); kBadInput on wrong usage. `--check` checks the components of `catalogue`; a program that
-/// has only some of them leaves the sections of the others open.
+/// Whether a text is a whole decimal number, which has no leading zero and, unless it `has_sign`,
+/// no minus.
+bool is_whole_decimal(const std::string& text, bool has_sign = false);
+
+/// Parses the command line; options of type INT, UINT and FLOAT take decimal numbers only. Holds an
+/// exit code when there is nothing left to do (help, version, check); kBadInput on wrong usage.
+/// `--check` checks the components of `catalogue`; a program that has only some of them leaves the
+/// sections of the others open.
 Result<std::optional<ExitCode>> parse(CLI::App& app, int argc, char** argv,
                                       const Catalogue& catalogue = open_catalogue());
 

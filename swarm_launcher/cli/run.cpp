@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "swarm_core/app/program.hpp"
 #include "swarm_launcher/cli/commands.hpp"
 #include "swarm_launcher/cli/shared_options.hpp"
 #include "swarm_launcher/processes/run_vendors.hpp"
@@ -55,6 +56,10 @@ Command add_run(CLI::App& program) {
          },
          "Agent processes, or auto: one per robot if the machine can run them, else few")
       ->check(CLI::IsMember({"auto"}) | CLI::Range(1, kMostRobots))
+      ->check([](const std::string& n) {
+        return n == "auto" || shell::is_whole_decimal(n) ? std::string()
+                                                         : "'" + n + "' is no whole decimal number";
+      })
       ->type_name("N|auto")
       ->excludes(per_process);
   run->add_option("--seed", o->how.seed, "Seed of placement, plan and robots");

@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "swarm_core/app/program.hpp"
 
+#include <cstdint>
 #include <new>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -75,6 +77,9 @@ class Parse : public testing::Test {
   Result<std::optional<ExitCode>> parse_all(std::vector<std::string> arguments) {
     CLI::App app("A program.", "prog");
     app.add_option("--run", run_)->required();
+    app.add_option("--count", count_)->check(CLI::Range(1, 100));
+    app.add_option("--rate", rate_)->check(CLI::Range(0.0, 100.0));
+    app.add_option("--seed", seed_);
     add_common_options(app);
     arguments.insert(arguments.begin(), "prog");
     std::vector<char*> argv;
@@ -87,6 +92,9 @@ class Parse : public testing::Test {
   }
 
   std::string run_;
+  std::optional<std::uint32_t> count_;
+  double rate_ = 0.0;
+  std::uint64_t seed_ = 0;
   std::string printed_;
   ScratchFolder folder_;
 };
@@ -118,6 +126,29 @@ TEST_F(Parse, RefusesWrongUsageAndPointsToTheHelp) {
     EXPECT_EQ(parsed.error().code, ErrorCode::kBadInput);
     EXPECT_TRUE(parsed.error().message.ends_with("; see --help")) << parsed.error().message;
   }
+}
+
+// CLI11 takes 010 for 8, 0x8 for 8, -1 for 2^64 - 1, and NaN for a number of any range.
+TEST_F(Parse, TakesDecimalNumbersAlone) {
+  const auto takes = [this](const std::string& option, const std::string& number) {
+    return parse_all({"--run", "a", option, number}).has_value();
+  };
+  for (const char* const wrong : {"010", "0x8", "1e1", "8.0", "-1", "", "8 ", "nan", "101"}) {
+    EXPECT_FALSE(takes("--count", wrong)) << wrong;
+  }
+  for (const char* const wrong : {"nan", "inf", "0x1p3", "1e999", "-nan", "5s"}) {
+    EXPECT_FALSE(takes("--rate", wrong)) << wrong;
+  }
+  for (const char* const wrong : {"-1", "99999999999999999999999", "007"}) {
+    EXPECT_FALSE(takes("--seed", wrong)) << wrong;
+  }
+  EXPECT_TRUE(takes("--count", "10"));
+  EXPECT_EQ(count_, 10U);
+  EXPECT_TRUE(takes("--rate", "1e1"));
+  EXPECT_EQ(rate_, 10.0);
+  EXPECT_TRUE(takes("--seed", "18446744073709551615"));
+  EXPECT_EQ(seed_, 18446744073709551615U);
+  EXPECT_TRUE(takes("--seed", "0"));
 }
 
 TEST_F(Parse, ChecksAMissionInBothSpellingsWithoutTheRequiredOptions) {
