@@ -75,6 +75,7 @@ void Agent::keep_slot(Route& route, const Vec2& position_m) const {
   const bool same_goal =
       has_route_ && (route.goal.mean_m() - followed_route_.goal.mean_m()).norm() < kSame_m;
   if (!same_goal || !route.goal.contains_99(position_m)) return;
+  if (!route.goal.contains_99(followed_route_.end_m)) return;  // bodies had moved it out
   if (!world_->segment_is_free(position_m, followed_route_.end_m, options_->route.radius_m)) return;
   // In no more time than it had left; otherwise each new plan would put its arrival off.
   const auto before = method_.tracking();

@@ -11,8 +11,9 @@
 namespace swarm::agent {
 
 /// Whether a robot has arrived: inside its goal's 99 % ellipse and within 1 m of its own end point,
-/// or within 4 m if other robots have let it no nearer for 3 s. Once arrived it stays so while it
-/// is inside the ellipse. The lengths are multiplied by `scale` (body_scale.hpp).
+/// or within 4 m if other robots have let it no nearer for 3 s. After 15 s without coming nearer,
+/// as behind a new obstacle, any place well inside the ellipse (96 %) is enough. Once arrived it
+/// stays so while it is inside the ellipse. The lengths are multiplied by `scale` (body_scale.hpp).
 class GoalWatch {
  public:
   GoalWatch() = default;
@@ -34,8 +35,12 @@ class GoalWatch {
       nearest_m_ = left_m;
       progress_at_ = now;
     }
-    const bool dense = left_m < scale_ * kDense_m && now - progress_at_ > kDenseAfter;
-    return arrived_ = inside && (left_m < scale_ * kNear_m || dense);
+    const Duration stalled = now - progress_at_;
+    const bool dense = left_m < scale_ * kDense_m && stalled > kDenseAfter;
+    // At the rim others could push it out again.
+    const bool blocked =
+        stalled > kBlockedAfter && goal_.mahalanobis_squared(position_m) < kWellInside;
+    return arrived_ = inside && (left_m < scale_ * kNear_m || dense || blocked);
   }
 
  private:
@@ -43,6 +48,8 @@ class GoalWatch {
   static constexpr double kDense_m = 4.0;
   static constexpr double kProgress_m = 0.1;
   static constexpr Duration kDenseAfter = std::chrono::seconds(3);
+  static constexpr Duration kBlockedAfter = std::chrono::seconds(15);
+  static constexpr double kWellInside = 6.44;  // squared Mahalanobis distance of the 96 % ellipse
 
   Gaussian goal_;
   Vec2 end_m_ = Vec2::Zero();

@@ -86,6 +86,21 @@ std::vector<Vec2> free_vertices(const std::vector<Station>& stations, const Worl
   return vertices;
 }
 
+/// The end of a path: beside the bodies and, where they leave room, inside the goal's 99 % ellipse,
+/// since outside of it a robot would never have arrived. O(bodies).
+Vec2 end_in_goal(const Gaussian& goal, const Vec2& own_m, const World& world,
+                 const DetourOptions& detour) {
+  const Vec2 beside_m = beside_bodies(own_m, world, detour);
+  if (goal.contains_99(beside_m)) return beside_m;
+  constexpr int kSteps = 10;
+  for (int i = 1; i <= kSteps; ++i) {
+    const Vec2 nearer_m = own_m + static_cast<double>(i) / kSteps * (goal.mean_m() - own_m);
+    const Vec2 end_m = beside_bodies(nearer_m, world, detour);
+    if (goal.contains_99(end_m) && world.is_clear(end_m, detour.radius_m)) return end_m;
+  }
+  return beside_m;
+}
+
 /// Completes the stations to a sink and turns them into path and schedule: each station's plan time
 /// belongs to the arc length of its vertex, detours around bodies included.
 Route finish(const FlowPlan& plan, std::uint32_t node, double share, std::vector<Station> stations,
@@ -111,7 +126,9 @@ Route finish(const FlowPlan& plan, std::uint32_t node, double share, std::vector
   std::vector<Schedule::Entry> schedule;
   schedule.reserve(stations.size());
   for (std::size_t i = 0; i < stations.size(); ++i) {
-    const Vec2 next_m = beside_bodies(own_m[i], world, detour);
+    const Vec2 next_m = i + 1 < stations.size()
+                            ? beside_bodies(own_m[i], world, detour)
+                            : end_in_goal(stations[i].gaussian, own_m[i], world, detour);
     if (!vertices.empty()) {
       for (const Vec2& bend_m : around_bodies(vertices.back(), next_m, world, detour))
         go_to(bend_m);

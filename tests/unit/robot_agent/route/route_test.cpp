@@ -57,6 +57,29 @@ TEST(Route, EndsInsideTheGoalsEllipseFromWhereverItStarts) {
   }
 }
 
+// A circle where a lost robot may be covers most of the goal: 5 of its 6.07 m.
+TEST(Route, EndsInsideTheGoalsEllipseBesideBodiesThatLeaveRoom) {
+  const FlowPlan plan = branching_plan();
+  const Gaussian& goal = plan.nodes()[4].gaussian;
+  Rng rng(7);
+  for (int i = 0; i < 200; ++i) {
+    const Circle body{goal.mean_m() + Vec2(uniform(rng, -4, 4), uniform(rng, -4, 4)),
+                      uniform(rng, 0.2, 5.0)};
+    const World world = *World::make({{-50, -50}, {80, 80}}, {body}, {}, 1);
+    const Vec2 start(uniform(rng, -6, 6), uniform(rng, 14, 26));
+
+    const Route route = route_from_source(plan, 1, uniform01(rng), start, world, {});
+
+    const Vec2& end_m = route.path.vertices_m().back();
+    EXPECT_GE(world.distance_m(end_m), 0.2) << i;
+    // Room: the ring between body and ellipse is wide enough at its widest, towards the mean.
+    const double room_m = 6.07 + (body.center_m - goal.mean_m()).norm() - body.radius_m;
+    if (room_m > 1.0) {
+      EXPECT_TRUE(route.goal.contains_99(end_m)) << i << ' ' << body.radius_m;
+    }
+  }
+}
+
 /// The path of a robot of this radius past a corner.
 Route route_past_a_corner(double radius_m, const World& world) {
   const auto plan =
