@@ -37,7 +37,8 @@ std::int32_t to_us(Duration d) {
 /// Measures the body's position, and accepts a new plan from there.
 [[gnu::hot]] Measurement RobotLoop::measure(const RobotTick& tick, const RobotParts& parts) {
   const Measurement body = parts.driver.measure(tick.now);
-  position_m_ = body.position_m;
+  has_position_ = has_position_ || body.is_valid;
+  if (body.is_valid || !has_position_) position_m_ = body.position_m;
   if (body.command_expired) {  // the body stopped between two ticks: the log gets a step there
     parts.log.append(robot_log::Step{.stamp = tick.utc_now - (tick.now - body.expired_at),
                                      .position_m = body.expired_position_m,
@@ -96,7 +97,8 @@ std::int32_t to_us(Duration d) {
                       .text = std::string(to_string(output_.mode))});
 }
 
-/// A robot that does not know where it is brakes, and does not publish a position. It obeys an
+/// A robot that does not know where it is brakes, and publishes the last position that it had at
+/// each tick: its silence would be read as a robot that is well somewhere else. It obeys an
 /// emergency stop all the same.
 AgentOutput RobotLoop::without_position(MissionPhase phase) const {
   AgentOutput out;
@@ -105,6 +107,7 @@ AgentOutput RobotLoop::without_position(MissionPhase phase) const {
                  ? output_.mode
                  : RobotMode::kHolding;
   out.nearest_gap_m = std::numeric_limits<double>::infinity();
+  out.send = has_position_;
   return out;
 }
 

@@ -122,6 +122,7 @@ class RobotLoop {
   std::uint32_t states_sent_ = 0;  // the sequence number of the last
   std::uint32_t states_received_ = 0;
   bool has_updates_ = false;
+  bool has_position_ = false;  // the driver has had one
   Vec2 position_m_ = Vec2::Zero();
   AgentOutput output_;
   std::string fault_;

@@ -19,7 +19,8 @@ struct Measurement {
   /// [m].
   Vec2 position_m = Vec2::Zero();
   /// False while the driver has no position to rely on; `position_m` is then the last one it had.
-  /// The robot is commanded to stop, an event reports it, and no state update is published.
+  /// The robot is commanded to stop, an event reports it, and its neighbours receive that last
+  /// position with velocity 0; without any it publishes nothing.
   bool is_valid = true;
   /// Time since the position was sensed. Not used by the agent so far.
   Duration age{};

@@ -90,6 +90,23 @@ TEST_F(LoneRobot, ObeysAnEmergencyStopWithoutAPosition) {
   EXPECT_EQ(loop_.mode(), RobotMode::kStopped);
 }
 
+// Otherwise neighbours would take it for a robot that is well somewhere else.
+TEST_F(LoneRobot, PublishesItsLastPositionWhileItHasNone) {
+  LostDriver driver;
+  tick(driver, MissionPhase::kRunning);
+  EXPECT_TRUE(bus_.published.empty()) << "it has never had a position";
+  tick();
+  bus_.published.clear();
+
+  for (int k = 0; k < 5; ++k) tick(driver, MissionPhase::kRunning);
+
+  ASSERT_EQ(bus_.published.size(), 5U);
+  EXPECT_EQ(bus_.published[4].x_m, 5.0);
+  EXPECT_EQ(bus_.published[4].y_m, 5.0);
+  EXPECT_EQ(bus_.published[4].vx_mps, 0.0);
+  EXPECT_EQ(loop_.fault(), "the driver has no position; the robot holds");
+}
+
 TEST_F(LoneRobot, RecordsEachTickAndItsFirstMode) {
   tick();
   tick();
