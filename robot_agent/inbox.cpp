@@ -105,7 +105,7 @@ void Inbox::receive_fixed_topics(SteadyTime now, UtcTime utc_now) {
   receive_commands(utc_now);
   gate_.set_undecodable(readers_.plan->undecodable() + readers_.scene->undecodable() +
                         readers_.heartbeat->undecodable() + readers_.command->undecodable() +
-                        states_.undecodable());
+                        states_.undecodable() + undecodable_stops_);
 }
 
 void Inbox::begin_states() {

@@ -71,6 +71,13 @@ class Inbox {
   /// A command that arrived by another path than the topic: the stop channel.
   void receive(const link::CommandMessage& command, UtcTime utc_now);
 
+  /// How many datagrams of the stop channel could not be decoded, and how many beats of the
+  /// launcher were refused (Whereabouts), both since the start.
+  void count_stop_channel(std::uint64_t undecodable, std::uint64_t refused_beats) {
+    undecodable_stops_ = undecodable;
+    gate_.set_refused_beats(refused_beats);
+  }
+
   /// The states received at the last tick, in the order of their arrival.
   std::span<const ReceivedState> states() const { return received_; }
   /// The same, to be visited by position.
@@ -129,6 +136,7 @@ class Inbox {
   std::int64_t stop_stamp_utc_ns_ = 0;
   std::uint64_t command_id_ = 0;
   std::uint32_t skewed_ = 0;
+  std::uint64_t undecodable_stops_ = 0;
   std::optional<UtcTime> began_;  ///< of the first call of receive()
   std::optional<RobotId> duplicate_id_;
   std::optional<SteadyTime> received_before_;

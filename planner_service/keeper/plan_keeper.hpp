@@ -46,7 +46,7 @@ class PlanKeeper {
   bool take_scene(Scene scene);
   /// \pre the id is below the number of robots
   void receive(const ReportedRobot& robot, bool moving, SteadyTime now) {
-    if (robot.plan_version <= kLastReported) {
+    if (robot.plan_version <= last_reachable(now)) {
       reported_version_ = std::max(reported_version_, robot.plan_version);
     }
     // A status sent before the robot failed may arrive after its body became an obstacle.
@@ -113,9 +113,12 @@ class PlanKeeper {
   // that reported late.
   static constexpr Duration kReplanPeriod = std::chrono::seconds(2);
 
-  // Robots refuse plans whose number a planner cannot have reached since its epoch, of a new
-  // planner those from 11 000 on: a forged status must not lead there.
-  static constexpr std::uint32_t kLastReported = 10'000;
+  /// Robots refuse plans whose number a planner cannot have reached since its epoch, a thousand a
+  /// second, of a new planner those from 11 000 on: a forged status must not lead there.
+  std::uint32_t last_reachable(SteadyTime now) const {
+    return static_cast<std::uint32_t>(
+        std::min(10'000.0 + 1'000.0 * to_seconds(now - begun_at_), 4e9));
+  }
 
   Replan newest_;
   std::vector<RobotId> planned_for_;    // by id; empty: newest_ begins at the mission's start

@@ -56,9 +56,12 @@ class MotionPermit {
     Duration cut_off_after{};  ///< without planner and launcher
     /// By then the launcher has reported who fell silent while this process was cut off.
     Duration rejoin_interval{};
+    /// The process begins while the others move: it joins them as one that was cut off.
+    bool in_flight = false;
   };
 
-  explicit MotionPermit(const Options& options) : options_(options) {}
+  explicit MotionPermit(const Options& options)
+      : options_(options), has_moved_(options.in_flight) {}
 
   /// What the process receives at a tick.
   struct Reception {

@@ -25,9 +25,16 @@ bool Whereabouts::is_valid(const link::LauncherBeat& beat) const {
          std::ranges::all_of(beat.late(), is_known);
 }
 
+/// After a gap any number passes: an invented one must not keep the real ones out for ever.
+bool Whereabouts::is_newer(const link::LauncherBeat& beat, SteadyTime now, SteadyTime sent) const {
+  if (sent > now + options_.clock_skew || sent < now - options_.clock_skew) return false;
+  const bool is_gap = last_beat_ && now - *last_beat_ > options_.beat_timeout;
+  return beat.sequence > sequence_ || (is_gap && beat.sequence > 0);
+}
+
 /// A beat that does not list all silent robots is a sign of life, but ends what earlier ones state.
 bool Whereabouts::on_beat(const link::LauncherBeat& beat, SteadyTime now, SteadyTime sent) {
-  if (beat.run != options_.run || beat.sequence <= sequence_ || !is_valid(beat)) {
+  if (beat.run != options_.run || !is_newer(beat, now, sent) || !is_valid(beat)) {
     ++refused_;
     return false;
   }
@@ -85,6 +92,7 @@ WhereaboutsOptions whereabouts_options(const Mission& mission, std::uint64_t run
           .run = run,
           .beat_timeout = 3 * beat,
           .launcher_silence = from_seconds(mission.timing.launcher_silence_s),
+          .clock_skew = from_seconds(mission.timing.clock_skew_refuse_s),
           // The last status may have been sent just before the robot was cut off, the beat that
           // lists it follows up to a period later, and may wait in a socket for up to a gap.
           .healthy_after = reported_silence(mission.link.status_hz) +

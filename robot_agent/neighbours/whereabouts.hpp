@@ -21,6 +21,7 @@ struct WhereaboutsOptions {
   std::uint64_t run = 0;        ///< whose beats count
   Duration beat_timeout{};      ///< a longer time between two beats is a gap
   Duration launcher_silence{};  ///< without a beat for longer, the launcher is lost
+  Duration clock_skew{};        ///< a beat that was sent longer ago, or so far ahead, is refused
   /// Without a gap for this long, a robot that the launcher has not received for all that time
   /// would have been listed as silent.
   Duration healthy_after{};
@@ -34,8 +35,9 @@ class Whereabouts {
  public:
   explicit Whereabouts(const WhereaboutsOptions& options);
 
-  /// Takes a beat. One of another run, out of order, with ids that the mission does not have or
-  /// with numbers that are not finite is ignored and counted. O(silent and late robots).
+  /// Takes a beat. One of another run, out of order, by a clock that is off, with ids that the
+  /// mission does not have or with numbers that are not finite is ignored and counted. O(silent and
+  /// late robots).
   /// \param sent when it was sent
   /// \return whether it was taken
   bool on_beat(const link::LauncherBeat& beat, SteadyTime now, SteadyTime sent);
@@ -69,6 +71,7 @@ class Whereabouts {
 
  private:
   bool is_valid(const link::LauncherBeat& beat) const;
+  bool is_newer(const link::LauncherBeat& beat, SteadyTime now, SteadyTime sent) const;
 
   WhereaboutsOptions options_;
   std::optional<SteadyTime> last_beat_;

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "swarm_core/base/stamp.hpp"
 #include "swarm_core/mission/scene_bodies.hpp"
 #include "swarm_core/mission/supervision_times.hpp"
 
@@ -27,14 +28,15 @@ Inbox make_inbox(const Mission& mission, Readers readers, link::StateChannel& st
 }
 
 /// A process stands after the silence that makes it hold, if the launcher is silent as well.
-MotionPermit::Options permit_options(const Mission& mission) {
+MotionPermit::Options permit_options(const Mission& mission, bool in_flight) {
   const Duration period = from_seconds(1.0 / mission.control.rate_hz);
   return {.period = period,
           .full_interval = from_seconds(mission.link.send_interval_max_s) + 2 * period,
           .cut_off_after = from_seconds(mission.timing.planner_silence_s),
           .rejoin_interval = reported_silence(mission.link.status_hz) +
                              from_seconds(1.0 / mission.link.status_hz) +
-                             from_seconds(2.0 / kBeatHz)};
+                             from_seconds(2.0 / kBeatHz),
+          .in_flight = in_flight};
 }
 
 /// The bus as one robot of the process sees it.
@@ -69,7 +71,7 @@ ProcessLoop::ProcessLoop(const Mission& mission, std::unique_ptr<World> world, L
       whereabouts_(whereabouts_options(mission, bus_.run)),
       silent_(silence_options(mission, local_.robots.front().loop.id(),
                               static_cast<std::uint32_t>(local_.robots.size()))),
-      permit_(permit_options(mission)),
+      permit_(permit_options(mission, local_.any_is_underway)),
       plans_(local_.any_is_underway),
       status_(mission, *bus_.status),
       events_(local_.robots, *bus_.event),
@@ -87,12 +89,14 @@ void ProcessLoop::receive(const Time& time) {
   if (bus_.stops) {
     if (const auto stop = bus_.stops->take()) inbox_.receive(*stop, time.utc_now);
     for (const link::LauncherBeat& beat : bus_.stops->beats()) {
-      const SteadyTime sent =
-          time.now - (time.utc_now - UtcTime(Duration(beat.sent_ns)));  // by the run's clock
+      // By the run's clock. Another number is as old as can be: it is refused.
+      const UtcTime sent_utc(is_stamp(beat.sent_ns) ? Duration(beat.sent_ns) : Duration::zero());
+      const SteadyTime sent = time.now - (time.utc_now - sent_utc);
       if (whereabouts_.on_beat(beat, time.now, sent)) {
         silent_.on_beat(beat, std::min(sent, time.now));
       }
     }
+    inbox_.count_stop_channel(bus_.stops->undecodable(), whereabouts_.refused());
   }
 }
 

@@ -34,8 +34,8 @@ struct LateRobot {
 /// beat has room for, or a gateway does not run, or the launcher was suspended. A plain value
 /// without heap memory, so that receiving one allocates nothing.
 struct LauncherBeat {
-  static constexpr std::size_t kMaxRanges = 100;
-  static constexpr std::size_t kMaxLate = 24;  ///< the datagram is not fragmented
+  static constexpr std::size_t kMaxRanges = 1000;  ///< enough for 2000 robots, however they lie
+  static constexpr std::size_t kMaxLate = 24;
 
   std::uint64_t run = 0;       ///< of the run that it belongs to: the time of its begin [ns]
   std::uint64_t sequence = 0;  ///< from 1; a lower or equal one is out of date

@@ -137,12 +137,21 @@ struct StopReceiver::Impl : DatagramSink {
 
   void datagram(std::span<std::byte> bytes, const sockaddr_in& sender) override {
     if (const auto content = content_of(bytes, kBeat)) {
-      if (const auto beat = decode_beat(*content)) keep(*beat);
+      const auto beat = decode_beat(*content);
+      if (beat) keep(*beat);
+      undecodable += beat ? 0 : 1;
       return;
     }
     const auto content = content_of(bytes, kStop);
     CommandMessage message;
-    if (!content || !decode(*content, message)) return;
+    // Nothing but a stop, here already: another message must not take the place of one.
+    const bool is_stop = content && decode(*content, message) &&
+                         message.kind == CommandKind::kStop &&
+                         message.schema_version == kSchemaVersion;
+    if (!is_stop) {
+      ++undecodable;
+      return;
+    }
     stop = message;
     const auto known = std::ranges::find_if(senders, [&](const Sender& s) {
       return s.address.sin_port == sender.sin_port &&
@@ -166,6 +175,7 @@ struct StopReceiver::Impl : DatagramSink {
   std::vector<LauncherBeat> beats{};
   std::optional<CommandMessage> stop{};
   std::vector<Sender> senders{};
+  std::uint64_t undecodable = 0;
 };
 
 StopReceiver::StopReceiver(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
@@ -192,6 +202,8 @@ std::optional<CommandMessage> StopReceiver::take() {
 }
 
 std::span<const LauncherBeat> StopReceiver::beats() const { return impl_->beats; }
+
+std::uint64_t StopReceiver::undecodable() const { return impl_->undecodable; }
 
 void StopReceiver::confirm(const RobotRange& stopped) {
   StopConfirmation confirmation{.first_robot_id = stopped.first, .robots = stopped.count};

@@ -83,6 +83,9 @@ class StopReceiver {
   /// first seven and the last one.
   std::span<const LauncherBeat> beats() const;
 
+  /// Datagrams so far that are no stop and no beat.
+  std::uint64_t undecodable() const;
+
   /// Answers all who have sent a stop since the last confirmation, each with the id of its last
   /// one.
   void confirm(const RobotRange& stopped);

@@ -19,8 +19,11 @@ namespace swarm::link {
 /// PlanEntryMessage::source of a robot that may enter the plan at any source.
 inline constexpr std::uint16_t kAnySource = 0xFFFF;
 
-/// FlowPlan::make checks Gaussians and masses. Means must lie inside the bounds plus slack, and
-/// robots must enter at sources of the plan.
+/// Largest plan time: twelve days. A larger one is an invented number.
+inline constexpr double kMaxPlanTime_s = 1e6;
+
+/// FlowPlan::make checks Gaussians and masses; their axes may differ by 10⁴ at most. Means must lie
+/// inside the bounds plus slack, and robots must enter at sources of the plan.
 Checked<FlowPlan> check_plan(const PlanMessage& message, const WireLimits& limits);
 
 /// Shapes must be valid, obstacle ids ascending, all vertices used, and bodies those of robots of

@@ -3,6 +3,7 @@
 #include "swarm_link/gate/gate.hpp"
 
 #include <algorithm>
+#include <chrono>
 
 #include "swarm_core/base/stamp.hpp"
 
@@ -208,6 +209,11 @@ bool Gate::is_of_its_source(const EventMessage& message, const Sent& sent, bool 
 // The vector is sized at the first call: only processes that forward states need it.
 Checked<void> Gate::newer_state(const RobotStateMessage& state, UtcTime now) {
   auto checked = check_state(state, options_.limits, clock_for(state, now));
+  // A stamp ahead outranks the robot's own states until its clock has reached it.
+  constexpr Duration kMostAhead = std::chrono::seconds(1);
+  if (checked && UtcTime(Duration(state.stamp_utc_ns)) > now + kMostAhead) {
+    checked = refuse(RefusalReason::kClockSkew);
+  }
   if (checked) {
     newest_state_.resize(options_.limits.robots);
     checked = newest_state_[state.robot_id].accept(state.stamp_utc_ns);
@@ -219,6 +225,11 @@ Checked<void> Gate::newer_state(const RobotStateMessage& state, UtcTime now) {
 void Gate::set_undecodable(std::uint64_t so_far) {
   refused_.count(RefusalReason::kUndecodable, static_cast<std::uint32_t>(so_far - undecodable_));
   undecodable_ = so_far;
+}
+
+void Gate::set_refused_beats(std::uint64_t so_far) {
+  refused_.count(RefusalReason::kStale, static_cast<std::uint32_t>(so_far - refused_beats_));
+  refused_beats_ = so_far;
 }
 
 }  // namespace swarm::link

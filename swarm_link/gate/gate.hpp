@@ -90,6 +90,9 @@ class Gate {
   /// start.
   void set_undecodable(std::uint64_t so_far);
 
+  /// Sets the number of the launcher's beats that were refused, since the start.
+  void set_refused_beats(std::uint64_t so_far);
+
   const RefusalCounters& refused() const { return refused_; }
 
   /// Epoch of the planner whose messages pass; 0 before the first.
@@ -130,8 +133,9 @@ class Gate {
   bool is_of_its_source(const EventMessage& message, const Sent& sent, bool is_evidence) const;
 
   GateOptions options_;
-  RefusalCounters refused_;        ///< since the start
-  std::uint64_t undecodable_ = 0;  ///< already counted
+  RefusalCounters refused_;          ///< since the start
+  std::uint64_t undecodable_ = 0;    ///< already counted
+  std::uint64_t refused_beats_ = 0;  ///< already counted
   RulingPlanner ruler_;
   PlannerOrder planner_;  ///< of the ruling one
   std::uint64_t foreign_heartbeats_ = 0;

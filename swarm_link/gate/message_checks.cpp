@@ -51,7 +51,10 @@ Checked<void> check_heartbeat(const HeartbeatMessage& message) {
   if (!all_finite(message.mission_time_s, message.plan_time_s, message.plan_rate)) {
     return refuse(RefusalReason::kNotFinite);
   }
-  if (message.plan_rate < 0.0 || message.plan_rate > 1.0) return refuse(RefusalReason::kOutOfRange);
+  if (message.plan_rate < 0.0 || message.plan_rate > 1.0 || message.plan_time_s < 0.0 ||
+      message.plan_time_s > kMaxPlanTime_s) {
+    return refuse(RefusalReason::kOutOfRange);
+  }
   if (!is_one_of_first(message.phase, MissionPhase::kStopped)) {
     return refuse(RefusalReason::kOutOfRange);
   }
@@ -70,7 +73,10 @@ Checked<void> check_status(const StatusMessage& message, const WireLimits& limit
   if (message.schema_version != kSchemaVersion) return refuse(RefusalReason::kSchema);
   if (!fits_wire(message)) return refuse(RefusalReason::kOversized);
   if (!std::isfinite(message.plan_time_s)) return refuse(RefusalReason::kNotFinite);
-  if (message.first_robot_id >= limits.robots) return refuse(RefusalReason::kOutOfRange);
+  if (message.first_robot_id >= limits.robots || message.plan_time_s < 0.0 ||
+      message.plan_time_s > kMaxPlanTime_s) {
+    return refuse(RefusalReason::kOutOfRange);
+  }
   for (const RobotStatusMessage& robot : message.robots) {
     if (const auto ok = check_robot(robot, limits); !ok) return ok;
   }

@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 #include "swarm_link/gate/wire_limits.hpp"
+#include "swarmflow/core/gaussian.hpp"
 
 /// Number checks used by the content checks.
 namespace swarm::link {
@@ -13,6 +15,17 @@ namespace swarm::link {
 template <class... Numbers>
 bool all_finite(Numbers... numbers) {
   return (std::isfinite(numbers) && ...);
+}
+
+/// Whether the axes of a covariance differ by a factor of 10⁴ at most: beyond that the transport
+/// map between two Gaussians is lost in rounding. \pre finite, positive definite
+inline bool is_well_shaped(const Mat2& covariance_m2) {
+  constexpr double kMostRatio = 1e8;  // of the variances
+  const double half_trace = 0.5 * covariance_m2.trace();
+  const double determinant = covariance_m2.determinant();
+  const double largest =
+      half_trace + std::sqrt(std::max(0.0, half_trace * half_trace - determinant));
+  return largest * largest <= kMostRatio * determinant;
 }
 
 /// Whether a point lies inside the bounds plus slack. \pre finite coordinates

@@ -17,14 +17,15 @@ Checked<PlanNode> to_node(const PlanNodeMessage& node, const WireLimits& limits)
                   node.covariance_yy_m2, node.time_s, node.mass)) {
     return refuse(RefusalReason::kNotFinite);
   }
-  if (!is_inside(node.mean_x_m, node.mean_y_m, limits) || node.time_s < 0.0) {
+  if (!is_inside(node.mean_x_m, node.mean_y_m, limits) || node.time_s < 0.0 ||
+      node.time_s > kMaxPlanTime_s) {
     return refuse(RefusalReason::kOutOfRange);
   }
   Mat2 covariance_m2;
   covariance_m2 << node.covariance_xx_m2, node.covariance_xy_m2, node.covariance_xy_m2,
       node.covariance_yy_m2;
   const auto gaussian = Gaussian::make({node.mean_x_m, node.mean_y_m}, covariance_m2);
-  if (!gaussian) return refuse(RefusalReason::kBadGaussian);
+  if (!gaussian || !is_well_shaped(covariance_m2)) return refuse(RefusalReason::kBadGaussian);
   return PlanNode{.gaussian = *gaussian, .time = MissionTime(node.time_s), .mass = node.mass};
 }
 

@@ -7,14 +7,16 @@
 
 #include "swarm_core/base/stamp.hpp"
 #include "swarm_link/gate/content_checks.hpp"
+#include "swarm_link/gate/number_tests.hpp"
 #include "swarm_link/wire_bounds.hpp"
+#include "swarmflow/mission/sections/planner.hpp"
 
 namespace swarm::link {
 namespace {
 
 // Larger coordinates or speeds are not plausible for ground robots and would lose precision.
-constexpr double kMaxCoordinate_m = 1e6;
-constexpr double kMaxSpeed_mps = 1e6;
+constexpr double kMaxCoordinate_m = Scene::kMaxCoordinate_m;
+constexpr double kMaxSpeed_mps = Scene::kMaxSpeed_mps;
 
 bool is_place(const PointMessage& p) {
   // False for NaN as well.
@@ -86,7 +88,7 @@ Checked<std::optional<Mixture>> to_goal(const SceneMessage& message) {
     Mat2 covariance_m2;
     covariance_m2 << c.covariance_xx_m2, c.covariance_xy_m2, c.covariance_xy_m2, c.covariance_yy_m2;
     const auto gaussian = Gaussian::make({c.mean_x_m, c.mean_y_m}, covariance_m2);
-    if (!gaussian) return refuse(RefusalReason::kBadGaussian);
+    if (!gaussian || !is_well_shaped(covariance_m2)) return refuse(RefusalReason::kBadGaussian);
     components.push_back({c.weight, *gaussian});
   }
   auto mixture = Mixture::make(std::move(components));
@@ -102,7 +104,7 @@ Checked<Scene> check_scene(const SceneMessage& message, const WireLimits& limits
   if (message.schema_version != kSchemaVersion) return refuse(RefusalReason::kSchema);
   if (!fits_wire(message)) return refuse(RefusalReason::kOversized);
   if (message.next_id > kFirstBodyId) return refuse(RefusalReason::kOutOfRange);
-  if (!(message.risk_alpha >= 0.0 && message.risk_alpha < 1.0)) {
+  if (message.risk_alpha != 0.0 && !kRiskAlphaRange.contains(message.risk_alpha)) {
     return refuse(RefusalReason::kOutOfRange);
   }
   auto obstacles = to_obstacles(message, limits);

@@ -178,6 +178,7 @@ TEST(PlanKeeperScene, ARestartedPlannerWaitsForRobotsButNotForBodies) {
 
 TEST(PlanKeeperScene, AnAbsurdReportDoesNotUseUpTheNumbers) {
   KeeperBench bench;
+  bench.keeper.begin(bench.now);
   bench.keeper.set_phase(MissionPhase::kRunning);
   bench.robots_version = 3;
   bench.report_all();
@@ -188,6 +189,18 @@ TEST(PlanKeeperScene, AnAbsurdReportDoesNotUseUpTheNumbers) {
 
   EXPECT_TRUE(bench.step_after(GoTo{.goal = bench.mission.start}).publish);
   EXPECT_EQ(bench.keeper.version(), 4U);
+}
+
+// Robots may have taken a forged plan with a number that a planner as old as this could have.
+TEST(PlanKeeperScene, NumbersOnFromWhatItCouldHaveReached) {
+  KeeperBench bench;
+  bench.keeper.begin(bench.now - seconds(60));
+  bench.keeper.set_phase(MissionPhase::kRunning);
+  bench.robots_version = 60'000;
+  bench.report_all();
+
+  EXPECT_TRUE(bench.step_after(GoTo{.goal = bench.mission.start}).publish);
+  EXPECT_EQ(bench.keeper.version(), 60'001U);
 }
 
 TEST(PlanKeeperScene, DoesNotLeadRobotsBackToAnEarlierGoal) {

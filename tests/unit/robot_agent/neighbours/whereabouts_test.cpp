@@ -33,10 +33,11 @@ class WhereaboutsTest : public testing::Test {
     return sut_.is_well(RobotId(3), at(last_state_s), at(now_s));
   }
 
-  Whereabouts sut_{{.robots = 1000,
+  Whereabouts sut_{{.robots = 3000,
                     .run = 7,
                     .beat_timeout = milliseconds(1500),
                     .launcher_silence = seconds(3),
+                    .clock_skew = seconds(10),
                     .healthy_after = seconds(6),
                     .alive_after = milliseconds(1500)}};
   link::LauncherBeat beat_{.run = 7};
@@ -91,10 +92,33 @@ TEST_F(WhereaboutsTest, BeginAnewAfterAGapOrAListing) {
 TEST_F(WhereaboutsTest, BeginAnewWhenABeatHasNoRoomForAllSilentRobots) {
   beats(0, 10);
   std::vector<RobotId> many;
-  for (std::uint32_t i = 0; i < 101; ++i) many.emplace_back(5 + 2 * i);
+  for (std::uint32_t i = 0; i <= link::LauncherBeat::kMaxRanges; ++i) many.emplace_back(5 + 2 * i);
   beat(10.5, many);
   EXPECT_FALSE(beat_.lists_all);
   EXPECT_FALSE(is_well(-1, 10.5));
+}
+
+// A forged number must not keep the launcher's beats out for the rest of the run.
+TEST_F(WhereaboutsTest, TakeAnyNumberAfterAGap) {
+  beats(0, 10);
+  link::LauncherBeat forged = beat_;
+  forged.sequence = ~std::uint64_t{0};
+  ASSERT_TRUE(sut_.on_beat(forged, at(10.2), at(10.2)));
+
+  beat(10.5);
+  EXPECT_EQ(sut_.last_beat(), at(10.2));
+  beats(11, 20);
+
+  EXPECT_EQ(sut_.last_beat(), at(20));
+  EXPECT_TRUE(is_well(-1, 20));
+}
+
+TEST_F(WhereaboutsTest, RefuseBeatsWhoseTimeIsFarFromNow) {
+  beats(0, 10);
+  ++beat_.sequence;
+  EXPECT_FALSE(sut_.on_beat(beat_, at(10.5), at(21)));
+  EXPECT_FALSE(sut_.on_beat(beat_, at(10.5), at(0)));
+  EXPECT_TRUE(sut_.on_beat(beat_, at(10.5), at(1)));
 }
 
 TEST_F(WhereaboutsTest, RefuseBeatsOfOthersOldOnesAndUnknownIds) {
@@ -107,7 +131,7 @@ TEST_F(WhereaboutsTest, RefuseBeatsOfOthersOldOnesAndUnknownIds) {
   link::LauncherBeat forged = beat_;
   ++forged.sequence;
   forged.ranges = 1;
-  forged.range[0] = {.first = 999, .count = 2};
+  forged.range[0] = {.first = 2999, .count = 2};
   sut_.on_beat(forged, at(10.5), at(10.5));
   forged.range[0] = {.first = 2, .count = 0xFFFF'FFFF};
   sut_.on_beat(forged, at(10.5), at(10.5));
@@ -161,8 +185,8 @@ TEST_F(WhereaboutsTest, RefuseLateRobotsThatTheMissionDoesNotHaveOrThatAreNowher
     link::set_late(beat_, {&late, 1});
     return sut_.on_beat(beat_, at(1), at(1));
   };
-  EXPECT_TRUE(take({.robot = 999, .x_m = 1.0, .y_m = 2.0}));
-  EXPECT_FALSE(take({.robot = 1000, .x_m = 1.0, .y_m = 2.0}));
+  EXPECT_TRUE(take({.robot = 2999, .x_m = 1.0, .y_m = 2.0}));
+  EXPECT_FALSE(take({.robot = 3000, .x_m = 1.0, .y_m = 2.0}));
   EXPECT_FALSE(take({.robot = 3, .x_m = kNan, .y_m = 2.0}));
   EXPECT_FALSE(take({.robot = 3, .x_m = 1.0, .y_m = std::numeric_limits<double>::infinity()}));
   EXPECT_EQ(sut_.refused(), 3U);

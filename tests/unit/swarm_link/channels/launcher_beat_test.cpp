@@ -34,7 +34,7 @@ TEST(LauncherBeat, StatesThatItHasNoRoomForAll) {
   for (std::uint32_t i = 0; i < LauncherBeat::kMaxRanges; ++i) apart.push_back(2 * i);
   set_silent(beat, ids(apart));
   EXPECT_TRUE(beat.lists_all);
-  apart.push_back(1000);
+  apart.push_back(5000);
   set_silent(beat, ids(apart));
   EXPECT_FALSE(beat.lists_all);
   EXPECT_EQ(beat.silent().size(), LauncherBeat::kMaxRanges);
@@ -88,7 +88,8 @@ TEST(LauncherBeat, IsNotDecodedFromOtherBytes) {
 
   const auto beat_of = [](std::size_t ranges, std::size_t late) {
     std::vector<std::byte> made(kFixed + kRange * ranges + kLate * late);
-    made[28] = static_cast<std::byte>(ranges);
+    made[28] = static_cast<std::byte>(ranges & 0xFFU);
+    made[29] = static_cast<std::byte>(ranges >> 8U);
     return decode_beat(made);
   };
   EXPECT_TRUE(beat_of(LauncherBeat::kMaxRanges, LauncherBeat::kMaxLate));

@@ -6,12 +6,14 @@
 
 #include <chrono>
 #include <thread>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
 #include "swarm_core/base/clock.hpp"
+#include "swarm_link/cdr/codec.hpp"
 #include "swarm_link/udp_socket.hpp"
 
 namespace swarm::link {
@@ -53,6 +55,48 @@ TEST_F(StopChannel, ReachesEveryReceiverOfTheDomain) {
   EXPECT_EQ(take_sent(*second), kStopMessage);
   EXPECT_FALSE(other->take());
   EXPECT_FALSE(first->take()) << "each stop once";
+}
+
+/// Sends a message as a stop, whatever it is.
+void send_as_stop(std::uint32_t domain, const CommandMessage& message) {
+  std::vector<std::byte> bytes;
+  for (const char c : {'S', 'W', 'S', 'T', 'O', 'P', '\0', '\1'}) {
+    bytes.push_back(static_cast<std::byte>(c));
+  }
+  std::vector<std::byte> sample;
+  encode(message, sample);
+  bytes.insert(bytes.end(), sample.begin(), sample.end());
+  sockaddr_in group = multicast_group(domain, 0);
+  group.sin_addr.s_addr = htonl(0xEFFEFFFFU);
+  const int fd = open_group_sender(to_in_addr(kLoopback));
+  ::sendto(fd, bytes.data(), bytes.size(), 0, reinterpret_cast<const sockaddr*>(&group),
+           sizeof group);
+  ::close(fd);
+}
+
+// Such a message would start robots, or take the place of a stop that arrives with it.
+TEST_F(StopChannel, TakesNothingButStops) {
+  const auto from = sender(224);
+  const auto robots = receiver(224);
+  from->send(kStopMessage);
+  CommandMessage resume = kStopMessage;
+  resume.kind = CommandKind::kResume;
+  send_as_stop(224, resume);
+  CommandMessage other = kStopMessage;
+  other.schema_version = 99;
+  send_as_stop(224, other);
+
+  bool is_stopped = false;
+  for (int i = 0; i < 5000 && !(is_stopped && robots->undecodable() == 2); ++i) {
+    const auto stop = robots->take();
+    if (stop) {
+      EXPECT_EQ(*stop, kStopMessage);
+    }
+    is_stopped = is_stopped || stop;
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  EXPECT_TRUE(is_stopped);
+  EXPECT_EQ(robots->undecodable(), 2U);
 }
 
 TEST_F(StopChannel, BringsConfirmationsToThoseWhoSent) {

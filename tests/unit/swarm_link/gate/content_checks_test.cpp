@@ -108,6 +108,7 @@ TEST(PlanCheck, RefusesMeansTimesAndIndicesOutOfRange) {
   EXPECT_TRUE(bad([](auto& p) { p.nodes[2].mean_x_m = 55.1; }));
   EXPECT_TRUE(bad([](auto& p) { p.nodes[2].mean_y_m = -5.1; }));
   EXPECT_TRUE(bad([](auto& p) { p.nodes[0].time_s = -0.1; }));
+  EXPECT_TRUE(bad([](auto& p) { p.nodes[2].time_s = 1.1e6; }));
   EXPECT_TRUE(bad([](auto& p) { p.legs[0].from_node = 3; }));
   EXPECT_TRUE(bad([](auto& p) { p.legs[0].to_node = 0xFFFF'FFFF; }));
   EXPECT_TRUE(bad([](auto& p) { p.legs[0].to_node = 0; }));    // from a node to itself
@@ -128,6 +129,7 @@ TEST(PlanCheck, RefusesCovariancesThatAreNotPositiveDefinite) {
   EXPECT_TRUE(bad(-1.0, 0.0, 1.0));
   EXPECT_TRUE(bad(1.0, 0.0, 0.0));
   EXPECT_TRUE(bad(1.0, 1.0, 1.0));
+  EXPECT_TRUE(bad(1e6, 0.0, 0.9e-2)) << "a needle: no transport map is exact";
   EXPECT_TRUE(bad(1.0, -2.0, 1.0));
   EXPECT_TRUE(bad(1e300, 0.0, 1.0));
 }
@@ -173,6 +175,11 @@ TEST(HeartbeatCheck, RefusesSchemaNumberAndPhase) {
   EXPECT_TRUE(refused(
       check_heartbeat(changed(good, [](auto& m) { m.phase = static_cast<MissionPhase>(4); })),
       RefusalReason::kOutOfRange));
+  for (const double plan_time_s : {-0.1, 1.1e6, 1e300}) {
+    EXPECT_TRUE(
+        refused(check_heartbeat(changed(good, [&](auto& m) { m.plan_time_s = plan_time_s; })),
+                RefusalReason::kOutOfRange));
+  }
 }
 
 TEST(CommandCheck, RefusesSchemaAndKind) {
@@ -206,6 +213,7 @@ TEST(StatusCheck, RefusesEachKindOfNonsense) {
       refused(verdict([](auto& m) { m.robots[0].y_m = 46.0; }), RefusalReason::kOutOfRange));
   EXPECT_TRUE(refused(verdict([](auto& m) { m.robots[0].mode = static_cast<RobotMode>(5); }),
                       RefusalReason::kOutOfRange));
+  EXPECT_TRUE(refused(verdict([](auto& m) { m.plan_time_s = 1e300; }), RefusalReason::kOutOfRange));
   EXPECT_TRUE(refused(verdict([](auto& m) { m.state_age[0].bin = Histogram::kBins; }),
                       RefusalReason::kOutOfRange));
 }

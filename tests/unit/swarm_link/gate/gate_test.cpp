@@ -339,6 +339,13 @@ TEST_F(GateTest, RefusesOldStatesOnlyWhereStampsAreLive) {
   EXPECT_EQ(replay.refused()[RefusalReason::kClockSkew], 1U);
 }
 
+// An invented stamp keeps the robot's own states out for a second, not for ten.
+TEST_F(GateTest, LetsNoStateThroughThatIsFarAhead) {
+  EXPECT_FALSE(sut.newer_state(state(3, s_later(2)), kNow));
+  EXPECT_TRUE(counted(RefusalReason::kClockSkew));
+  EXPECT_TRUE(sut.newer_state(state(3, kNow), kNow));
+}
+
 TEST_F(GateTest, LetsEachNewerStateThroughOnce) {
   EXPECT_TRUE(sut.newer_state(state(3, kNow), kNow));
   EXPECT_FALSE(sut.newer_state(state(3, kNow), kNow));

@@ -63,7 +63,7 @@ TEST(GatewayInbox, ForwardsEachStateOnceAmongItsEchoes) {
   GatewayInbox sut(limits());
   std::vector<RobotStateMessage> forwarded;
   std::uint64_t echoes = 0;
-  for (std::int64_t ms = 0; ms < 2'000; ++ms) {
+  for (std::int64_t ms = -2'000; ms < 0; ++ms) {
     CellStatesMessage batch;
     batch.states.push_back(state(static_cast<std::uint32_t>(rng() % 10), ms));
     for (std::size_t i = rng() % 4; i > 0 && !forwarded.empty(); --i) {
