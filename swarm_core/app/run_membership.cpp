@@ -45,7 +45,10 @@ Result<void> check_run_goes_on(const std::filesystem::path& run_dir) {
 // the same file releases them.
 Result<RobotLock> RobotLock::take(const std::filesystem::path& run_dir, RobotId first,
                                   std::uint32_t count) {
-  const int file = ::open((run_dir / kLockFile).c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+  const auto path = run_dir / kLockFile;
+  // Without O_CREAT first: on a frozen file system that flag waits, even for a file that exists.
+  int file = ::open(path.c_str(), O_RDWR | O_CLOEXEC);
+  if (file < 0 && errno == ENOENT) file = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
   if (file < 0) return RobotLock(-1);
   RobotLock lock(file);
   struct flock range = range_of(first, count);

@@ -108,6 +108,12 @@ void FallenRobots::report_incomplete_log(RobotId robot, const FlightTime& now) {
                      .code = std::string(shell::kLogIncomplete),
                      .text = fmt::format("robot {}: its log ends {:.1f} s before its last step",
                                          robot.value(), to_seconds(lacks))});
+  // A frozen process may write the rest later, one that has ended never will, and no successor
+  // knows what its queue held.
+  if (!here_.runs_for(robot, now.steady)) {
+    log_.add_loss(fmt::format("robot {}: the last {:.1f} s of the log of a process that ended",
+                              robot.value(), to_seconds(lacks)));
+  }
 }
 
 // All bodies in one change of the scene, since each change causes a new plan. Before anything is
@@ -122,6 +128,12 @@ void FallenRobots::add(std::span<const RobotId> robots, const FlightTime& now) {
       changes.emplace_back(AddBody{robot, circle_of_fallen(*known, now.utc, mission_, robot)});
   }
   const std::vector<Error> refused = scene_.change_all(changes, now.utc);
+  std::vector<RobotId> without_room;
+  for (const RobotId robot : added) {
+    if (!has_body(scene_.scene(), robot)) without_room.push_back(robot);
+  }
+  std::erase_if(added, [&](RobotId robot) { return !has_body(scene_.scene(), robot); });
+  without_room_.insert(without_room.begin(), without_room.end());
   if (!added.empty()) {
     log_.log(now.utc, {.warning = true,
                        .code = "body-added",
@@ -138,12 +150,27 @@ void FallenRobots::add(std::span<const RobotId> robots, const FlightTime& now) {
   if (!refused.empty()) {
     log_.log(now.utc, {.warning = true,
                        .code = "body-refused",
-                       .text = fmt::format("{} of them cannot be obstacles: {}", refused.size(),
-                                           refused.front().message)});
+                       .text = fmt::format("robots not received any more that cannot be obstacles, "
+                                           "others may touch them: {}; {}",
+                                           describe(without_room), refused.front().message)});
   }
-  for (const RobotId robot : added) {
+  for (const RobotId robot : robots) {
     report_last_step(robot, now);
     report_incomplete_log(robot, now);
+  }
+}
+
+/// Bodies for which the scene had no room, as far as it has some now.
+void FallenRobots::add_waiting(const FlightTime& now, std::vector<SceneChange>& changes,
+                               std::vector<RobotId>& changed) {
+  std::size_t room =
+      Scene::kMaxObstacles - std::min(Scene::kMaxObstacles, scene_.scene().obstacles.size());
+  for (auto it = without_room_.begin(); it != without_room_.end() && room > 0; --room) {
+    if (const auto known = newest_of(*it, now)) {
+      changes.emplace_back(AddBody{*it, circle_of_fallen(*known, now.utc, mission_, *it)});
+      changed.push_back(*it);
+    }
+    it = without_room_.erase(it);
   }
 }
 
@@ -152,6 +179,7 @@ void FallenRobots::update(const FlightTime& now) {
   next_update_ = now.steady + kPeriod;
   std::vector<SceneChange> changes;
   std::vector<RobotId> changed;
+  add_waiting(now, changes, changed);
   for (const SceneObstacle& obstacle : scene_.scene().obstacles) {
     const auto* body = std::get_if<Circle>(&obstacle.shape);
     if (!obstacle.owner || body == nullptr) continue;
@@ -178,6 +206,7 @@ void FallenRobots::clear(std::span<const RobotId> robots, UtcTime now) {
   std::vector<SceneChange> changes;
   std::vector<RobotId> cleared;
   for (const RobotId robot : robots) {
+    without_room_.erase(robot);
     if (!has_body(scene_.scene(), robot)) continue;
     changes.emplace_back(ClearBody{robot});
     cleared.push_back(robot);

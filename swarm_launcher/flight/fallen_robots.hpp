@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <set>
 #include <span>
 #include <vector>
 
@@ -39,7 +40,8 @@ class FallenRobots {
 
   void add(std::span<const RobotId> robots, const FlightTime& now);
   /// Changes the bodies of which the last step is known better than before, or has changed: one
-  /// that is on another host, or a robot that makes steps although it is not received.
+  /// that is on another host, or a robot that makes steps although it is not received. Adds those
+  /// for which there was no room.
   void update(const FlightTime& now);
   void clear(std::span<const RobotId> robots, UtcTime now);
 
@@ -48,6 +50,8 @@ class FallenRobots {
   bool is_last(RobotId robot, const LastKnown& step, const FlightTime& now) const;
   std::optional<LastKnown> last_step(RobotId robot, const FlightTime& now) const;
   std::optional<LastKnown> newest_of(RobotId robot, const FlightTime& now) const;
+  void add_waiting(const FlightTime& now, std::vector<SceneChange>& changes,
+                   std::vector<RobotId>& changed);
   void report_last_step(RobotId robot, const FlightTime& now);
   void report_incomplete_log(RobotId robot, const FlightTime& now);
 
@@ -57,6 +61,7 @@ class FallenRobots {
   Here here_;
   RecordedPositions recorded_;
   std::vector<std::optional<LastKnown>> reported_;  // by the newest status of each robot
+  std::set<RobotId> without_room_;                  // in the scene, for their bodies
   SteadyTime next_update_{};
 };
 

@@ -33,8 +33,25 @@ void FlightLog::log(UtcTime now, const LogEvent& event) {
 void FlightLog::forward(const link::EventMessage& event) {
   file_.write(event);
   relay_.write(event);
-  if (event.code != shell::kRecordsLost || losses_.size() == kMostLosses) return;
-  losses_.push_back(link::source_name(event.source) + ": " + event.text);
+  if (event.code == shell::kDiskFails) failing_.insert(event.source);
+  if (event.code == shell::kDiskWorks) failing_.erase(event.source);
+  if (event.code != shell::kRecordsLost) return;
+  add_loss(link::source_name(event.source) + ": " + event.text);
+}
+
+void FlightLog::on_killed(std::uint32_t first_source, std::uint32_t sources) {
+  // The planner's number is the largest there is.
+  const auto is_its = [&](std::uint32_t source) { return source - first_source < sources; };
+  for (const std::uint32_t source : failing_) {
+    if (!is_its(source)) continue;
+    add_loss(link::source_name(source) +
+             ": its process was killed while it could not write its files");
+  }
+  std::erase_if(failing_, is_its);
+}
+
+void FlightLog::add_loss(const std::string& what) {
+  if (losses_.size() < kMostLosses) losses_.push_back(what);
 }
 
 }  // namespace swarm::launcher

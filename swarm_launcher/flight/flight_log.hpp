@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -25,7 +27,12 @@ class FlightLog {
   /// An event of a robot or the planner.
   void forward(const link::EventMessage& event);
 
-  /// What processes reported as lost from their files; the first hundred.
+  /// Something that the records of the run lack for good.
+  void add_loss(const std::string& what);
+  /// The process of these sources was killed. If it could not write its files at that time, what it
+  /// had not written is lost.
+  void on_killed(std::uint32_t first_source, std::uint32_t sources);
+  /// What add_loss() got, and what processes reported as lost from their files; the first hundred.
   const std::vector<std::string>& losses() const { return losses_; }
 
  private:
@@ -33,6 +40,7 @@ class FlightLog {
   link::Writer<link::EventMessage>& relay_;
   Display& display_;
   std::vector<std::string> losses_;
+  std::set<std::uint32_t> failing_;  // sources that cannot write their files
 };
 
 }  // namespace swarm::launcher

@@ -11,6 +11,7 @@
 #include "swarm_core/base/one_line.hpp"
 #include "swarm_core/mission_file/scene_change_file.hpp"
 #include "swarm_launcher/flight/process_commands.hpp"
+#include "swarm_link/messages.hpp"
 
 namespace swarm::launcher {
 namespace {
@@ -103,11 +104,18 @@ void FlightLoop::reap(const FlightTime& now) {
     if (known == children_.end()) {
       if (const auto event = ports_.helpers.on_exit(child->pid, now.steady)) {
         ports_.log.log(now.utc, *event);
+        if (event->code == kRecorderExit) ports_.log.add_loss("recording of the bus: its end");
       }
       continue;
     }
     measurements_.cpu_s += child->cpu_s;
     measurements_.max_rss_mb = std::max(measurements_.max_rss_mb, child->max_rss_mb);
+    const auto [first, count] = supervisor_.robots_of(known->second);
+    const bool is_planner = known->second == kPlanner;
+    if (child->exit.signal != 0) {  // otherwise it has reported what it could not write
+      ports_.log.on_killed(is_planner ? link::kPlannerSource : first.value(),
+                           is_planner ? 1 : count);
+    }
     supervisor_.on_exit(known->second, child->exit, now.steady);
     release(known->second, now.utc);
     children_.erase(known);

@@ -6,6 +6,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <sys/types.h>
@@ -37,6 +38,10 @@ class ControlRequests {
   virtual std::vector<Request> poll() = 0;
   virtual void answer(ClientId client, const std::string& text) = 0;
 };
+
+/// Codes of the events that a monitor has ended; without its recorder the recording is not whole.
+inline constexpr std::string_view kMonitorExit = "monitor-exit";
+inline constexpr std::string_view kRecorderExit = "recorder-exit";
 
 /// Processes of the run that are neither planner nor agent: monitors and gateway.
 class HelperProcesses {

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "swarm_core/app/file_watch.hpp"
 #include "swarm_launcher/flight/flight_loop.hpp"
 #include "swarm_link/event_names.hpp"
 
@@ -37,7 +38,9 @@ void FlightLoop::read_events(const FlightTime& now) {
   const auto events = ports_.bus.inbox.events();
   const auto senders = ports_.bus.inbox.event_senders();
   for (std::size_t i = 0; i < events.size(); ++i) {
-    if (!throttle_.admit(senders[i], now.steady)) continue;
+    // What a process lost is part of the verdict; the gate lets robots and planner alone report it.
+    const bool is_loss = events[i].code == shell::kRecordsLost;
+    if (!throttle_.admit(senders[i], now.steady) && !is_loss) continue;
     ports_.log.forward(events[i]);
     if (events[i].code == link::kCellsMissing && events[i].source < options_.mission.robots.count) {
       supervisor_.on_hindered(RobotId(events[i].source), events[i].text);

@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "swarm_launcher/flight/gateway_beat.hpp"
 
+#include <array>
 #include <cstddef>
+#include <cstring>
 #include <string>
 
 #include <fmt/format.h>
@@ -16,7 +18,6 @@ namespace {
 int open_socket() { return ::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0); }
 
 struct Beat {
-  pid_t gateway;
   std::uint32_t robots;
 };
 
@@ -37,18 +38,35 @@ struct Address {
 }  // namespace
 
 GatewayBeatReceiver::GatewayBeatReceiver(pid_t launcher) : fd_(open_socket()) {
+  const int on = 1;
+  (void)::setsockopt(fd_, SOL_SOCKET, SO_PASSCRED, &on, sizeof on);
   const Address address(launcher);
   (void)::bind(fd_, address.get(), address.size);
 }
 
 GatewayBeatReceiver::~GatewayBeatReceiver() { ::close(fd_); }
 
+/// Any process of the machine can send to an abstract name: what counts is the sender's process, as
+/// the kernel has it. At most as many at once as a gateway sends in a minute.
 std::optional<std::uint32_t> GatewayBeatReceiver::take(pid_t gateway) {
+  constexpr int kMostAtOnce = 64;
   std::optional<std::uint32_t> robots;
-  Beat beat{};
-  ssize_t size = 0;
-  while ((size = ::recv(fd_, &beat, sizeof beat, 0)) >= 0) {
-    if (size == sizeof beat && beat.gateway == gateway) robots = beat.robots;
+  for (int i = 0; i < kMostAtOnce; ++i) {
+    Beat beat{};
+    alignas(cmsghdr) std::array<char, CMSG_SPACE(sizeof(ucred))> control{};
+    iovec part{.iov_base = &beat, .iov_len = sizeof beat};
+    msghdr message{};
+    message.msg_iov = &part;
+    message.msg_iovlen = 1;
+    message.msg_control = control.data();
+    message.msg_controllen = control.size();
+    const ssize_t size = ::recvmsg(fd_, &message, MSG_CMSG_CLOEXEC);
+    if (size < 0) break;
+    const cmsghdr* const header = CMSG_FIRSTHDR(&message);
+    if (size != sizeof beat || header == nullptr || header->cmsg_type != SCM_CREDENTIALS) continue;
+    ucred sender{};
+    std::memcpy(&sender, CMSG_DATA(header), sizeof sender);
+    if (sender.pid == gateway) robots = beat.robots;
   }
   return robots;
 }
@@ -60,7 +78,7 @@ GatewayBeatSender::~GatewayBeatSender() { ::close(fd_); }
 void GatewayBeatSender::send(std::uint32_t robots, SteadyTime now) {
   next_ = now + kGatewayBeatPeriod;
   const Address address(launcher_);
-  const Beat beat{.gateway = ::getpid(), .robots = robots};
+  const Beat beat{.robots = robots};
   (void)::sendto(fd_, &beat, sizeof beat, MSG_NOSIGNAL, address.get(), address.size);
 }
 

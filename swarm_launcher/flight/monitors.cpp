@@ -54,12 +54,13 @@ std::optional<std::string> Monitors::view_address() {
   return log->substr(0, log->find('\n'));
 }
 
-std::optional<std::string> Monitors::on_exit(pid_t pid) {
+std::optional<Monitors::Exit> Monitors::on_exit(pid_t pid) {
   const auto known = running_.find(pid);
   if (known == running_.end()) return std::nullopt;
   const std::string what = known->second;
   running_.erase(known);
-  return fmt::format("swarm_monitor {0} ended: see logs/{0}.log", what);
+  return Exit{.is_recorder = what == "record",
+              .message = fmt::format("swarm_monitor {0} ended: see logs/{0}.log", what)};
 }
 
 // SIGINT makes the recorder finish its file. Waits for these children only; the launcher's loop has

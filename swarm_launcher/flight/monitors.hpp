@@ -35,8 +35,12 @@ class Monitors {
   /// Address of the view, once, as soon as it is known.
   std::optional<std::string> view_address();
 
-  /// A message for the log if the child that ended was a monitor.
-  std::optional<std::string> on_exit(pid_t pid);
+  /// The monitor that ended, and a message for the log; empty if the child was none.
+  struct Exit {
+    bool is_recorder = false;  ///< the recording is not whole
+    std::string message;
+  };
+  std::optional<Exit> on_exit(pid_t pid);
 
   /// Requests their end and waits until the recording is complete, a few seconds at most.
   void finish();

@@ -33,7 +33,9 @@ Result<void> RunHelpers::start(SteadyTime now) {
 
 std::optional<LogEvent> RunHelpers::on_exit(pid_t pid, SteadyTime now) {
   if (const auto monitor = monitors_.on_exit(pid)) {
-    return LogEvent{.warning = true, .code = "monitor-exit", .text = *monitor};
+    return LogEvent{.warning = true,
+                    .code = std::string(monitor->is_recorder ? kRecorderExit : kMonitorExit),
+                    .text = monitor->message};
   }
   return gateway_ ? gateway_->on_exit(pid, now) : std::nullopt;
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <csignal>
+#include <cstdio>
 #include <string>
 
 #include <fmt/format.h>
@@ -16,6 +17,7 @@ namespace swarm::launcher {
 namespace {
 
 constexpr Duration kStart = std::chrono::seconds(30);
+constexpr int kNotStarted = 127;  // as a shell has it
 
 }  // namespace
 
@@ -24,7 +26,7 @@ HostProcesses::HostProcesses(const HostOffer& offer, HostProcessesOptions option
   for (std::uint32_t robot = 0; robot < offer.robots; robot += offer.per_process) queue_.add(robot);
 }
 
-Result<void> HostProcesses::step() {
+void HostProcesses::step() {
   const SteadyTime now = std::chrono::steady_clock::now();
   while (const auto child = reap_child()) {
     const auto known = children_.find(child->pid);
@@ -36,9 +38,15 @@ Result<void> HostProcesses::step() {
     exit.is_restarted = queue_.on_exit(robot, now);
     exits_.emplace_back(robot / offer_.per_process, exit);
   }
-  if (ending_) return {};
+  if (ending_) return;
   const auto next = queue_.next(now);
-  return next ? start(*next) : Result<void>{};
+  if (!next) return;
+  if (const auto started = start(*next); !started) {
+    std::fprintf(stderr, "%s\n", started.error().message.c_str());
+    exits_.emplace_back(
+        *next / offer_.per_process,
+        ProcessExit{.code = kNotStarted, .is_restarted = queue_.on_exit(*next, now)});
+  }
 }
 
 void HostProcesses::signal(int number) {
@@ -46,12 +54,16 @@ void HostProcesses::signal(int number) {
   for (const auto& [pid, child] : children_) ::kill(pid, number);
 }
 
-void HostProcesses::kill_hung(std::uint32_t process) {
+void HostProcesses::kill_hung(const std::set<std::uint32_t>& processes) {
   const SteadyTime now = std::chrono::steady_clock::now();
+  std::vector<pid_t> hung;
   for (const auto& [pid, child] : children_) {
-    const bool is_meant = child.robot / offer_.per_process == process;
-    if (is_meant && now - child.started_at > kStart) ::kill(pid, SIGKILL);
+    const bool is_meant = processes.contains(child.robot / offer_.per_process);
+    if (is_meant && now - child.started_at > kStart) hung.push_back(pid);
   }
+  // Of several most at once: the machine is overloaded.
+  if (children_.size() > 1 && 2 * hung.size() > children_.size()) return;
+  for (const pid_t pid : hung) ::kill(pid, SIGKILL);
 }
 
 Result<void> HostProcesses::start(std::uint32_t robot) {
@@ -62,6 +74,8 @@ Result<void> HostProcesses::start(std::uint32_t robot) {
       options_.dir.string(),
       "--steps",
       options_.steps,
+      "--inputs",
+      options_.inputs,
       "--ids",
       fmt::format("{}", id),
       "--count",

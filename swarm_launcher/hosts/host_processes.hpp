@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -25,6 +26,7 @@ namespace swarm::launcher {
 struct HostProcessesOptions {
   std::filesystem::path dir;  ///< of the run
   std::string steps;          ///< path of the memory for the robots' last steps
+  std::string inputs;         ///< path of the memory with run and mission
   link::Vendor dds = link::Vendor::kFastDds;
   std::uint32_t respawns = 0;  ///< see StartQueue
 };
@@ -40,16 +42,18 @@ class HostProcesses {
   HostProcesses& operator=(const HostProcesses&) = delete;
 
   /// Reaps processes that ended, queues their restarts, and starts the next process that is due.
-  Result<void> step();
+  /// One that cannot be started, as memory is short, counts as ended.
+  void step();
 
   /// Numbers of the processes that have ended since the last call, counted from our first.
   std::vector<std::pair<std::uint32_t, ProcessExit>> take_exits() {
     return std::exchange(exits_, {});
   }
 
-  /// Kills a process that makes no steps, by its number counted from our first, unless it has been
-  /// started within the last half minute: then it may still be joining the bus.
-  void kill_hung(std::uint32_t process);
+  /// Kills processes that make no steps, by their numbers counted from our first, except those that
+  /// have been started within the last half minute: they may still be joining the bus. Kills none
+  /// if they are more than half of several: then the machine is overloaded.
+  void kill_hung(const std::set<std::uint32_t>& processes);
 
   /// From the first signal on no process is started or restarted.
   void signal(int number);

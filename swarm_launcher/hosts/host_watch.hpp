@@ -23,6 +23,10 @@ class HostWatch {
   HostWatch(std::uint32_t messages, const HostTimes& times, SteadyTime joined);
 
   void on_status(SteadyTime now) { received_at_ = now; }
+  /// The receiver itself did not run for a while: the silence counts from now on.
+  void restart(SteadyTime now) {
+    if (received_at_) received_at_ = now;
+  }
 
   /// The host became unreachable or reachable.
   enum class Change { kCut, kBack };

@@ -6,14 +6,17 @@
 #include <csignal>
 #include <cstdio>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "swarm_core/app/foreign_settings.hpp"
+#include "swarm_core/app/memory_file.hpp"
 #include "swarm_core/app/run_clock.hpp"
 #include "swarm_core/app/run_dir.hpp"
+#include "swarm_core/app/run_inputs.hpp"
 #include "swarm_core/app/shared_steps.hpp"
 #include "swarm_core/app/stop_signal.hpp"
 #include "swarm_core/robot_log/robot_log_file.hpp"
@@ -90,8 +93,7 @@ struct LastSteps {
 /// Runs the processes until all have ended. They are ended when the launcher requests it, when the
 /// connection is lost, or on a stop signal; a process that does not end gets the next stronger
 /// signal.
-Result<void> fly(HostProcesses& processes, LastSteps& last, LineSocket& socket,
-                 Progress& progress) {
+void fly(HostProcesses& processes, LastSteps& last, LineSocket& socket, Progress& progress) {
   int signalled = -1;
   SteadyTime signalled_at;
   const auto signal_processes = [&](int rung) {
@@ -113,13 +115,15 @@ Result<void> fly(HostProcesses& processes, LastSteps& last, LineSocket& socket,
     if (signalled < 0 && (socket.gone() || shell::stop_requests() > 0)) signal_processes(0);
     if (signalled >= 0 && signalled < 2 && now() - signalled_at > kGrace)
       signal_processes(signalled + 1);
-    if (auto stepped = processes.step(); !stepped) return stepped;
+    processes.step();
     for (const auto& [robot, is_silent] : last.watch.step(now())) {
       last.send(robot, is_silent, socket);
     }
+    std::set<std::uint32_t> hung;
     for (const RobotId robot : last.watch.hung(now())) {
-      processes.kill_hung((robot.value() - last.offer.first_robot) / last.offer.per_process);
+      hung.insert((robot.value() - last.offer.first_robot) / last.offer.per_process);
     }
+    if (!hung.empty()) processes.kill_hung(hung);
     for (const auto& [process, exit] : processes.take_exits()) {
       last.send_of(process, socket);  // first, so that the launcher has it at the exit
       socket.send(nlohmann::json{{"exit", process},
@@ -130,7 +134,6 @@ Result<void> fly(HostProcesses& processes, LastSteps& last, LineSocket& socket,
     }
     progress.show("flying", fmt::format("{} processes", processes.living()));
   }
-  return {};
 }
 
 /// Discards what the launcher still sends. Unread input would make the kernel reset the connection
@@ -189,6 +192,7 @@ Result<ExitCode> join_host(const JoinOptions& options) {
   if (!dir) return tl::unexpected(dir.error());
   auto offer = ask(*socket, options);
   if (!offer) return tl::unexpected(offer.error());
+  shell::catch_stop_signals(shell::Hangup::kStop);
   offer->run.interface = options.interface.empty() ? socket->own_address() : options.interface;
   const auto mission_file = *dir / shell::kMissionFile;
   if (auto written = shell::write_file(mission_file, offer->mission_yaml); !written) {
@@ -202,6 +206,10 @@ Result<ExitCode> join_host(const JoinOptions& options) {
   if (auto written = shell::write_run_info(*dir, offer->run); !written) {
     return tl::unexpected(written.error());
   }
+  // In memory as well: a process can be started, too, when the run directory is full or gone.
+  const auto inputs =
+      shell::MemoryFile::make("swarmflow-inputs", shell::to_json(offer->run, offer->mission_yaml));
+  if (!inputs) return tl::unexpected(inputs.error());
   const auto steps = shell::SharedSteps::make(RobotId(offer->first_robot), offer->robots);
   if (!steps) return tl::unexpected(steps.error());
   if (const auto notice = shell::dropped_settings_notice()) {
@@ -213,11 +221,11 @@ Result<ExitCode> join_host(const JoinOptions& options) {
   {
     HostProcesses processes(*offer, {.dir = *dir,
                                      .steps = steps->path(),
+                                     .inputs = inputs->path(),
                                      .dds = options.dds,
                                      .respawns = mission->launcher.respawn_agent_max});
     LastSteps last{.offer = *offer, .steps = *steps, .mission = *mission};
-    if (auto flown = fly(processes, last, *socket, progress); !flown)
-      return tl::unexpected(flown.error());
+    fly(processes, last, *socket, progress);
   }
   send_logs(*offer, *dir, *socket, progress);
   if (!part(*socket)) {

@@ -149,7 +149,7 @@ bool RemoteHosts::take_line(Host& host, const std::string& line) {
     return answer(host,
                   static_cast<std::uint32_t>(std::min<std::uint64_t>(*wanted, offer_.robots)));
   }
-  if (json.contains("exit")) return take_exit(host, json);
+  if (json.contains("exit")) return !host.over && take_exit(host, json);
   if (json.contains("last")) return take_last(host, json);
   if (json.contains("over")) {
     host.over = true;
@@ -206,9 +206,16 @@ void RemoteHosts::drop(Host& host) {
 
 std::vector<LogEvent> RemoteHosts::step(Supervisor& supervisor, SteadyTime now) {
   begun_ = supervisor.stage() > Supervisor::Stage::kGathering;
+  // Suspended itself, the launcher could not receive them.
+  constexpr Duration kOwnGap = std::chrono::seconds(1);
+  if (now_ != SteadyTime{} && now - now_ > kOwnGap) {
+    for (Host& host : hosts_) host.watch.restart(now);
+  }
   now_ = now;
-  // Connections that never requested robots are forgotten.
-  std::erase_if(hosts_, [](const Host& host) { return host.robots == 0 && host.left; });
+  // Connections that never requested robots are forgotten, and before the start those that left.
+  std::erase_if(hosts_, [this](const Host& host) {
+    return host.left && (host.robots == 0 || (host.counted && !begun_));
+  });
   while (hosts_.size() < kMaxHosts) {
     auto socket = server_.accept();
     if (!socket) break;
@@ -276,10 +283,25 @@ void RemoteHosts::watch(Host& host, Supervisor& supervisor, SteadyTime now,
     ended_.push_back(process);
     supervisor.on_exit(process, {}, now);
   }
-  if (!begun_) free_.push_back({host.first_robot - offer_.first_robot, host.robots});
+  if (!begun_) make_free({host.first_robot - offer_.first_robot, host.robots});
   log.push_back({.warning = supervisor.stage() != Supervisor::Stage::kEnding,
                  .code = "host-over",
                  .text = who + " has ended"});
+}
+
+/// Adjacent blocks become one again.
+void RemoteHosts::make_free(const Block& block) {
+  free_.push_back(block);
+  std::ranges::sort(free_, {}, &Block::first);
+  std::vector<Block> joined;
+  for (const Block& next : free_) {
+    if (!joined.empty() && joined.back().first + joined.back().robots == next.first) {
+      joined.back().robots += next.robots;
+    } else {
+      joined.push_back(next);
+    }
+  }
+  free_ = std::move(joined);
 }
 
 /// Pauses once per cut. If the user resumes during a cut, the mission is not paused again until the

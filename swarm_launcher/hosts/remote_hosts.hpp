@@ -93,6 +93,7 @@ class RemoteHosts {
     std::uint32_t robots;
   };
 
+  void make_free(const Block& block);
   void take(Host& host);
   /// False if the line is not valid: then the connection is dropped.
   bool take_line(Host& host, const std::string& line);

@@ -41,9 +41,7 @@ std::vector<StepWatch::Change> StepWatch::step(SteadyTime now) {
 }
 
 std::vector<RobotId> StepWatch::hung(SteadyTime now) const {
-  const auto silent = std::ranges::count_if(robots_, &Robot::is_reported);
   std::vector<RobotId> hung;
-  if (2 * static_cast<std::size_t>(silent) > robots_.size()) return hung;
   for (std::uint32_t i = 0; i < robots_.size(); ++i) {
     const Robot& robot = robots_[i];
     if (robot.is_silent && robot.is_reported && now - robot.stepped_at >= kHung) {

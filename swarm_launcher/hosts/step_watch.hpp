@@ -35,8 +35,8 @@ class StepWatch {
   /// never made one is not among them.
   std::vector<Change> step(SteadyTime now);
 
-  /// Robots that have made no step for kHung: their processes are to be killed, as the launcher
-  /// kills those of its own host. None where more than half are silent: the machine is overloaded.
+  /// Robots that have made no step for kHung: their processes are dead, or to be killed, as the
+  /// launcher kills those of its own host.
   static constexpr Duration kHung = std::chrono::seconds(10);
   std::vector<RobotId> hung(SteadyTime now) const;
 

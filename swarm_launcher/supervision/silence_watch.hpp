@@ -55,6 +55,8 @@ class SilenceWatch {
   bool is_overdue(SteadyTime now, const SilenceLimits& limits) const {
     return was_received_ && now - since_ > limits.ended;
   }
+  /// Time since it was received last; of one that was never received since its start.
+  Duration silent_for(SteadyTime now) const { return now - since_; }
   /// Time since the start of a process that was never received since then; otherwise zero.
   Duration unreceived_for(SteadyTime now) const {
     return was_received_ ? Duration::zero() : now - since_;

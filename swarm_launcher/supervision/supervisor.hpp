@@ -210,7 +210,7 @@ class Supervisor {
     /// All its neighbours, at some status since all robots are known. Robots that wait make room
     /// for each other, so that those at the rim of the communication radius come and go.
     bool received_neighbours = false;
-    bool absent = false;  ///< not received when the mission started
+    bool absent = false;  ///< not received when the mission started, or given up
     bool lost = false;
     bool cleared = false;                      ///< by a user, since it fell silent
     std::optional<SteadyTime> silent_since{};  // its body is an obstacle
@@ -251,6 +251,8 @@ class Supervisor {
   void watch_silence(SteadyTime now, std::vector<Action>& actions);
   void assume_still(ProcessIndex process, SteadyTime now);
   void end_silent(SteadyTime now, std::vector<Action>& actions);
+  void give_up(ProcessIndex process, SteadyTime now, std::vector<Action>& actions);
+  bool receives_other_hosts(SteadyTime now) const;
   Duration first_beat_timeout() const;
   static std::string_view sign_of_life(std::uint32_t process);
   std::string name_of(ProcessIndex process) const;

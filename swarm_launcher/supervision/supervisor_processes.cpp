@@ -91,11 +91,11 @@ void Supervisor::on_exit(ProcessIndex process, const ProcessExit& exit, SteadyTi
   for (std::uint32_t i = 0; i < count; ++i) robots_[first.value() + i].lost = true;
 }
 
-// Robots that were absent when the mission started.
+// Robots that were absent when the mission started, or had been given up.
 void Supervisor::report_late_joiners(std::vector<Action>& actions) {
   if (late_joiners_.empty()) return;
   actions.emplace_back(LogEvent{.code = "late-joiners",
-                                .text = "robots that were absent at the start report: " +
+                                .text = "robots that were absent report: " +
                                         launcher::describe(std::exchange(late_joiners_, {}))});
 }
 
@@ -130,11 +130,15 @@ void Supervisor::start(ProcessIndex process, SteadyTime now, std::vector<Action>
 }
 
 // First the restarts that are due, then new processes: at most starts_per_s on average, and at most
-// starting_max that are not received yet. The planner, with index 0, is the first.
+// starting_max that are not received yet, restarted ones included. The planner, with index 0, is
+// the first.
 void Supervisor::start_due(SteadyTime now, std::vector<Action>& actions) {
+  std::uint32_t starting = 0;
+  for (std::uint32_t i = 0; i < processes(); ++i) starting += is_starting(i, now) ? 1 : 0;
   for (std::uint32_t i = 0; i < processes(); ++i) {
     Process& p = processes_[i];
     if (!p.respawn_due || now < p.respawn_at) continue;
+    if (i != kPlanner.value() && starting++ >= options_.launcher.starting_max) continue;
     p.respawn_due = false;
     start(ProcessIndex(i), now, actions);
     actions.emplace_back(LogEvent{
@@ -142,9 +146,6 @@ void Supervisor::start_due(SteadyTime now, std::vector<Action>& actions) {
         .text = i == 0 ? "planner restarted" : fmt::format("agent process {} restarted", i)});
   }
   const double due = 1.0 + to_seconds(now - begun_) * options_.launcher.starts_per_s;
-  if (next_start_ == local_processes()) return;
-  std::uint32_t starting = 0;
-  for (std::uint32_t i = 0; i < next_start_; ++i) starting += is_starting(i, now) ? 1 : 0;
   while (next_start_ < local_processes() && static_cast<double>(next_start_) < due &&
          starting++ < options_.launcher.starting_max) {
     start(ProcessIndex(next_start_++), now, actions);

@@ -97,7 +97,9 @@ TEST(Recording, SurvivesKilledRecordersAndRobots) {
   EXPECT_EQ(run.launcher().wait(), 1) << run.outcome();  // a robot is lost
 
   EXPECT_EQ(run.summary()["arrived"], 11);
-  EXPECT_TRUE(has_event(run.dir(), "monitor-exit"));
+  EXPECT_TRUE(has_event(run.dir(), "recorder-exit"));
+  const auto missing = run.summary()["missing"].get<std::vector<std::string>>();
+  EXPECT_NE(std::ranges::find(missing, "recording of the bus: its end"), missing.end());
   EXPECT_FALSE(messages_of(run.dir() / "bus.mcap")["swarm/cell"].empty());
   const auto merged = merge(run.dir());
   EXPECT_EQ(merged["unended"], 2);

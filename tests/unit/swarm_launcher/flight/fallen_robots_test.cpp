@@ -146,9 +146,37 @@ TEST_F(FallenRobotsTest, AreReportedWhereALogOnThisHostLacksItsEnd) {
   EXPECT_FALSE(is_logged("log-incomplete")) << "its log is on another host";
 
   sut_.on_status(RobotId(0), {.at = now.utc + milliseconds(301), .position_m = {8.3, 12}});
+  runs_for_ = seconds(100);
+  sut_.add(std::array{RobotId(0)}, later(seconds(1)));
+  EXPECT_TRUE(is_logged("log-incomplete"));
+  EXPECT_TRUE(log->losses().empty()) << "a frozen process may write the rest later";
+
+  runs_for_.reset();
   sut_.add(std::array{RobotId(0)}, later(seconds(1)));
 
-  EXPECT_TRUE(is_logged("log-incomplete"));
+  ASSERT_EQ(log->losses().size(), 1U);
+  EXPECT_EQ(log->losses()[0], "robot 0: the last 0.3 s of the log of a process that ended");
+}
+
+// The scene holds a limited number of obstacles.
+TEST_F(FallenRobotsTest, WaitForRoomInTheScene) {
+  for (std::size_t i = 0; i < Scene::kMaxObstacles; ++i) {
+    ASSERT_TRUE(scene->change(AddObstacle{Circle{{5, 5}, 0.1}}, now.utc));
+  }
+  last_step_ = kStanding;
+  last_step_->at = now.utc;
+  sut_.add(std::array{kHere}, now);
+  EXPECT_FALSE(body_of(kHere));
+  EXPECT_TRUE(is_logged("body-refused"));
+  EXPECT_FALSE(is_logged("body-added"));
+  look_again(seconds(2));
+  EXPECT_FALSE(body_of(kHere));
+
+  const auto added = static_cast<std::uint32_t>(options.mission.world.obstacles().size());
+  ASSERT_TRUE(scene->change(RemoveObstacle{added}, now.utc));
+  look_again(seconds(2));
+
+  EXPECT_TRUE(body_of(kHere));
 }
 
 // Its process was killed, and started again at once.

@@ -1,6 +1,10 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
 // Processes that end, that cannot be started, and robots that are not received.
+#include <string>
+#include <string_view>
+
+#include "swarm_core/app/file_watch.hpp"
 #include "swarm_core/mission/scene_bodies.hpp"
 #include "tests/unit/swarm_launcher/flight/flight_bench.hpp"
 
@@ -156,6 +160,29 @@ TEST_F(FlightLoopFailure, TriesAgainWhenThePlannerCannotBeStartedInFlight) {
   arrive();
   ASSERT_TRUE(run_to_the_end());
   EXPECT_EQ(outcome(), Outcome::kCompleted);
+}
+
+// A process that is killed on a full disk takes with it what it had not written.
+TEST_F(FlightLoopFailure, CountsTheFilesOfAProcessThatIsKilledOnAFullDiskAsLost) {
+  begin();
+  const auto report = [this](std::uint32_t source, std::string_view code) {
+    log->forward({.source = source, .code = std::string(code)});
+  };
+  report(link::kPlannerSource, shell::kDiskFails);
+  report(7, shell::kDiskFails);
+  report(8, shell::kDiskFails);
+  report(8, shell::kDiskWorks);
+
+  log->on_killed(8, 2);
+  EXPECT_TRUE(log->losses().empty());
+  log->on_killed(6, 2);
+  ASSERT_EQ(log->losses().size(), 1U);
+  EXPECT_EQ(log->losses()[0], "robot-7: its process was killed while it could not write its files");
+  log->on_killed(link::kPlannerSource, 1);
+  ASSERT_EQ(log->losses().size(), 2U);
+  EXPECT_EQ(log->losses()[1], "planner: its process was killed while it could not write its files");
+  log->on_killed(link::kPlannerSource, 1);
+  EXPECT_EQ(log->losses().size(), 2U);
 }
 
 TEST_F(FlightLoopFailure, LogsAHelperThatEndsAndFliesOn) {

@@ -57,6 +57,17 @@ TEST(HostWatch, GivesAHostTenSecondsForItsFirstStatusAtLeast) {
   EXPECT_TRUE(sut.lost(at(72'001))) << "one that was received may be cut off for longer";
 }
 
+TEST(HostWatch, CountsAnewAfterTheLauncherWasSuspended) {
+  HostWatch sut(50, {}, at(0));
+  sut.on_status(at(1000));
+  sut.restart(at(90'000));
+  EXPECT_FALSE(sut.lost(at(150'000)));
+  EXPECT_TRUE(sut.lost(at(150'001)));
+  HostWatch absent(50, {}, at(0));
+  absent.restart(at(90'000));
+  EXPECT_FALSE(absent.was_received());
+}
+
 TEST(HostPort, IsReadOrRefused) {
   const auto good = parse_host_port("10.0.0.1:7000");
   ASSERT_TRUE(good);

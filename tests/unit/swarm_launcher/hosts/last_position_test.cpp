@@ -140,11 +140,6 @@ TEST_F(StepWatchTest, FindsThatARobotHangsAfterTenSeconds) {
     changes_at(ms);
     EXPECT_EQ(hung_at(ms), ms < 10'000 ? Ids{} : Ids{6}) << ms;
   }
-  for (int ms = 12'500; ms <= 23'000; ms += 500) {
-    step(5);
-    changes_at(ms);
-  }
-  EXPECT_EQ(hung_at(23'000), Ids{}) << "most are silent";
 }
 
 TEST_F(StepWatchTest, CountsAnewAfterTheHostWasSuspended) {

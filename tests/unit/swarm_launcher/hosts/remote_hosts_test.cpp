@@ -136,6 +136,33 @@ TEST(RemoteHosts, GivesTheRobotsOfOneThatFailedAtTheStartToTheNext) {
   EXPECT_TRUE(bench.supervisor.lost().empty());
 }
 
+// As a join in a loop that fails each time.
+TEST(RemoteHosts, GiveTheirRobotsAgainHoweverManyFailedAtTheStart) {
+  Bench bench;
+  constexpr std::ptrdiff_t kJoins = 260;
+  for (std::ptrdiff_t i = 1; i <= kJoins; ++i) {
+    bench.join(1).close();
+    ASSERT_NE(bench.answer, "") << i;
+    ASSERT_TRUE(bench.until([&] { return std::ranges::count(bench.log, "host-over") == i; })) << i;
+  }
+
+  LineSocket again = bench.join(2);
+
+  EXPECT_EQ(parse_offer(bench.answer)->robots, 2U) << "in one block";
+}
+
+TEST(RemoteHosts, OneThatReportsAnExitAfterItsEndIsDropped) {
+  Bench bench;
+  LineSocket host = bench.join(2);
+  bench.start_mission();
+  host.send(R"({"over": true})");
+  EXPECT_TRUE(bench.until([&] { return bench.logged("host-over"); }));
+
+  host.send(R"({"exit": 0, "code": 0, "signal": 0, "restarts": false})");
+
+  EXPECT_TRUE(bench.is_dropped(host));
+}
+
 TEST(RemoteHosts, AProcessThatItsHostDoesNotRestartIsLost) {
   Bench bench;
   LineSocket host = bench.join(2);

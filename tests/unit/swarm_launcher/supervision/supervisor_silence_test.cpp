@@ -175,6 +175,55 @@ TEST(SupervisorSilence, LeavesProcessesOfOtherHostsToTheWatchOfHosts) {
   EXPECT_TRUE(bench.signals.empty());
 }
 
+TEST(SupervisorSilence, KillsAPlannerThatIsTheOnlyProcessHere) {
+  for (const bool receives_others : {false, true}) {
+    SilenceBench bench;
+    bench.options.remote_processes = 4;
+    bench.run_for(seconds(1));
+    bench.sut->on_joined(ProcessIndex(1), 4, bench.now);
+    bench.report_all(RobotMode::kWaiting);
+    bench.run_for(seconds(1));
+    ASSERT_EQ(bench.sut->stage(), Supervisor::Stage::kRunning);
+    for (std::uint32_t i = 0; i < (receives_others ? 4U : 0U); ++i) bench.reporting.emplace_back(i);
+    bench.planner_epoch = 0;
+    bench.run_for(seconds(11));
+    EXPECT_EQ(bench.is_killed(0), receives_others);
+  }
+}
+
+TEST(SupervisorSilence, KillsARestartedAgentThatNeverReports) {
+  SilenceBench bench;
+  bench.fly();
+  bench.freeze(1);
+  bench.run_for(seconds(11));
+  ASSERT_EQ(bench.starts(2), 2);
+  bench.run_for(seconds(28));
+  EXPECT_EQ(bench.starts(2), 2);
+  bench.run_for(seconds(5));
+  EXPECT_EQ(bench.starts(2), 3);
+}
+
+// Another host that is stopped itself does not report the end of its process.
+TEST(SupervisorSilence, GoesOnWithoutAProcessOfAnotherHostAfterAMinute) {
+  SilenceBench bench;
+  bench.options.remote_processes = 1;
+  bench.run_for(seconds(1));
+  bench.sut->on_joined(ProcessIndex(4), 1, bench.now);
+  bench.report_all(RobotMode::kWaiting);
+  bench.run_for(seconds(1));
+  ASSERT_EQ(bench.sut->stage(), Supervisor::Stage::kRunning);
+  for (std::uint32_t i = 0; i < 3; ++i) bench.reporting.emplace_back(i);
+  bench.run_for(seconds(59));
+  EXPECT_TRUE(bench.sut->lost().empty());
+  bench.run_for(seconds(2));
+  EXPECT_EQ(bench.sut->lost(), std::vector{RobotId(3)});
+  EXPECT_TRUE(bench.logged("agent-given-up"));
+
+  bench.reporting.emplace_back(3);
+  bench.run_for(seconds(1));
+  EXPECT_TRUE(bench.sut->lost().empty());
+}
+
 TEST(SupervisorAbsence, LeavesOutAProcessThatHangsWhileItStarts) {
   SilenceBench bench(5);
   bench.options.launcher.quorum_share = 0.8;
@@ -207,7 +256,7 @@ TEST(SupervisorAbsence, EndsWhenTheAbsentReports) {
   bench.reporting.emplace_back(4);
   bench.run_for(milliseconds(200));
   EXPECT_TRUE(bench.sut->lost().empty());
-  EXPECT_TRUE(bench.logged("late-joiners: robots that were absent at the start report: 4"));
+  EXPECT_TRUE(bench.logged("late-joiners: robots that were absent report: 4"));
   EXPECT_EQ(bench.risen, (Robots{{RobotId(4)}}));
 }
 
