@@ -41,8 +41,7 @@ int main(int argc, char** argv) {
     const auto done = shell::parse(app, argc, argv, builtin_catalogue());
     if (!done) return tl::unexpected(done.error());
     if (*done) return **done;
-    // Before the command starts threads and children.
-    shell::catch_stop_signals(shell::Hangup::kStop);
+    shell::prepare_signals();
     for (const Command& command : commands) {
       if (command.app->parsed()) return command.act();
     }

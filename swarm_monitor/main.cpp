@@ -23,7 +23,7 @@ int main(int argc, char** argv) {
     const auto done = shell::parse(app, argc, argv);
     if (!done) return tl::unexpected(done.error());
     if (*done) return **done;
-    shell::catch_stop_signals(shell::Hangup::kStop);
+    shell::prepare_signals();
     for (const Command& command : commands) {
       if (command.app->parsed()) return command.act();
     }

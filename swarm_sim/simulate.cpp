@@ -5,6 +5,8 @@
 #include <chrono>
 #include <cstdio>
 #include <fstream>
+#include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -57,7 +59,17 @@ class DirectoryObserver final : public SimulationObserver {
     scenes_ << scene_log_line(scene.version, change) << std::flush;
   }
 
-  const std::optional<Error>& failure() const { return failure_; }
+  /// The first file that could not be written.
+  std::optional<Error> failure() const {
+    if (failure_) return failure_;
+    for (const auto& [file, is_good] :
+         {std::pair{shell::kSceneFile, scenes_.good()}, {shell::kPlanClockFile, clock_.good()}}) {
+      if (is_good) continue;
+      return Error{ErrorCode::kEnvironment,
+                   fmt::format("{} cannot be written", (dir_ / file).string())};
+    }
+    return std::nullopt;
+  }
 
  private:
   std::filesystem::path dir_;
@@ -176,9 +188,10 @@ Result<ExitCode> simulate_mission(const SimulateOptions& options) {
                         .wall_s = to_seconds(std::chrono::steady_clock::now() - begin),
                         .ns_per_agent_step = cost.median_step_ns};
   if (!options.record) return summarise_unrecorded(**simulation, measured, options.json);
-  // A plan that could not be written ends the run only here, after the simulation.
-  if (written->failure()) return tl::unexpected(*written->failure());
+  // A file that could not be written ends the run only here, after the simulation.
+  if (const auto failure = written->failure()) return tl::unexpected(*failure);
   if (auto w = recording.write(dir); !w) return tl::unexpected(w.error());
+  shell::release_stop_signals();  // an audit may take long
   return summarise(dir, measured, options.json);
 }
 

@@ -13,9 +13,18 @@ enum class Hangup : unsigned char {
   kStop,
 };
 
-/// Installs handlers for SIGINT and SIGTERM that only count them, and ignores SIGPIPE and SIGXFSZ.
-/// A sleep during which a signal arrives returns early.
+/// Takes back that the process which started this one blocked stop signals or SIGCHLD, or ignored
+/// SIGCHLD, and ignores SIGPIPE and SIGXFSZ, so that a write fails instead. To be called before the
+/// program starts threads and children.
+void prepare_signals();
+
+/// prepare_signals(), and handlers for SIGINT and SIGTERM that only count them: for a program that
+/// polls stop_requests(). A sleep during which a signal arrives returns early.
 void catch_stop_signals(Hangup hangup = Hangup::kIgnore);
+
+/// From now on SIGINT and SIGTERM do what they did before catch_stop_signals(), which is to end the
+/// program: it polls no more.
+void release_stop_signals();
 
 /// Number of stop signals so far.
 int stop_requests();

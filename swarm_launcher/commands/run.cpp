@@ -9,6 +9,7 @@
 
 #include <unistd.h>
 
+#include "swarm_core/app/stop_signal.hpp"
 #include "swarm_launcher/flight/flight.hpp"
 #include "swarm_launcher/processes/child_process.hpp"
 #include "swarm_launcher/processes/described_program.hpp"
@@ -29,6 +30,7 @@ Machine this_machine() {
 
 // The priority is raised first, since threads started later inherit it.
 Result<ExitCode> run_mission(const RunOptions& options) {
+  shell::catch_stop_signals(shell::Hangup::kStop);
   if (options.urgent) become_urgent();
   const auto catalogue = catalogue_of(options.how.agent_program, options.how.planner_program);
   if (!catalogue) return tl::unexpected(catalogue.error());
@@ -49,6 +51,7 @@ Result<ExitCode> run_mission(const RunOptions& options) {
   if (measured->outcome == Outcome::kPlannerFailed) {
     std::fputs((*flight)->planner_complaint().c_str(), stderr);
   }
+  shell::release_stop_signals();  // an audit may take long
   return summarise((*flight)->dir(), *measured, options.json);
 }
 

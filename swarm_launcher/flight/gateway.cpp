@@ -28,6 +28,7 @@ constexpr Duration kTimeout = std::chrono::milliseconds(5);
 // Reads mission and run information from the run directory, then forwards states until a stop
 // signal arrives or the launcher, its parent, has ended.
 Result<ExitCode> run_gateway(const GatewayCommandOptions& options) {
+  shell::catch_stop_signals(shell::Hangup::kStop);
   const auto mission = load_mission(options.run_dir / shell::kMissionFile, open_catalogue());
   if (!mission) return tl::unexpected(mission.error());
   const auto run = shell::read_run_info(options.run_dir);

@@ -71,8 +71,10 @@ Result<ExitCode> view(ViewOptions options) {
     auto run = read_run(options.from);
     if (!run) return tl::unexpected(run.error());
     RecordedSource source(std::move(*run));
+    shell::catch_stop_signals(shell::Hangup::kStop);
     return serve(options.server, source);
   }
+  shell::catch_stop_signals(shell::Hangup::kStop);
   auto source = look_at_run(options.from, kViewNumber, options.server.allow_control);
   if (!source) return tl::unexpected(source.error());
   std::optional<RemoteControl> control;
@@ -90,6 +92,7 @@ Result<ExitCode> top(const std::filesystem::path& run_dir) {
   if (auto joinable = check_in_progress(run_dir); !joinable) {
     return tl::unexpected(joinable.error());
   }
+  shell::catch_stop_signals(shell::Hangup::kStop);
   auto source = look_at_run(run_dir, kTopNumber);
   if (!source) return tl::unexpected(source.error());
   const bool live = ::isatty(STDOUT_FILENO) != 0;

@@ -12,6 +12,7 @@
 #include <gtest/gtest.h>
 #include <pthread.h>
 #include <sys/socket.h>
+#include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -74,6 +75,40 @@ TEST_F(StopSignals, DoNotIncludeTheEndOfTheTerminalUnderNohup) {
   catch_stop_signals(Hangup::kStop);
   ::raise(SIGHUP);
   EXPECT_EQ(stop_requests(), before);
+}
+
+TEST_F(StopSignals, EndTheProgramAgainOnceReleased) {
+  const int before = stop_requests();
+  EXPECT_EXIT(
+      {
+        release_stop_signals();
+        ::raise(SIGINT);
+      },
+      testing::KilledBySignal(SIGINT), "");
+  EXPECT_EQ(stop_requests(), before);
+}
+
+/// Whether a process that was started with SIGCHLD ignored and stop signals blocked, as by a daemon
+/// that does so, notices the end of its child and receives a signal.
+bool works_under_a_careless_parent() {
+  const int before = stop_requests();
+  std::signal(SIGCHLD, SIG_IGN);
+  sigset_t all;
+  sigfillset(&all);
+  ::pthread_sigmask(SIG_BLOCK, &all, nullptr);
+
+  catch_stop_signals();
+
+  const pid_t child = ::fork();
+  if (child == 0) ::_exit(3);
+  int status = 0;
+  const bool reaped = ::waitpid(child, &status, 0) == child && WEXITSTATUS(status) == 3;
+  ::raise(SIGTERM);
+  return reaped && stop_requests() - before == 1;
+}
+
+TEST(PrepareSignals, TakesBackWhatTheParentIgnoredAndBlocked) {
+  EXPECT_EXIT(::_exit(works_under_a_careless_parent() ? 0 : 1), testing::ExitedWithCode(0), "");
 }
 
 // The signal is repeated, because the first one may arrive before the thread sleeps.
