@@ -47,7 +47,7 @@ GatewayBeatReceiver::GatewayBeatReceiver(pid_t launcher) : fd_(open_socket()) {
 GatewayBeatReceiver::~GatewayBeatReceiver() { ::close(fd_); }
 
 /// Any process of the machine can send to an abstract name: what counts is the sender's process, as
-/// the kernel has it. At most as many at once as a gateway sends in a minute.
+/// the kernel has it. At most those of thirteen seconds at once.
 std::optional<std::uint32_t> GatewayBeatReceiver::take(pid_t gateway) {
   constexpr int kMostAtOnce = 64;
   std::optional<std::uint32_t> robots;

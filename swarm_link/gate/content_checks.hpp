@@ -22,7 +22,7 @@ inline constexpr std::uint16_t kAnySource = 0xFFFF;
 /// Largest plan time: twelve days. A larger one is an invented number.
 inline constexpr double kMaxPlanTime_s = 1e6;
 
-/// FlowPlan::make checks Gaussians and masses; their axes may differ by 10⁴ at most. Means must lie
+/// FlowPlan::make checks Gaussians and masses; their axes may differ by 10⁵ at most. Means must lie
 /// inside the bounds plus slack, and robots must enter at sources of the plan.
 Checked<FlowPlan> check_plan(const PlanMessage& message, const WireLimits& limits);
 

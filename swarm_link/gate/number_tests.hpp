@@ -17,10 +17,10 @@ bool all_finite(Numbers... numbers) {
   return (std::isfinite(numbers) && ...);
 }
 
-/// Whether the axes of a covariance differ by a factor of 10⁴ at most: beyond that the transport
+/// Whether the axes of a covariance differ by a factor of 10⁵ at most: beyond that the transport
 /// map between two Gaussians is lost in rounding. \pre finite, positive definite
 inline bool is_well_shaped(const Mat2& covariance_m2) {
-  constexpr double kMostRatio = 1e8;  // of the variances
+  constexpr double kMostRatio = 1e10;  // of the variances
   const double half_trace = 0.5 * covariance_m2.trace();
   const double determinant = covariance_m2.determinant();
   const double largest =

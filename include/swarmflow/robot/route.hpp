@@ -44,10 +44,14 @@ struct RouteOptions {
 ///
 /// so on each leg it moves in a straight line. Where μ + y would come too near an obstacle, y is
 /// scaled towards 0, where the plan keeps its risk limit. Bodies of dead robots only bend the
-/// path, and move its end within the goal's 99 % ellipse where there is room. Deterministic;
-/// allocates; O(vertices) distance queries. \param plan the plan \param share the robot's share in
-/// [0, 1) \param position_m its position [m] \param world the map \param options radius and
-/// clearances \pre the plan is not empty
+/// path, and move its end within the goal's 99 % ellipse where there is room.
+/// Deterministic; allocates; O(vertices) distance queries.
+/// \param plan the plan
+/// \param share the robot's share in [0, 1)
+/// \param position_m its position [m]
+/// \param world the map
+/// \param options radius and clearances
+/// \pre the plan is not empty
 Route route_from_start(const FlowPlan& plan, double share, const Vec2& position_m,
                        const World& world, const RouteOptions& options);
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <gtest/gtest.h>
 
@@ -126,6 +127,25 @@ TEST(Geodesic, RunsAtConstantSpeed) {
 
     EXPECT_NEAR(wasserstein2(geodesic.at(0.2), geodesic.at(0.7)), 0.5 * whole, 1e-6);
     EXPECT_NEAR(wasserstein2(a, geodesic.at(0.3)), 0.3 * whole, 1e-6);
+  }
+}
+
+/// σ of 1000 m and 1 cm, the long axis at this angle.
+Gaussian needle(const Vec2& mean_m, double angle) {
+  const Mat2 turn = Eigen::Rotation2Dd(angle).toRotationMatrix();
+  const Mat2 covariance_m2 = turn * Vec2(1e6, 1e-4).asDiagonal() * turn.transpose();
+  return Gaussian::make(mean_m, 0.5 * (covariance_m2 + covariance_m2.transpose())).value();
+}
+
+// The most that the gate lets through: axes that differ by 10⁵.
+TEST(Geodesic, LeadsFromOneNeedleToACrossingOne) {
+  Rng rng(12);
+  for (int i = 0; i < 1000; ++i) {
+    const Geodesic geodesic(needle({0, 0}, uniform(rng, 0, 3.14)),
+                            needle({30, 0}, uniform(rng, 0, 3.14)));
+    for (const double t : {0.0, 0.3, 1.0}) {
+      EXPECT_GT(geodesic.at(t).covariance_m2().determinant(), 0.0) << i << ' ' << t;
+    }
   }
 }
 
