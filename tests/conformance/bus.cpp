@@ -3,6 +3,7 @@
 #include "tests/conformance/bus.hpp"
 
 #include <chrono>
+#include <cstdlib>
 #include <thread>
 #include <utility>
 
@@ -12,6 +13,7 @@
 #include "swarm_core/base/assert.hpp"
 #include "swarm_link/adapters/cyclone/cyclone_participant.hpp"
 #include "swarm_link/channels/groups/group_channel.hpp"
+#include "swarm_link/roles/domain_lock.hpp"
 #include "tests/support/inproc/inproc_bus.hpp"
 
 namespace swarm::link::conformance {
@@ -125,7 +127,21 @@ void Bus::converge() {
   }
 }
 
-std::uint32_t test_domain() { return 10 + static_cast<std::uint32_t>(::getpid()) % 80; }
+/// Reserved as a run does it: numbers by process ids alone meet those of flights, and of other
+/// tests after some dozens of processes.
+std::uint32_t test_domain() {
+  static const DomainLock lock = [] {
+    constexpr int kFirst = 10, kDomains = 80;
+    constexpr DomainNeeds kNeeds{.participants = 100, .fixed = 20};
+    for (int i = 0; i < kDomains; ++i) {
+      auto taken = DomainLock::take(kFirst + (::getpid() + i) % kDomains, kNeeds);
+      if (taken) return *std::move(taken);
+    }
+    SWARM_ASSERT(false && "no free domain");
+    std::abort();
+  }();
+  return lock.domain();
+}
 
 std::unique_ptr<Bus> make_inproc_bus() { return std::make_unique<TestInprocBus>(); }
 
