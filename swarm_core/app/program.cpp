@@ -51,10 +51,8 @@ void demand_decimals(CLI::App& app) {
       });
     } else if (type.starts_with("INT") || type.starts_with("UINT")) {
       const bool has_sign = type.starts_with("INT");
-      option->check([has_sign](const std::string& text) {
-        return is_whole_decimal(text, has_sign) ? std::string()
-                                                : "'" + text + "' is no whole decimal number";
-      });
+      option->check(
+          [has_sign](const std::string& text) { return objection_to_whole(text, has_sign); });
     }
   }
   for (CLI::App* const command : app.get_subcommands([](CLI::App*) { return true; })) {
@@ -65,10 +63,12 @@ void demand_decimals(CLI::App& app) {
 }  // namespace
 
 /// A leading zero would make it octal.
-bool is_whole_decimal(const std::string& text, bool has_sign) {
+std::string objection_to_whole(const std::string& text, bool has_sign) {
   const std::size_t first = text.find_first_not_of("+-");
-  if (first != std::string::npos && text[first] == '0' && text.size() > first + 1) return false;
-  return has_sign ? is_decimal<std::int64_t>(text) : is_decimal<std::uint64_t>(text);
+  const bool is_octal = first != std::string::npos && text[first] == '0' && text.size() > first + 1;
+  const bool is_number =
+      has_sign ? is_decimal<std::int64_t>(text) : is_decimal<std::uint64_t>(text);
+  return is_number && !is_octal ? std::string() : "'" + text + "' is no whole decimal number";
 }
 
 // Domain code returns errors as values; what is thrown nevertheless (for example std::bad_alloc)

@@ -28,9 +28,9 @@ std::string program_name(const char* argv0, const std::string& own);
 /// Adds `--version` and `--check MISSION.yaml` (validate and exit), which every program has.
 void add_common_options(CLI::App& app);
 
-/// Whether a text is a whole decimal number, which has no leading zero and, unless it `has_sign`,
-/// no minus.
-bool is_whole_decimal(const std::string& text, bool has_sign = false);
+/// Why a text is no whole decimal number, which has no leading zero and, unless it `has_sign`, no
+/// minus; empty if it is one. As validators of options have it.
+std::string objection_to_whole(const std::string& text, bool has_sign = false);
 
 /// Parses the command line; options of type INT, UINT and FLOAT take decimal numbers only. Holds an
 /// exit code when there is nothing left to do (help, version, check); kBadInput on wrong usage.

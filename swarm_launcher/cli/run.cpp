@@ -57,8 +57,7 @@ Command add_run(CLI::App& program) {
          "Agent processes, or auto: one per robot if the machine can run them, else few")
       ->check(CLI::IsMember({"auto"}) | CLI::Range(1, kMostRobots))
       ->check([](const std::string& n) {
-        return n == "auto" || shell::is_whole_decimal(n) ? std::string()
-                                                         : "'" + n + "' is no whole decimal number";
+        return n == "auto" ? std::string() : shell::objection_to_whole(n);
       })
       ->type_name("N|auto")
       ->excludes(per_process);

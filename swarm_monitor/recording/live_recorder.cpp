@@ -70,8 +70,7 @@ Result<RecordResult> record_bus(const RecordOptions& options) {
     if (now - flushed_at < kFlushEvery) continue;
     flushed_at = now;
     writer->flush();
-    std::error_code unreadable;
-    if (std::filesystem::exists(options.run_dir / shell::kSummaryFile, unreadable)) break;
+    if (std::error_code e; std::filesystem::exists(options.run_dir / shell::kSummaryFile, e)) break;
   }
   const auto finished = writer->finish();
   result.messages = writer->messages();

@@ -93,6 +93,25 @@ std::string summary_of(const Score& score) {
   return "{\"outcome\": \"replayed\"}\n";
 }
 
+/// Messages are due at begin + at/rate on the steady clock; while it waits, the loop serves DDS
+/// every 20 ms. Returns how many messages DDS refused.
+std::uint64_t publish_all(const Score& score, double rate, Cast& cast,
+                          const std::function<bool()>& stopped) {
+  const auto begin = std::chrono::steady_clock::now();
+  std::uint64_t refused = 0;
+  for (const ReplayMessage& message : score.messages) {
+    const auto at = begin + std::chrono::duration_cast<Duration>(message.at / rate);
+    while (!stopped() && std::chrono::steady_clock::now() < at) {
+      cast.receive();
+      std::this_thread::sleep_until(std::min(at, std::chrono::steady_clock::now() + kStep));
+    }
+    if (stopped()) break;
+    const auto bytes = std::span<const unsigned char>(score.bytes);
+    if (!cast.publish(message.topic, bytes.subspan(message.begin, message.size))) ++refused;
+  }
+  return refused;
+}
+
 }  // namespace
 
 /// Makes a run directory like a launcher's, waits for receivers, publishes every message at its
@@ -130,20 +149,7 @@ Result<ExitCode> replay(const ReplayOptions& options) {
     cast->receive();
     std::this_thread::sleep_for(kStep);
   }
-  const auto begin = std::chrono::steady_clock::now();
-  std::uint64_t refused = 0;
-  // Messages are due at begin + at/rate on the steady clock; while it waits, the loop serves DDS
-  // every 20 ms.
-  for (const ReplayMessage& message : score->messages) {
-    const auto at = begin + std::chrono::duration_cast<Duration>(message.at / options.rate);
-    while (!stopped() && std::chrono::steady_clock::now() < at) {
-      cast->receive();
-      std::this_thread::sleep_until(std::min(at, std::chrono::steady_clock::now() + kStep));
-    }
-    if (stopped()) break;
-    const auto bytes = std::span<const unsigned char>(score->bytes);
-    if (!cast->publish(message.topic, bytes.subspan(message.begin, message.size))) ++refused;
-  }
+  const std::uint64_t refused = publish_all(*score, options.rate, *cast, stopped);
   const auto ends = std::chrono::steady_clock::now() + kLinger;
   while (std::chrono::steady_clock::now() < ends) {
     cast->receive();
