@@ -27,8 +27,7 @@ double smallest_radius_m(const RobotsSpec& robots) {
 NamedGoal last_goal(const Mission& mission) {
   NamedGoal last{&mission.goal, "goal"};
   for (std::size_t i = 0; i < mission.script.size(); ++i) {
-    const auto* change = std::get_if<SceneChange>(&mission.script[i].action);
-    const auto* go_to = change != nullptr ? std::get_if<GoTo>(change) : nullptr;
+    const auto* go_to = std::get_if<GoTo>(std::get_if<SceneChange>(&mission.script[i].action));
     if (go_to != nullptr) last = {&go_to->goal, fmt::format("script[{}].goal", i)};
   }
   return last;
