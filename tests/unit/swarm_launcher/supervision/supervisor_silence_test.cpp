@@ -25,6 +25,16 @@ struct SilenceBench : RunningBench {
     for (std::uint32_t i = 0; i < options.robots; ++i) reporting.emplace_back(i);
     run_for(seconds(1));
   }
+  /// The last robots are on another host; only the first `reporters` of all report in flight.
+  void fly_with_other_host(std::uint32_t remote, std::uint32_t reporters) {
+    options.remote_processes = remote;
+    run_for(seconds(1));
+    sut->on_joined(ProcessIndex(1 + options.robots - remote), remote, now);
+    report_all(RobotMode::kWaiting);
+    run_for(seconds(1));
+    ASSERT_EQ(sut->stage(), Supervisor::Stage::kRunning);
+    for (std::uint32_t i = 0; i < reporters; ++i) reporting.emplace_back(i);
+  }
   void freeze(std::uint32_t robot) { std::erase(reporting, RobotId(robot)); }
   bool is_killed(std::uint32_t process) const {
     return std::find(signals.begin(), signals.end(), std::pair(process, EndSignal::kKill)) !=
@@ -164,13 +174,7 @@ TEST(SupervisorSilence, EndsNoProcessWhileMostOfThemAreSilent) {
 
 TEST(SupervisorSilence, LeavesProcessesOfOtherHostsToTheWatchOfHosts) {
   SilenceBench bench;
-  bench.options.remote_processes = 1;
-  bench.run_for(seconds(1));
-  bench.sut->on_joined(ProcessIndex(4), 1, bench.now);
-  bench.report_all(RobotMode::kWaiting);
-  bench.run_for(seconds(1));
-  ASSERT_EQ(bench.sut->stage(), Supervisor::Stage::kRunning);
-  for (std::uint32_t i = 0; i < 3; ++i) bench.reporting.emplace_back(i);
+  bench.fly_with_other_host(1, 3);
   bench.run_for(seconds(30));
   EXPECT_TRUE(bench.signals.empty());
 }
@@ -178,13 +182,7 @@ TEST(SupervisorSilence, LeavesProcessesOfOtherHostsToTheWatchOfHosts) {
 TEST(SupervisorSilence, KillsAPlannerThatIsTheOnlyProcessHere) {
   for (const bool receives_others : {false, true}) {
     SilenceBench bench;
-    bench.options.remote_processes = 4;
-    bench.run_for(seconds(1));
-    bench.sut->on_joined(ProcessIndex(1), 4, bench.now);
-    bench.report_all(RobotMode::kWaiting);
-    bench.run_for(seconds(1));
-    ASSERT_EQ(bench.sut->stage(), Supervisor::Stage::kRunning);
-    for (std::uint32_t i = 0; i < (receives_others ? 4U : 0U); ++i) bench.reporting.emplace_back(i);
+    bench.fly_with_other_host(4, receives_others ? 4 : 0);
     bench.planner_epoch = 0;
     bench.run_for(seconds(11));
     EXPECT_EQ(bench.is_killed(0), receives_others);
@@ -206,13 +204,7 @@ TEST(SupervisorSilence, KillsARestartedAgentThatNeverReports) {
 // Another host that is stopped itself does not report the end of its process.
 TEST(SupervisorSilence, GoesOnWithoutAProcessOfAnotherHostAfterAMinute) {
   SilenceBench bench;
-  bench.options.remote_processes = 1;
-  bench.run_for(seconds(1));
-  bench.sut->on_joined(ProcessIndex(4), 1, bench.now);
-  bench.report_all(RobotMode::kWaiting);
-  bench.run_for(seconds(1));
-  ASSERT_EQ(bench.sut->stage(), Supervisor::Stage::kRunning);
-  for (std::uint32_t i = 0; i < 3; ++i) bench.reporting.emplace_back(i);
+  bench.fly_with_other_host(1, 3);
   bench.run_for(seconds(59));
   EXPECT_TRUE(bench.sut->lost().empty());
   bench.run_for(seconds(2));
