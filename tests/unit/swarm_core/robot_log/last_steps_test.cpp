@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
 #include <chrono>
+#include <filesystem>
 
 #include <gtest/gtest.h>
 
@@ -38,6 +39,16 @@ TEST(LastSteps, AreReadFromATimeOn) {
 TEST(LastSteps, OfARobotWithoutALogAreNone) {
   const ScratchFolder folder;
   EXPECT_TRUE(last_steps(folder.path() / "none.mcap")->empty());
+}
+
+// As on a disk that is gone: an exception would end the flight of the launcher, which looks here.
+TEST(LastSteps, OfALogThatCannotBeLookedAtAreAnError) {
+  const ScratchFolder folder;
+  const auto file = folder.path() / "loop.mcap";
+  std::filesystem::create_symlink(file, file);
+  const auto steps = last_steps(file);
+  ASSERT_FALSE(steps.has_value());
+  EXPECT_EQ(steps.error().code, ErrorCode::kEnvironment);
 }
 
 }  // namespace
