@@ -1,5 +1,6 @@
 #!/bin/sh
-# Installs what is missing, builds and runs all tests; ends with ctest's closing line.
+# Installs what is missing, builds and runs all tests; ends with ctest's closing line, or with the end of what each failed
+# test printed.
 #   tests/run.sh [release|asan|tsan]      (default: release)
 set -eu
 root=$(cd "$(dirname "$0")/.." && pwd)
@@ -16,4 +17,11 @@ cd "$root"
 deploy/install_packages.sh deploy/packages.txt deploy/test_packages.txt
 cmake --preset "$preset" -DSWARM_BUILD_TESTS=ON
 cmake --build --preset "$preset"
-ctest --preset "$preset"
+ctest --preset "$preset" && exit 0
+code=$?
+tested=build/$preset/Testing/Temporary
+[ ! -f "$tested/LastTestsFailed.log" ] || cut -d: -f2- "$tested/LastTestsFailed.log" | while IFS= read -r name; do
+  echo "==== $name printed at its end:"
+  awk -v name="$name" '/ Testing: / { on = substr($0, index($0, " Testing: ") + 10) == name } on' "$tested/LastTest.log" | tail -n 40
+done
+exit $code

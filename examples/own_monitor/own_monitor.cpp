@@ -34,6 +34,11 @@ class CentreWatch final : public Observer {
     arrived_[state.robot.value()] = state.mode == RobotMode::kArrived;
   }
 
+  // Reliable, as state updates are not: none that reports an arrival is lost.
+  void on_status(const ObservedStatus& status) override {
+    arrived_[status.robot.value()] = status.arrived;
+  }
+
   void on_clock(const ObservedClock& clock) override {
     if (flow_.empty() || clock.phase != MissionPhase::kRunning) return;
     if (clock.mission_time_s < reported_s_ + 1.0) return;
