@@ -2,7 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <bit>
+#include <concepts>
+#include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <map>
 #include <span>
 #include <string>
@@ -109,11 +113,12 @@ std::uint32_t crc_of(std::span<const unsigned char> bytes);
 class Put {
  public:
   explicit Put(Bytes& out) : out_(out) {}
-  template <class T>
+  template <std::integral T>
   void number(T value) {
-    for (std::size_t i = 0; i < sizeof(T); ++i) {
-      out_.push_back(static_cast<unsigned char>(static_cast<std::uint64_t>(value) >> (8 * i)));
-    }
+    static_assert(std::endian::native == std::endian::little);
+    const std::size_t at = out_.size();
+    out_.resize(at + sizeof value);
+    std::memcpy(out_.data() + at, &value, sizeof value);
   }
   void text(std::string_view text);
   void bytes(std::span<const unsigned char> bytes);

@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 #include <concepts>
+#include <cstring>
 #include <string_view>
 
 namespace swarm::robot_log {
@@ -24,10 +25,11 @@ class Encoder {
 
   template <std::unsigned_integral T>
   void put(T value) {
-    while ((out_.size() - kEncapsulationBytes) % sizeof(T) != 0) out_.push_back(0);
-    for (std::size_t i = 0; i < sizeof(T); ++i) {
-      out_.push_back(static_cast<unsigned char>(value >> (8U * i)));
-    }
+    static_assert(std::endian::native == std::endian::little);
+    const std::size_t misaligned = (out_.size() - kEncapsulationBytes) % sizeof(T);
+    const std::size_t at = out_.size() + (misaligned == 0 ? 0 : sizeof(T) - misaligned);
+    out_.resize(at + sizeof(T));
+    std::memcpy(out_.data() + at, &value, sizeof(T));
   }
   /// Pads the message to a multiple of four bytes, as RTPS does: a message that is published again
   /// in a replay then has the same bytes as the recorded one.
