@@ -75,33 +75,36 @@ void encode(const LauncherBeat& beat, std::vector<std::byte>& out) {
   }
 }
 
-std::optional<LauncherBeat> decode_beat(std::span<const std::byte> bytes) {
-  if (bytes.size() < kFixedBytes) return std::nullopt;
-  LauncherBeat beat;
-  beat.run = get<std::uint64_t>(bytes);
-  beat.sequence = get<std::uint64_t>(bytes);
-  beat.sent_ns = get<std::int64_t>(bytes);
+bool decode(std::span<const std::byte> bytes, LauncherBeat& beat) {
+  if (bytes.size() < kFixedBytes) return false;
+  const auto run = get<std::uint64_t>(bytes);
+  const auto sequence = get<std::uint64_t>(bytes);
+  const auto sent_ns = get<std::int64_t>(bytes);
   const auto flags = get<std::uint32_t>(bytes);
   const auto ranges = get<std::uint32_t>(bytes);
-  if (flags > (kListsAll | kListsAllLate) || ranges > LauncherBeat::kMaxRanges) return std::nullopt;
-  if (bytes.size() < ranges * sizeof(RobotRange)) return std::nullopt;
+  if (flags > (kListsAll | kListsAllLate) || ranges > LauncherBeat::kMaxRanges) return false;
+  if (bytes.size() < ranges * sizeof(RobotRange)) return false;
+  const std::size_t late_bytes = bytes.size() - ranges * sizeof(RobotRange);
+  if (late_bytes % sizeof(LateRobot) != 0) return false;
+  if (late_bytes / sizeof(LateRobot) > LauncherBeat::kMaxLate) return false;
+  beat.run = run;
+  beat.sequence = sequence;
+  beat.sent_ns = sent_ns;
   beat.lists_all = (flags & kListsAll) != 0;
   beat.lists_all_late = (flags & kListsAllLate) != 0;
-  for (; beat.ranges < ranges; ++beat.ranges) {
+  for (beat.ranges = 0; beat.ranges < ranges; ++beat.ranges) {
     RobotRange& range = beat.range[beat.ranges];
     range.first = get<std::uint32_t>(bytes);
     range.count = get<std::uint32_t>(bytes);
   }
-  if (bytes.size() % sizeof(LateRobot) != 0) return std::nullopt;
-  if (bytes.size() / sizeof(LateRobot) > LauncherBeat::kMaxLate) return std::nullopt;
-  for (; !bytes.empty(); ++beat.late_robots) {
+  for (beat.late_robots = 0; !bytes.empty(); ++beat.late_robots) {
     LateRobot& late = beat.late_robot[beat.late_robots];
     late.robot = get<std::uint32_t>(bytes);
     late.age_ms = get<std::uint32_t>(bytes);
     late.x_m = get<double>(bytes);
     late.y_m = get<double>(bytes);
   }
-  return beat;
+  return true;
 }
 
 }  // namespace swarm::link

@@ -5,7 +5,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -62,7 +61,7 @@ void set_late(LauncherBeat& beat, std::span<const LateRobot> robots);
 /// bytes; then the members of the ranges and of the late robots as they are declared.
 void encode(const LauncherBeat& beat, std::vector<std::byte>& out);
 
-/// Empty if the bytes are no beat. The ids are not checked.
-std::optional<LauncherBeat> decode_beat(std::span<const std::byte> bytes);
+/// False if the bytes are no beat: then `beat` is unchanged. The ids are not checked.
+bool decode(std::span<const std::byte> bytes, LauncherBeat& beat);
 
 }  // namespace swarm::link

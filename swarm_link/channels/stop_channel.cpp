@@ -137,9 +137,13 @@ struct StopReceiver::Impl : DatagramSink {
 
   void datagram(std::span<std::byte> bytes, const sockaddr_in& sender) override {
     if (const auto content = content_of(bytes, kBeat)) {
-      const auto beat = decode_beat(*content);
-      if (beat) keep(*beat);
-      undecodable += beat ? 0 : 1;
+      // In place, as a beat is large; more than there is room for replace the last one.
+      const std::size_t last = std::min(beats_received, kMaxBeats - 1);
+      if (decode(*content, beats[last])) {
+        beats_received = last + 1;
+      } else {
+        ++undecodable;
+      }
       return;
     }
     const auto content = content_of(bytes, kStop);
@@ -164,15 +168,11 @@ struct StopReceiver::Impl : DatagramSink {
     }
   }
 
-  void keep(const LauncherBeat& beat) {
-    if (beats.size() == kMaxBeats) beats.pop_back();
-    beats.push_back(beat);
-  }
-
   int fd;
   int reply_fd;
   DatagramDrain drain;
-  std::vector<LauncherBeat> beats{};
+  std::vector<LauncherBeat> beats{kMaxBeats};
+  std::size_t beats_received = 0;
   std::optional<CommandMessage> stop{};
   std::vector<Sender> senders{};
   std::uint64_t undecodable = 0;
@@ -190,18 +190,19 @@ Result<std::unique_ptr<StopReceiver>> StopReceiver::open(const StopChannelOption
     return no_multicast(options.interface);
   }
   impl->senders.reserve(kMaxSenders);
-  impl->beats.reserve(kMaxBeats);
   return std::unique_ptr<StopReceiver>(new StopReceiver(std::move(impl)));
 }
 
 std::optional<CommandMessage> StopReceiver::take() {
   impl_->stop.reset();
-  impl_->beats.clear();
+  impl_->beats_received = 0;
   impl_->drain.drain(impl_->fd, *impl_);
   return impl_->stop;
 }
 
-std::span<const LauncherBeat> StopReceiver::beats() const { return impl_->beats; }
+std::span<const LauncherBeat> StopReceiver::beats() const {
+  return std::span(impl_->beats).first(impl_->beats_received);
+}
 
 std::uint64_t StopReceiver::undecodable() const { return impl_->undecodable; }
 
