@@ -33,14 +33,20 @@ Cell cell_of(const Vec2& point_m, double cell_size_m) {
   return {index_of(point_m.x(), cell_size_m), index_of(point_m.y(), cell_size_m)};
 }
 
-// Checks the cells of the disc's bounding square, column by column, which yields them sorted.
 std::vector<Cell> cells_touching(const Vec2& center_m, double radius_m, double cell_size_m) {
+  std::vector<Cell> cells;
+  add_cells_touching(center_m, radius_m, cell_size_m, cells);
+  return cells;
+}
+
+// Checks the cells of the disc's bounding square, column by column, which yields them sorted.
+void add_cells_touching(const Vec2& center_m, double radius_m, double cell_size_m,
+                        std::vector<Cell>& cells) {
   SWARM_ASSERT(radius_m >= 0.0);
   const Cell own = cell_of(center_m, cell_size_m);
   const Vec2 reach = Vec2::Constant(radius_m);
   const Cell low = cell_of(center_m - reach, cell_size_m);
   const Cell high = cell_of(center_m + reach, cell_size_m);
-  std::vector<Cell> cells;
   for (auto x = low.x; x <= high.x; ++x) {
     for (auto y = low.y; y <= high.y; ++y) {
       const double dx = gap_m(center_m.x(), x, cell_size_m);
@@ -49,7 +55,6 @@ std::vector<Cell> cells_touching(const Vec2& center_m, double radius_m, double c
       if (dx * dx + dy * dy <= radius_m * radius_m || Cell{x, y} == own) cells.push_back({x, y});
     }
   }
-  return cells;
 }
 
 }  // namespace swarm::link

@@ -23,5 +23,8 @@ Cell cell_of(const Vec2& point_m, double cell_size_m);
 
 /// All cells that the disc touches, sorted. O(cells of its bounding square).
 std::vector<Cell> cells_touching(const Vec2& center_m, double radius_m, double cell_size_m);
+/// Appends them.
+void add_cells_touching(const Vec2& center_m, double radius_m, double cell_size_m,
+                        std::vector<Cell>& cells);
 
 }  // namespace swarm::link

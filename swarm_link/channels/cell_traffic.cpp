@@ -17,15 +17,13 @@ CellInterest::CellInterest(const CellOptions& options) : options_(options) {
 // wanted = join ∪ (wanted before ∩ keep). All three sets are sorted, so each step is linear.
 std::span<const Cell> CellInterest::update(std::span<const Vec2> positions_m) {
   const double size = options_.cell_size_m;
-  const auto join =
-      cells_around(positions_m, options_.communication_radius_m + options_.join_margin_m, size);
-  const auto keep =
-      cells_around(positions_m, options_.communication_radius_m + options_.leave_margin_m, size);
-  std::vector<Cell> kept;
-  std::set_intersection(wanted_.begin(), wanted_.end(), keep.begin(), keep.end(),
-                        std::back_inserter(kept));
+  const double radius_m = options_.communication_radius_m;
+  cells_around(positions_m, radius_m + options_.join_margin_m, size, join_);
+  cells_around(positions_m, radius_m + options_.leave_margin_m, size, keep_);
+  kept_.clear();
+  std::ranges::set_intersection(wanted_, keep_, std::back_inserter(kept_));
   wanted_.clear();
-  std::set_union(kept.begin(), kept.end(), join.begin(), join.end(), std::back_inserter(wanted_));
+  std::ranges::set_union(kept_, join_, std::back_inserter(wanted_));
   return wanted_;
 }
 
@@ -72,16 +70,13 @@ std::span<const CellStatesMessage> CellBatches::sort(std::span<const RobotStateM
 }
 
 // Collects with repetitions, then sorts: cheaper than a set for the few cells of a process.
-std::vector<Cell> cells_around(std::span<const Vec2> centers_m, double radius_m,
-                               double cell_size_m) {
-  std::vector<Cell> cells;
-  for (const Vec2& center : centers_m) {
-    const auto touching = cells_touching(center, radius_m, cell_size_m);
-    cells.insert(cells.end(), touching.begin(), touching.end());
-  }
+void cells_around(std::span<const Vec2> centers_m, double radius_m, double cell_size_m,
+                  std::vector<Cell>& cells) {
+  cells.clear();
+  for (const Vec2& center : centers_m) add_cells_touching(center, radius_m, cell_size_m, cells);
+  if (centers_m.size() == 1) return;  // sorted already
   std::sort(cells.begin(), cells.end());
   cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
-  return cells;
 }
 
 }  // namespace swarm::link

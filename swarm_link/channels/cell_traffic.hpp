@@ -32,7 +32,8 @@ class CellInterest {
 
  private:
   CellOptions options_;
-  std::vector<Cell> wanted_;  ///< sorted
+  std::vector<Cell> wanted_;              ///< sorted
+  std::vector<Cell> join_, keep_, kept_;  ///< of the last update(), whose memory the next one uses
 };
 
 /// The cells that robots have left lately. Who receives the old cell but not the new one would take
@@ -71,8 +72,8 @@ class CellBatches {
   std::vector<CellStatesMessage> batches_;           ///< more than the last call needed, reused
 };
 
-/// Sorted union of the cells that discs around the points touch.
-std::vector<Cell> cells_around(std::span<const Vec2> centers_m, double radius_m,
-                               double cell_size_m);
+/// Sorted union of the cells that discs around the points touch, in place of what `cells` has.
+void cells_around(std::span<const Vec2> centers_m, double radius_m, double cell_size_m,
+                  std::vector<Cell>& cells);
 
 }  // namespace swarm::link

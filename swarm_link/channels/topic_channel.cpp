@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 #include <utility>
+#include <vector>
 
 #include "swarm_link/channels/cell_traffic.hpp"
 #include "swarm_link/channels/state_channel.hpp"
@@ -57,8 +58,8 @@ class TopicChannel final : public StateChannel {
     }
     // A writer is discovered some tenths of a second after its creation. It is created before the
     // robot enters the cell; otherwise its first states there would not be received.
-    for (const Cell& cell :
-         cells_around(positions_m, options_.join_margin_m, options_.cell_size_m)) {
+    cells_around(positions_m, options_.join_margin_m, options_.cell_size_m, near_);
+    for (const Cell& cell : near_) {
       if (writer_of(cell) == nullptr) receives_all_ = false;
     }
     retire_writers();
@@ -126,6 +127,7 @@ class TopicChannel final : public StateChannel {
   std::uint64_t now_ = 0;  // calls of listen_around()
   std::map<Cell, ReaderPtr<CellStatesMessage>> readers_;
   std::map<Cell, CellWriter> writers_;
+  std::vector<Cell> near_;  // reused
   std::uint64_t undecodable_of_left_ = 0;
 };
 

@@ -150,11 +150,13 @@ TEST(CellsAround, AreTheUnionInAnyOrderOfTheRobots) {
       expected.insert(cells.begin(), cells.end());
     }
 
-    const auto cells = cells_around(centers_m, radius_m, 7.0);
+    std::vector<Cell> cells, reversed;
+    cells_around(centers_m, radius_m, 7.0, cells);
     std::reverse(centers_m.begin(), centers_m.end());
+    cells_around(centers_m, radius_m, 7.0, reversed);
 
     EXPECT_EQ(cells, std::vector<Cell>(expected.begin(), expected.end()));
-    EXPECT_EQ(cells_around(centers_m, radius_m, 7.0), cells);
+    EXPECT_EQ(reversed, cells);
   }
 }
 
