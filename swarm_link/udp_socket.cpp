@@ -6,11 +6,15 @@
 #include <array>
 #include <cstring>
 #include <ctime>
+#include <memory>
+#include <utility>
 
 #include <arpa/inet.h>
+#include <poll.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include "swarm_core/base/assert.hpp"
 #include "swarm_core/base/clock.hpp"
 
 namespace swarm::link {
@@ -42,6 +46,52 @@ UtcTime received_at(msghdr& message, UtcTime now) {
     return age >= Duration::zero() && age <= kMostAge ? now - age : now;
   }
   return now;
+}
+
+/// What the kernel fills in. Prepared once: that took longer than a system call that finds nothing.
+struct Batch {
+  struct alignas(cmsghdr) Stamp {
+    std::array<std::byte, CMSG_SPACE(sizeof(timespec))> bytes;
+  };
+
+  Batch() {
+    for (std::size_t i = 0; i < kBatch; ++i) {
+      vectors[i] = {buffer(i), kDatagramBytes};
+      messages[i].msg_hdr.msg_name = &senders[i];
+      messages[i].msg_hdr.msg_namelen = sizeof(sockaddr_in);
+      messages[i].msg_hdr.msg_iov = &vectors[i];
+      messages[i].msg_hdr.msg_iovlen = 1;
+    }
+  }
+  Batch(const Batch&) = delete;
+  Batch& operator=(const Batch&) = delete;
+
+  std::byte* buffer(std::size_t i) const { return buffers.get() + i * kDatagramBytes; }
+  void ask_for_stamps() {
+    for (std::size_t i = 0; i < kBatch; ++i) {
+      messages[i].msg_hdr.msg_control = stamps[i].bytes.data();
+      messages[i].msg_hdr.msg_controllen = sizeof(Stamp);
+    }
+  }
+  void forget_stamps() {
+    for (mmsghdr& message : messages) {
+      message.msg_hdr.msg_control = nullptr;
+      message.msg_hdr.msg_controllen = 0;
+    }
+  }
+
+  // Pages that are never written take no memory.
+  std::unique_ptr<std::byte[]> buffers{new std::byte[kBatch * kDatagramBytes]};
+  std::array<mmsghdr, kBatch> messages{};
+  std::array<iovec, kBatch> vectors{};
+  std::array<sockaddr_in, kBatch> senders{};
+  std::array<Stamp, kBatch> stamps{};
+  bool is_in_use = false;
+};
+
+Batch& batch_of_this_thread() {
+  static thread_local Batch batch;
+  return batch;
 }
 
 }  // namespace
@@ -132,11 +182,6 @@ int granted_receive_buffer_bytes(int asked_bytes) {
   return granted / 2;  // the kernel reports twice what was asked, for its own bookkeeping
 }
 
-DatagramDrain::DatagramDrain(const ReceptionFaults& faults)
-    : buffers_(new std::byte[kBatch * kDatagramBytes]) {
-  if (faults.faults.any()) path_.emplace(faults);
-}
-
 // With simulated faults the kernel stamps the arrivals, so that a delay counts from the arrival and
 // not from this call. A batch that is not full means that the socket is empty.
 void DatagramDrain::drain(int fd, DatagramSink& sink) {
@@ -152,43 +197,25 @@ void DatagramDrain::drain(int fd, DatagramSink& sink) {
   if (path_) path_->hand_due(fd, utc_now(), sink);
 }
 
-// With simulated faults a delayed datagram can be due on a socket that holds none.
-void DatagramDrain::drain(std::span<pollfd> sockets, DatagramSink& sink) {
-  const bool all = path_.has_value() || ::poll(sockets.data(), sockets.size(), 0) < 0;
-  for (const pollfd& socket : sockets) {
-    if (all || socket.revents != 0) drain(socket.fd, sink);
-  }
-}
-
 // Receives up to kBatch datagrams with one system call. Returns their number.
 int DatagramDrain::drain_batch(int fd, DatagramSink& sink) {
-  std::array<mmsghdr, kBatch> messages{};
-  std::array<iovec, kBatch> vectors;
-  std::array<sockaddr_in, kBatch> senders;
-  struct alignas(cmsghdr) Stamp {
-    std::array<std::byte, CMSG_SPACE(sizeof(timespec))> bytes;
-  };
-  std::array<Stamp, kBatch> stamps;
-  for (std::size_t i = 0; i < kBatch; ++i) {
-    vectors[i] = {buffers_.get() + i * kDatagramBytes, kDatagramBytes};
-    messages[i].msg_hdr.msg_iov = &vectors[i];
-    messages[i].msg_hdr.msg_iovlen = 1;
-    messages[i].msg_hdr.msg_name = &senders[i];
-    messages[i].msg_hdr.msg_namelen = sizeof(sockaddr_in);
-    if (path_) {
-      messages[i].msg_hdr.msg_control = stamps[i].bytes.data();
-      messages[i].msg_hdr.msg_controllen = stamps[i].bytes.size();
-    }
-  }
-  const int count = std::max(0, ::recvmmsg(fd, messages.data(), kBatch, MSG_DONTWAIT, nullptr));
+  Batch& batch = batch_of_this_thread();
+  SWARM_ASSERT(!std::exchange(batch.is_in_use, true));
+  if (path_) batch.ask_for_stamps();
+  const int count =
+      std::max(0, ::recvmmsg(fd, batch.messages.data(), kBatch, MSG_DONTWAIT, nullptr));
   for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
-    const std::span<std::byte> bytes{buffers_.get() + i * kDatagramBytes, messages[i].msg_len};
+    const std::span<std::byte> bytes{batch.buffer(i), batch.messages[i].msg_len};
     if (path_) {
-      path_->receive(fd, bytes, senders[i], received_at(messages[i].msg_hdr, utc_now()));
+      path_->receive(fd, bytes, batch.senders[i],
+                     received_at(batch.messages[i].msg_hdr, utc_now()));
     } else {
-      sink.datagram(bytes, senders[i]);
+      sink.datagram(bytes, batch.senders[i]);
     }
+    batch.messages[i].msg_hdr.msg_namelen = sizeof(sockaddr_in);  // the kernel wrote what it used
   }
+  if (path_) batch.forget_stamps();
+  batch.is_in_use = false;
   return count;
 }
 

@@ -4,15 +4,14 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <span>
 #include <string>
 
 #include <netinet/in.h>
-#include <poll.h>
 
 #include "swarm_link/channels/faulty_path.hpp"
+#include "swarm_link/socket_set.hpp"
 
 /// UDP on one interface, used by the Fast DDS adapter and the groups; no vendor types. Interfaces
 /// are identified by their IPv4 address.
@@ -47,23 +46,27 @@ bool carries_multicast(const std::string& interface = kLoopback);
 /// Receive buffer that the kernel really grants when `asked_bytes` are requested.
 int granted_receive_buffer_bytes(int asked_bytes);
 
-/// Reads sockets until they are empty, without waiting. Reuses its buffers; not thread-safe.
+/// Reads sockets until they are empty, without waiting. All of a thread use the same buffers, which
+/// are in the processor's cache then after the first one: a sink must not drain sockets itself
+/// (asserted). Not thread-safe.
 class DatagramDrain {
  public:
-  explicit DatagramDrain(const ReceptionFaults& faults = {});
+  explicit DatagramDrain(const ReceptionFaults& faults = {}) {
+    if (faults.faults.any()) path_.emplace(faults);
+  }
 
   /// Most datagrams of a socket and call, so that a flood cannot delay the tick.
   static constexpr int kMaxDatagrams = 8192;
   /// Passes waiting datagrams to the sink, or through the simulated faults if there are any.
   void drain(int fd, DatagramSink& sink);
-  /// The same of many sockets, few of which hold datagrams: one system call finds these. `revents`
-  /// is overwritten.
-  void drain(std::span<pollfd> sockets, DatagramSink& sink);
+  /// Those of the sockets that drain() has to read now. Valid until the next call for the set.
+  std::span<const int> to_read(SocketSet& sockets) const {
+    return path_ ? sockets.all() : sockets.waiting();  // a delayed datagram can be due in any
+  }
 
  private:
   int drain_batch(int fd, DatagramSink& sink);
-  std::optional<FaultyPath> path_;        ///< set if faults are simulated
-  std::unique_ptr<std::byte[]> buffers_;  // pages that are never written take no memory
+  std::optional<FaultyPath> path_;  ///< set if faults are simulated
 };
 
 }  // namespace swarm::link

@@ -142,6 +142,7 @@ bool ReceiveSockets::open(const Locator& locator, Receiver* receiver) {
   if (fd < 0) return false;
   const std::lock_guard lock(mutex_);
   sockets_.push_back({.fd = fd, .locator = locator, .receiver = receiver});
+  set_.add(fd);
   if (is_data_port(locator.port)) opened_.push_back(locator.port);
   return true;
 }
@@ -150,6 +151,7 @@ bool ReceiveSockets::close(const Locator& locator) {
   const std::lock_guard lock(mutex_);
   const Socket* const socket = find(locator);
   if (socket == nullptr) return false;
+  set_.remove(socket->fd);
   ::close(socket->fd);
   sockets_.erase(sockets_.begin() + (socket - sockets_.data()));
   return true;
@@ -200,9 +202,9 @@ void ReceiveSockets::drain() {
     }
   } to_vendor;
   const std::lock_guard lock(mutex_);
-  for (const auto& socket : sockets_) {
-    to_vendor.socket = &socket;
-    drain_->drain(socket.fd, to_vendor);
+  for (const int fd : drain_->to_read(set_)) {
+    to_vendor.socket = &*std::ranges::find(sockets_, fd, &Socket::fd);
+    drain_->drain(fd, to_vendor);
   }
 }
 

@@ -13,6 +13,7 @@
 #include <fastdds/rtps/transport/ChainingTransport.h>
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 
+#include "swarm_link/socket_set.hpp"
 #include "swarm_link/udp_socket.hpp"
 
 /// UDP on one interface without a receive thread for user data: the owner drains those sockets from
@@ -84,6 +85,7 @@ class ReceiveSockets {
   in_addr interface_;              ///< joins groups there
   mutable std::mutex mutex_;
   std::vector<Socket> sockets_;         ///< data ports and groups
+  SocketSet set_;                       ///< of these
   std::vector<std::uint32_t> opened_;   ///< ports, also the vendor's
   std::optional<DatagramDrain> drain_;  // of owned sockets
   std::atomic<bool> silent_ = false;

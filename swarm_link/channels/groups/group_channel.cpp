@@ -8,7 +8,6 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <poll.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -112,10 +111,14 @@ class GroupChannel final : public StateChannel, private DatagramSink {
     }
     std::sort(groups_.begin(), groups_.end());
     groups_.erase(std::unique(groups_.begin(), groups_.end()), groups_.end());
-    std::erase_if(joined_, [&](const Joined& joined) {
-      return !std::binary_search(groups_.begin(), groups_.end(), joined.group);
-    });
     lacks_files_ = false;
+    receives_all_ = std::ranges::equal(joined_, groups_, {}, &Joined::group);
+    if (receives_all_) return;  // at nearly every tick
+    std::erase_if(joined_, [&](const Joined& joined) {
+      const bool leaves = !std::ranges::binary_search(groups_, joined.group);
+      if (leaves) sockets_.remove(joined.socket.fd());
+      return leaves;
+    });
     for (const in_addr_t group : groups_) {
       const auto at = std::lower_bound(joined_.begin(), joined_.end(), group,
                                        [](const Joined& j, in_addr_t g) { return j.group < g; });
@@ -124,13 +127,11 @@ class GroupChannel final : public StateChannel, private DatagramSink {
       address.sin_addr.s_addr = group;
       GroupSocket socket(address, interface_, options_.receive_buffer_bytes);
       lacks_files_ = lacks_files_ || socket.lacks_files();
-      if (socket.joined()) joined_.insert(at, {group, std::move(socket)});
+      if (!socket.joined()) continue;
+      sockets_.add(socket.fd());
+      joined_.insert(at, {group, std::move(socket)});
     }
     receives_all_ = joined_.size() == groups_.size();
-    sockets_.clear();
-    for (const Joined& joined : joined_) {
-      sockets_.push_back({.fd = joined.socket.fd(), .events = POLLIN, .revents = 0});
-    }
   }
 
   bool receives_at(const Vec2& position_m) const override { return interest_.covers(position_m); }
@@ -140,7 +141,7 @@ class GroupChannel final : public StateChannel, private DatagramSink {
   std::size_t take(std::vector<CellStatesMessage>& out) override {
     taking_ = &out;
     const auto before = out.size();
-    drain_.drain(sockets_, *this);
+    for (const int fd : drain_.to_read(sockets_)) drain_.drain(fd, *this);
     return out.size() - before;
   }
 
@@ -181,7 +182,7 @@ class GroupChannel final : public StateChannel, private DatagramSink {
   int sender_;
   DatagramDrain drain_;
   std::vector<Joined> joined_;     // sorted by group
-  std::vector<pollfd> sockets_;    // of these
+  SocketSet sockets_;              // of these
   std::vector<in_addr_t> groups_;  // reused, as are the next two
   std::vector<std::byte> payload_;
   std::vector<std::byte> datagram_;
