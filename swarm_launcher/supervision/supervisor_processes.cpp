@@ -69,7 +69,8 @@ void Supervisor::on_exit(ProcessIndex process, const ProcessExit& exit, SteadyTi
   const bool hopeless = is_planner && exit.signal == 0 &&
                         (exit.code == static_cast<int>(ExitCode::kCriteriaNotMet) ||
                          exit.code == static_cast<int>(ExitCode::kUsage));
-  const Duration delay = p.restarts.on_exit(now);
+  const Duration silence = p.is_killed ? p.silence.silent_for(now) : Duration::zero();
+  const Duration delay = p.restarts.on_exit(now, silence);
   const std::uint32_t allowed =
       is_planner ? options_.launcher.respawn_planner_max : options_.launcher.respawn_agent_max;
   const bool is_spent = p.restarts.deaths_in_a_row() > allowed;

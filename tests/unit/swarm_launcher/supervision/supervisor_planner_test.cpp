@@ -58,6 +58,20 @@ TEST(Supervisor, ForgetsTheDeathsOfAPlannerThatWasWell) {
   }
 }
 
+TEST(RestartPolicy, CountsADeathAfterASilenceAsOneInARow) {
+  RestartPolicy sut;
+  SteadyTime now{seconds(1000)};
+  for (std::uint32_t deaths = 1; deaths <= 4; ++deaths) {  // it hangs at each start
+    sut.on_start(now);
+    now += seconds(30);
+    sut.on_exit(now, seconds(30));
+    EXPECT_EQ(sut.deaths_in_a_row(), deaths);
+  }
+  sut.on_start(now);
+  now += seconds(60);
+  EXPECT_EQ(sut.on_exit(now, seconds(10)), RestartPolicy::kFirstDelay) << "it was well for 50 s";
+}
+
 TEST(Supervisor, EndsBeforeTheStartWhenThePlannerKeepsCrashing) {
   SupervisorBench bench(3);
   bench.run_for(milliseconds(200));

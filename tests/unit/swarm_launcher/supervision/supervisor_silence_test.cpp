@@ -191,6 +191,7 @@ TEST(SupervisorSilence, KillsAPlannerThatIsTheOnlyProcessHere) {
 
 TEST(SupervisorSilence, KillsARestartedAgentThatNeverReports) {
   SilenceBench bench;
+  bench.options.launcher.respawn_agent_max = 2;
   bench.fly();
   bench.freeze(1);
   bench.run_for(seconds(11));
@@ -199,6 +200,9 @@ TEST(SupervisorSilence, KillsARestartedAgentThatNeverReports) {
   EXPECT_EQ(bench.starts(2), 2);
   bench.run_for(seconds(5));
   EXPECT_EQ(bench.starts(2), 3);
+  bench.run_for(seconds(60));
+  EXPECT_EQ(bench.starts(2), 3) << "it ended three times in a row, and two are allowed";
+  EXPECT_EQ(bench.sut->lost(), std::vector{RobotId(1)});
 }
 
 // Another host that is stopped itself does not report the end of its process.
