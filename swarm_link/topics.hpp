@@ -15,14 +15,15 @@ namespace swarm::link {
 /// The QoS policies of DDS that we use.
 enum class Reliability { kBestEffort, kReliable };
 enum class Durability { kVolatile, kTransientLocal };
-enum class Ownership { kShared, kExclusive };
 
-/// QoS of a topic, the same for its writers and readers.
+/// QoS of a topic, the same for its writers and readers but for `reader_depth`.
 struct Qos {
   Reliability reliability = Reliability::kReliable;  ///< best effort: losses are not repaired
   Durability durability = Durability::kVolatile;  ///< transient-local: late readers get the history
   int depth = 1;                                  ///< keep-last history, per instance
-  Ownership ownership = Ownership::kShared;       ///< exclusive: strongest writer only
+  /// The same of readers, if larger: a refused sample that arrives just behind a good one must not
+  /// displace it before it is taken.
+  int reader_depth = 0;
   bool large = false;         ///< may exceed one datagram (64 KiB): fragmented, sent asynchronously
   bool many_readers = false;  ///< sent by multicast where possible
   bool operator==(const Qos&) const = default;
@@ -55,15 +56,15 @@ inline Topic<CommandMessage> command_topic() {
            .depth = 1024}};
 }
 
-/// Exclusive: a planner that was restarted has a higher strength than the one before it, whose
-/// samples are not delivered any more. Which of two living planners leads is decided by their
-/// heartbeats (RulingPlanner). Depth 1: only the newest plan counts.
+/// Depth 1: only the newest plan counts. Which of several planners leads is decided by their
+/// heartbeats (RulingPlanner), and not by exclusive ownership: DDS would drop the planner's plans
+/// uncounted while any stronger writer lives.
 inline Topic<PlanMessage> plan_topic() {
   return {"swarm/plan",
           {.reliability = Reliability::kReliable,
            .durability = Durability::kTransientLocal,
            .depth = 1,
-           .ownership = Ownership::kExclusive,
+           .reader_depth = 8,
            .large = true}};
 }
 
@@ -73,12 +74,14 @@ inline Topic<SceneMessage> scene_topic() {
           {.reliability = Reliability::kReliable,
            .durability = Durability::kTransientLocal,
            .depth = 1,
+           .reader_depth = 8,
            .large = true}};
 }
 
 /// Best effort: a late heartbeat is useless, the next one follows soon.
 inline Topic<HeartbeatMessage> heartbeat_topic() {
-  return {"swarm/heartbeat", {.reliability = Reliability::kBestEffort, .depth = 1}};
+  return {"swarm/heartbeat",
+          {.reliability = Reliability::kBestEffort, .depth = 1, .reader_depth = 16}};
 }
 
 /// `swarm/cell/3_m2` is the cell (3, −2): not every vendor accepts a minus sign in a name. Best
@@ -93,7 +96,7 @@ inline Topic<CellStatesMessage> cell_topic(Cell cell) {
 
 /// Reliable with depth 1 per group of robots: the newest status must arrive, older ones need not.
 inline Topic<StatusMessage> status_topic() {
-  return {"swarm/status", {.reliability = Reliability::kReliable, .depth = 1}};
+  return {"swarm/status", {.reliability = Reliability::kReliable, .depth = 1, .reader_depth = 8}};
 }
 
 /// Best-effort reader for monitors of positions: the agents' writers do not wait for its

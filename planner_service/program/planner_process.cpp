@@ -128,10 +128,9 @@ Result<void> PlannerProcess::Impl::make_plan_writer() {
 
 // Creates all writers and readers first and takes them over only when none failed.
 Result<void> PlannerProcess::Impl::join(const shell::RunInfo& run) {
-  auto made = link::join_as_planner(link::meeting_of(run, {.faults = options.faults,
-                                                           .seed = mix_seed(run.seed, kFaultSeed),
-                                                           .run_began = run.began}),
-                                    options.ownership_strength);
+  auto made = link::join_as_planner(link::meeting_of(
+      run,
+      {.faults = options.faults, .seed = mix_seed(run.seed, kFaultSeed), .run_began = run.began}));
   if (!made) return tl::unexpected(made.error());
   participant = std::move(*made);
   if (auto made_plans = make_plan_writer(); !made_plans) return made_plans;
@@ -180,8 +179,8 @@ void PlannerProcess::Impl::receive(SteadyTime now) {
   }
 }
 
-// A planner that does not lead neither plans nor beats, and has no plan on the bus: the topic's
-// ownership is exclusive.
+// A planner that does not lead neither plans nor beats, and has no plan on the bus: robots that
+// join late receive that of the leading one alone.
 void PlannerProcess::Impl::watch_rivals(SteadyTime now) {
   for (const link::HeartbeatMessage& beat : inbox->heartbeats()) {
     rivals->on_heartbeat(beat.epoch, now);

@@ -17,8 +17,7 @@ struct ProcessOptions {
   std::filesystem::path run_dir;
   std::filesystem::path inputs{};  ///< see shell::read_run_inputs(); empty: those of run_dir
   LinkFaults faults{};
-  std::uint32_t parent_pid = 0;            ///< end when this process has ended; 0 = do not watch
-  std::uint32_t ownership_strength = 100;  ///< a stand-by planner has less
+  std::uint32_t parent_pid = 0;  ///< end when this process has ended; 0 = do not watch
 };
 
 /// The program: plans, publishes the plan (kept for late joiners) and the heartbeat, and follows

@@ -31,9 +31,9 @@ Result<std::optional<ExitCode>> read_options(int argc, char** argv,
   app.add_option("--inputs", options.inputs,
                  "Run and mission in one file; without it those of the run directory");
   app.add_option("--parent", options.parent_pid, "End when this process is no longer the parent");
-  app.add_option("--strength", options.ownership_strength,
-                 "Ownership strength of the plan topic; a planner that replaces a dead one needs a "
-                 "higher one");
+  std::uint32_t strength = 0;
+  app.add_option("--strength", strength,
+                 "Without effect; of two planners the one that started first leads");
   app.add_option(
       "--fault", fault,
       "Degrades what this process receives:\n"

@@ -165,7 +165,7 @@ Result<void> FlightLoop::act(const Action& action, const FlightTime& now) {
 Result<void> FlightLoop::start(ProcessIndex process) {
   const auto [first, count] = supervisor_.robots_of(process);
   ProcessCommand command = process == kPlanner
-                               ? planner_command(options_.how, dir_, planner_starts_++)
+                               ? planner_command(options_.how, dir_)
                                : agent_command(options_.how, dir_, process, first, count);
   if (!ports_.inputs.empty()) {
     command.line.insert(command.line.end(), {"--inputs", ports_.inputs});

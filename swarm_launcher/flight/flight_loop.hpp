@@ -100,7 +100,6 @@ class FlightLoop {
   link::RefusalCounters reported_refusals_;
   SteadyTime refusals_reported_at_;
   std::int64_t last_command_ns_ = 0;  ///< stamp of the last command
-  std::uint32_t planner_starts_ = 0;
 };
 
 }  // namespace swarm::launcher

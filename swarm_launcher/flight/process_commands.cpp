@@ -13,9 +13,6 @@
 namespace swarm::launcher {
 namespace {
 
-// Ownership strength of the first planner; lower values are left to planners on stand-by.
-constexpr std::uint32_t kPlannerStrength = 100;
-
 // Adds the options that planner and agents have in common.
 ProcessCommand complete(std::vector<std::string> line, const FlightChoices& how,
                         const std::filesystem::path& dir, const std::string& log) {
@@ -26,13 +23,9 @@ ProcessCommand complete(std::vector<std::string> line, const FlightChoices& how,
 
 }  // namespace
 
-// The topic of the plan belongs to a killed planner until its lease ends, unless its successor has
-// a higher ownership strength.
-ProcessCommand planner_command(const FlightChoices& how, const std::filesystem::path& dir,
-                               std::uint32_t starts) {
-  return complete({program_or(how.planner_program, "planner_service"), "--run", dir.string(),
-                   "--strength", fmt::format("{}", kPlannerStrength + starts)},
-                  how, dir, "planner.log");
+ProcessCommand planner_command(const FlightChoices& how, const std::filesystem::path& dir) {
+  return complete({program_or(how.planner_program, "planner_service"), "--run", dir.string()}, how,
+                  dir, "planner.log");
 }
 
 ProcessCommand agent_command(const FlightChoices& how, const std::filesystem::path& dir,

@@ -18,9 +18,8 @@ struct ProcessCommand {
   std::filesystem::path log;      ///< file of its output
 };
 
-/// The planner of a run; `starts`: how often it was started before.
-ProcessCommand planner_command(const FlightChoices& how, const std::filesystem::path& dir,
-                               std::uint32_t starts);
+/// The planner of a run.
+ProcessCommand planner_command(const FlightChoices& how, const std::filesystem::path& dir);
 
 /// An agent process of a run, which hosts `count` robots from `first` on.
 ProcessCommand agent_command(const FlightChoices& how, const std::filesystem::path& dir,

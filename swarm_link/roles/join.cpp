@@ -109,19 +109,15 @@ Result<std::unique_ptr<Participant>> join_as_launcher(const Meeting& meeting) {
   return make_relay_participant(std::move(relays));
 }
 
-Result<std::unique_ptr<Participant>> join_as_planner(const Meeting& meeting,
-                                                     std::uint32_t ownership_strength) {
+Result<std::unique_ptr<Participant>> join_as_planner(const Meeting& meeting) {
   if (meeting.planner == Vendor::kCycloneDds) {
     if (meeting.relays == 0) return no_server_for_cyclone("planner=");
-    CycloneOptions options = cyclone_relay(meeting, "planner_service", planner_index(meeting, 0),
-                                           launcher_index(meeting, 0));
-    options.ownership_strength = ownership_strength;
-    return make_cyclone_participant(options);
+    return make_cyclone_participant(cyclone_relay(
+        meeting, "planner_service", planner_index(meeting, 0), launcher_index(meeting, 0)));
   }
   std::vector<std::unique_ptr<Participant>> relays;
   for (std::uint32_t relay = 0; relay < std::max(1U, meeting.relays); ++relay) {
     FastDdsOptions options = member(meeting, "planner_service", planner_index(meeting, relay));
-    options.ownership_strength = ownership_strength;
     if (meeting.relays > 0) options.static_peers = StaticPeers{.is_relay = true};
     // One connection between launcher and planner is enough, so only one relay participant of the
     // planner announces itself.

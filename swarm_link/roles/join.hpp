@@ -42,10 +42,9 @@ std::uint32_t fixed_participants(const Meeting& meeting);
 /// The launcher's participant, combined of its relay participants if there are static peers.
 Result<std::unique_ptr<Participant>> join_as_launcher(const Meeting& meeting);
 
-/// `ownership_strength`: see FastDdsOptions. With static peers a restarted planner takes the ports
-/// of its predecessor, and agents, which keep announcing themselves there, discover it.
-Result<std::unique_ptr<Participant>> join_as_planner(const Meeting& meeting,
-                                                     std::uint32_t ownership_strength);
+/// With static peers a restarted planner takes the ports of its predecessor, and agents, which keep
+/// announcing themselves there, discover it.
+Result<std::unique_ptr<Participant>> join_as_planner(const Meeting& meeting);
 
 /// For monitors; `number` distinguishes several. With static peers only launcher and planner
 /// discover it.

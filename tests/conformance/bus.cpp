@@ -26,9 +26,7 @@ std::int64_t steady_ns() {
 
 class TestInprocBus final : public Bus {
  private:
-  std::unique_ptr<Participant> make(std::uint32_t ownership_strength) override {
-    return bus_.make_participant(ownership_strength);
-  }
+  std::unique_ptr<Participant> make() override { return bus_.make_participant(); }
 
   InprocBus bus_;
 };
@@ -43,12 +41,11 @@ class TestFastDdsBus final : public Bus {
         next_index_(first_index) {}
 
  private:
-  std::unique_ptr<Participant> make(std::uint32_t ownership_strength) override {
+  std::unique_ptr<Participant> make() override {
     auto made = make_fastdds_participant({.name = "conformance",
                                           .domain = test_domain(),
                                           .index = next_index_++,
                                           .discovery = discovery_,
-                                          .ownership_strength = ownership_strength,
                                           .receive_at_tick = receive_at_tick_});
     SWARM_ASSERT(made.has_value());
     return *std::move(made);
@@ -63,14 +60,13 @@ class TestFastDdsBus final : public Bus {
 /// No server: each participant announces itself to those created before it.
 class TestStaticPeersBus final : public Bus {
  private:
-  std::unique_ptr<Participant> make(std::uint32_t ownership_strength) override {
+  std::unique_ptr<Participant> make() override {
     StaticPeers static_peers{.is_relay = true};
     for (std::uint32_t peer = 0; peer < next_index_; ++peer) static_peers.peers.push_back(peer);
     auto made = make_fastdds_participant({.name = "conformance",
                                           .domain = test_domain(),
                                           .index = next_index_++,
-                                          .static_peers = static_peers,
-                                          .ownership_strength = ownership_strength});
+                                          .static_peers = static_peers});
     SWARM_ASSERT(made.has_value());
     return *std::move(made);
   }
@@ -80,9 +76,8 @@ class TestStaticPeersBus final : public Bus {
 
 class TestCycloneBus final : public Bus {
  private:
-  std::unique_ptr<Participant> make(std::uint32_t ownership_strength) override {
-    auto made = make_cyclone_participant(
-        {.name = "conformance", .domain = test_domain(), .ownership_strength = ownership_strength});
+  std::unique_ptr<Participant> make() override {
+    auto made = make_cyclone_participant({.name = "conformance", .domain = test_domain()});
     SWARM_ASSERT(made.has_value());
     return *std::move(made);
   }
@@ -98,7 +93,7 @@ class TestGroupBus final : public Bus {
   }
 
  private:
-  std::unique_ptr<Participant> make(std::uint32_t) override { return nullptr; }
+  std::unique_ptr<Participant> make() override { return nullptr; }
 };
 
 }  // namespace
@@ -108,9 +103,7 @@ bool Bus::Hang::over() const { return steady_ns() > deadline_ns_; }
 
 void Bus::rest() { std::this_thread::sleep_for(std::chrono::milliseconds(2)); }
 
-Participant& Bus::participant(std::uint32_t ownership_strength) {
-  return *participants_.emplace_back(make(ownership_strength));
-}
+Participant& Bus::participant() { return *participants_.emplace_back(make()); }
 
 std::unique_ptr<StateChannel> Bus::channel(const CellOptions& options) {
   return make_topic_channel(participant(), options);

@@ -21,7 +21,7 @@ class Bus {
   virtual ~Bus() = default;
 
   /// A new participant, valid as long as the bus.
-  Participant& participant(std::uint32_t ownership_strength = 0);
+  Participant& participant();
 
   /// A state channel, over a participant of its own.
   virtual std::unique_ptr<StateChannel> channel(const CellOptions& options);
@@ -44,7 +44,7 @@ class Bus {
   void converge();
 
  protected:
-  virtual std::unique_ptr<Participant> make(std::uint32_t ownership_strength) = 0;
+  virtual std::unique_ptr<Participant> make() = 0;
 
  private:
   class Hang {

@@ -68,7 +68,7 @@ struct GatewayRun : testing::TestWithParam<Vendor> {
 
   Meeting meeting{.domain = test_domain(), .relays = 1};
   std::unique_ptr<Participant> launcher = join_as_launcher(meeting).value();
-  std::unique_ptr<Participant> planner = join_as_planner(meeting, 1).value();
+  std::unique_ptr<Participant> planner = join_as_planner(meeting).value();
   std::unique_ptr<Participant> relay = join_as_gateway(meeting).value();
   std::unique_ptr<Gateway> gateway =
       make_gateway(*relay,

@@ -94,18 +94,17 @@ TEST_P(Participants, MatchExactlyWhereTheWriterOffersWhatTheReaderAsksFor) {
     bool compatible;
   };
   std::vector<Pair> pairs;
-  for (int bits = 0; bits < 64; ++bits) {
+  for (int bits = 0; bits < 16; ++bits) {
     const auto qos = [](int mask) {
       return Qos{.reliability = mask & 1 ? Reliability::kReliable : Reliability::kBestEffort,
-                 .durability = mask & 2 ? Durability::kTransientLocal : Durability::kVolatile,
-                 .ownership = mask & 4 ? Ownership::kExclusive : Ownership::kShared};
+                 .durability = mask & 2 ? Durability::kTransientLocal : Durability::kVolatile};
     };
-    const int offered = bits & 7;
-    const int asked = bits >> 3;
+    const int offered = bits & 3;
+    const int asked = bits >> 2;
     const auto name = fmt::format("qos/{}_{}", offered, asked);
     pairs.push_back({.writer = a.make_writer(Topic<CommandMessage>{name, qos(offered)}).value(),
                      .reader = b.make_reader(Topic<CommandMessage>{name, qos(asked)}).value(),
-                     .compatible = (offered & 4) == (asked & 4) && (~offered & asked & 3) == 0});
+                     .compatible = (~offered & asked & 3) == 0});
   }
 
   for (const auto& pair : pairs) {
@@ -197,10 +196,12 @@ TEST_P(Participants, GiveLateJoinersNothingVolatile) {
 }
 
 TEST_P(Participants, KeepTheLastOfEachGroupsStatus) {
+  auto topic = status_topic();
+  topic.qos.reader_depth = 1;
   auto deep_topic = status_topic();
   deep_topic.qos.depth = 3;
   const auto writer = a.make_writer(deep_topic).value();
-  const auto reader = b.make_reader(status_topic()).value();
+  const auto reader = b.make_reader(topic).value();
   const auto deep = b.make_reader(deep_topic).value();  // shows when all have arrived
   await_match(writer, deep);
   ASSERT_TRUE(bus->eventually([&] { return writer->matched() == 2; }));
@@ -266,34 +267,21 @@ TEST_P(Participants, DropTheSamplesOfAWriterThatEnded) {
   EXPECT_EQ(receive(late, 1), std::vector{CommandMessage{.command_id = 2}});
 }
 
-TEST_P(Participants, ReceiveTheStrongestPlannerAndTheNextWhenItEnds) {
-  auto& primary = bus->participant(10);
-  auto& stand_by = bus->participant(5);
-  auto strong = primary.make_writer(plan_topic()).value();
-  const auto weak = stand_by.make_writer(plan_topic()).value();
-  const auto reader = a.make_reader(plan_topic()).value();
-  ASSERT_TRUE(bus->eventually([&] { return reader->matched() == 2 && strong->matched() == 1; }));
+TEST_P(Participants, ReceiveAPlanAlthoughAnotherWriterPublishesJustBehindIt) {
+  const auto planner = a.make_writer(plan_topic()).value();
+  const auto other = bus->participant().make_writer(plan_topic()).value();
+  const auto reader = b.make_reader(plan_topic()).value();
+  ASSERT_TRUE(bus->eventually([&] { return reader->matched() == 2; }));
+  await_match(planner, reader);
+  await_match(other, reader);
 
-  strong->write({.version = 1});
-  EXPECT_EQ(receive(reader, 1), std::vector{PlanMessage{.version = 1}});
-  weak->write({.version = 2});
+  planner->write({.version = 1});
   bus->converge();
-  strong->write({.version = 3});
-  EXPECT_EQ(receive(reader, 1), std::vector{PlanMessage{.version = 3}});
-
-  strong.reset();
-  ASSERT_TRUE(bus->eventually([&] { return reader->matched() == 1; }));
-  weak->write({.version = 4});
-  EXPECT_EQ(receive(reader, 1), std::vector{PlanMessage{.version = 4}});
-
-  strong = primary.make_writer(plan_topic()).value();  // and it returns
-  ASSERT_TRUE(bus->eventually([&] { return reader->matched() == 2 && strong->matched() == 1; }));
-  strong->write({.version = 5});
-  EXPECT_EQ(receive(reader, 1), std::vector{PlanMessage{.version = 5}});
-  weak->write({.version = 6});
+  other->write({.version = 2});
   bus->converge();
-  strong->write({.version = 7});
-  EXPECT_EQ(receive(reader, 1), std::vector{PlanMessage{.version = 7}});
+
+  EXPECT_EQ(receive(reader, 2),
+            (std::vector{PlanMessage{.version = 1}, PlanMessage{.version = 2}}));
 }
 
 TEST_P(Participants, SurviveEndpointsThatComeAndGo) {

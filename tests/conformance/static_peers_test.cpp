@@ -38,7 +38,7 @@ struct StaticPeersRun : testing::TestWithParam<Vendors> {
   StaticPeersRun() {
     statuses = launcher->make_reader(status_topic()).value();
     commands = launcher->make_writer(command_topic()).value();
-    start_planner(1);
+    start_planner();
     for (std::uint32_t i = 0; i < kAgents; ++i) {
       AgentSeat& agent = agents.emplace_back();
       agent.participant = join_as_agent(meeting, i, "agent", GetParam().agents).value();
@@ -48,8 +48,8 @@ struct StaticPeersRun : testing::TestWithParam<Vendors> {
     }
   }
 
-  void start_planner(std::uint32_t strength) {
-    planner = join_as_planner(meeting, strength).value();
+  void start_planner() {
+    planner = join_as_planner(meeting).value();
     plans = planner->make_writer(plan_topic()).value();
     planner_commands = planner->make_reader(command_topic()).value();
     planner_sees = planner->make_reader(status_topic_unacknowledged()).value();
@@ -156,7 +156,7 @@ TEST_P(StaticPeersRun, AgentsFindARestartedPlanner) {
   ASSERT_TRUE(all_have_plan(1));
   kill_planner();
   planner_received.clear();
-  start_planner(2);
+  start_planner();
   plans->write({.version = 2});
 
   EXPECT_TRUE(all_have_plan(2));
@@ -165,10 +165,10 @@ TEST_P(StaticPeersRun, AgentsFindARestartedPlanner) {
 
 TEST(StaticPeers, RefusesARelayWhosePortIsTaken) {
   const Meeting meeting{.domain = test_domain(), .relays = 2};
-  const auto first = join_as_planner(meeting, 1);
+  const auto first = join_as_planner(meeting);
   ASSERT_TRUE(first) << first.error().message;
 
-  const auto second = join_as_planner(meeting, 1);
+  const auto second = join_as_planner(meeting);
 
   ASSERT_FALSE(second);
   EXPECT_EQ(second.error().code, ErrorCode::kEnvironment);

@@ -86,7 +86,7 @@ std::shared_ptr<Entity> domain_of(const CycloneOptions& options) {
 
 // Translates our QoS. The durability service holds as many samples as the history, so that late
 // readers of a transient-local topic receive all of them.
-QosPtr translate(const Qos& qos, std::uint32_t ownership_strength) {
+QosPtr translate(const Qos& qos, int depth) {
   QosPtr out(dds_create_qos());
   dds_qset_reliability(out.get(),
                        qos.reliability == Reliability::kReliable ? DDS_RELIABILITY_RELIABLE
@@ -95,15 +95,9 @@ QosPtr translate(const Qos& qos, std::uint32_t ownership_strength) {
   dds_qset_durability(out.get(), qos.durability == Durability::kTransientLocal
                                      ? DDS_DURABILITY_TRANSIENT_LOCAL
                                      : DDS_DURABILITY_VOLATILE);
-  dds_qset_history(out.get(), DDS_HISTORY_KEEP_LAST, qos.depth);
-  dds_qset_durability_service(out.get(), 0, DDS_HISTORY_KEEP_LAST, qos.depth, DDS_LENGTH_UNLIMITED,
+  dds_qset_history(out.get(), DDS_HISTORY_KEEP_LAST, depth);
+  dds_qset_durability_service(out.get(), 0, DDS_HISTORY_KEEP_LAST, depth, DDS_LENGTH_UNLIMITED,
                               DDS_LENGTH_UNLIMITED, DDS_LENGTH_UNLIMITED);
-  if (qos.ownership == Ownership::kExclusive) {
-    dds_qset_ownership(out.get(), DDS_OWNERSHIP_EXCLUSIVE);
-    dds_qset_ownership_strength(out.get(), static_cast<std::int32_t>(ownership_strength));
-  } else {
-    dds_qset_ownership(out.get(), DDS_OWNERSHIP_SHARED);
-  }
   return out;
 }
 
@@ -191,7 +185,7 @@ class CycloneParticipant final : public Participant {
   Result<RawWriterPtr> make_writer(const RawTopic& t) override {
     auto made_topic = topic(t);
     if (!made_topic) return tl::unexpected(made_topic.error());
-    const QosPtr qos = translate(t.qos, options_.ownership_strength);
+    const QosPtr qos = translate(t.qos, t.qos.depth);
     Entity made(dds_create_writer(participant_.get(), made_topic->get(), qos.get(), nullptr));
     if (made.get() < 0) return refused("writer", t.name, made.get());
     return std::make_unique<CycloneWriter>(std::move(*made_topic), std::move(made));
@@ -200,7 +194,7 @@ class CycloneParticipant final : public Participant {
   Result<RawReaderPtr> make_reader(const RawTopic& t) override {
     auto made_topic = topic(t);
     if (!made_topic) return tl::unexpected(made_topic.error());
-    const QosPtr qos = translate(t.qos, options_.ownership_strength);
+    const QosPtr qos = translate(t.qos, std::max(t.qos.depth, t.qos.reader_depth));
     Entity made(dds_create_reader(participant_.get(), made_topic->get(), qos.get(), nullptr));
     if (made.get() < 0) return refused("reader", t.name, made.get());
     return std::make_unique<CycloneReader>(std::move(*made_topic), std::move(made));

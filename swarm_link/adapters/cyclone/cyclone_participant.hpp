@@ -16,9 +16,8 @@ namespace swarm::link {
 
 /// Settings of one Cyclone DDS participant.
 struct CycloneOptions {
-  std::string name;                      ///< participant name, seen in DDS tools
-  std::uint32_t domain = 0;              ///< DDS domain
-  std::uint32_t ownership_strength = 0;  ///< of exclusive writers
+  std::string name;          ///< participant name, seen in DDS tools
+  std::uint32_t domain = 0;  ///< DDS domain
   /// Announcement ports of the static peers on `peer_host`. The participant announces itself to
   /// these ports only, so it discovers these peers only. Empty: it announces itself by multicast to
   /// all.

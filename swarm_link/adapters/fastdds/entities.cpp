@@ -79,9 +79,8 @@ Result<dds::DataWriter*> Entities::make_writer(const std::string& topic, const s
                                                const Qos& qos) {
   const auto vendor_topic = topics_.acquire(topic, type);
   if (!vendor_topic) return tl::unexpected(vendor_topic.error());
-  auto* made =
-      publisher_->create_datawriter(*vendor_topic, writer_qos(qos, options_.ownership_strength),
-                                    nullptr, dds::StatusMask::none());
+  auto* made = publisher_->create_datawriter(*vendor_topic, writer_qos(qos), nullptr,
+                                             dds::StatusMask::none());
   if (made != nullptr) return made;
   topics_.release(topic);
   return fail(ErrorCode::kEnvironment, fmt::format("DDS refused a writer of '{}'", topic));

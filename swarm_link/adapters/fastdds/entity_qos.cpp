@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "swarm_link/adapters/fastdds/entity_qos.hpp"
 
+#include <algorithm>
+
 #include "swarm_link/adapters/fastdds/loopback_transport.hpp"
 
 namespace swarm::link::fastdds {
@@ -17,7 +19,7 @@ constexpr int kMaxInstances = 16'384;
 // The part of the QoS that writers and readers have in common. Data-sharing is off, because every
 // sample is to take the same path: the network.
 template <class VendorQos>
-void translate(const Qos& qos, VendorQos& out) {
+void translate(const Qos& qos, int depth, VendorQos& out) {
   out.reliability().kind = qos.reliability == Reliability::kReliable
                                ? dds::RELIABLE_RELIABILITY_QOS
                                : dds::BEST_EFFORT_RELIABILITY_QOS;
@@ -25,13 +27,11 @@ void translate(const Qos& qos, VendorQos& out) {
                               ? dds::TRANSIENT_LOCAL_DURABILITY_QOS
                               : dds::VOLATILE_DURABILITY_QOS;
   out.history().kind = dds::KEEP_LAST_HISTORY_QOS;
-  out.history().depth = qos.depth;
+  out.history().depth = depth;
   out.resource_limits().max_instances = kMaxInstances;
-  out.resource_limits().max_samples_per_instance = qos.depth;
-  out.resource_limits().max_samples = kMaxInstances * qos.depth;
+  out.resource_limits().max_samples_per_instance = depth;
+  out.resource_limits().max_samples = kMaxInstances * depth;
   out.resource_limits().allocated_samples = 1;
-  out.ownership().kind = qos.ownership == Ownership::kExclusive ? dds::EXCLUSIVE_OWNERSHIP_QOS
-                                                                : dds::SHARED_OWNERSHIP_QOS;
   // Buffers grow to the size of actual samples instead of the largest possible one.
   out.endpoint().history_memory_policy = rtps::DYNAMIC_REUSABLE_MEMORY_MODE;
   out.data_sharing().off();  // no shared memory
@@ -41,10 +41,9 @@ void translate(const Qos& qos, VendorQos& out) {
 
 // Large samples are sent asynchronously: a thread of the vendor sends their fragments. The
 // heartbeat period bounds how long a reader does not notice that the last sample was lost.
-dds::DataWriterQos writer_qos(const Qos& qos, std::uint32_t ownership_strength) {
+dds::DataWriterQos writer_qos(const Qos& qos) {
   dds::DataWriterQos out;
-  translate(qos, out);
-  out.ownership_strength().value = ownership_strength;
+  translate(qos, qos.depth, out);
   out.publish_mode().kind =
       qos.large ? dds::ASYNCHRONOUS_PUBLISH_MODE : dds::SYNCHRONOUS_PUBLISH_MODE;
   out.reliable_writer_qos().times.heartbeatPeriod = {1, 0};
@@ -60,7 +59,7 @@ rtps::Locator_t group_of(std::uint32_t domain, const std::string& topic) {
 
 dds::DataReaderQos reader_qos(const Qos& qos, const std::optional<rtps::Locator_t>& group) {
   dds::DataReaderQos out;
-  translate(qos, out);
+  translate(qos, std::max(qos.depth, qos.reader_depth), out);
   if (group) out.endpoint().multicast_locator_list.push_back(*group);
   return out;
 }

@@ -13,9 +13,8 @@
 
 namespace swarm::link::fastdds {
 
-/// Translates our QoS to Fast DDS; no other file does. `ownership_strength` has an effect on
-/// writers of exclusive topics only.
-eprosima::fastdds::dds::DataWriterQos writer_qos(const Qos& qos, std::uint32_t ownership_strength);
+/// Translates our QoS to Fast DDS; no other file does.
+eprosima::fastdds::dds::DataWriterQos writer_qos(const Qos& qos);
 
 /// The multicast group of a topic, by a hash of its name. Topics may share a group: each reader
 /// accepts only samples of the writers it is matched with.

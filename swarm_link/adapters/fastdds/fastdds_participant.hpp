@@ -38,11 +38,6 @@ struct FastDdsOptions {
   DiscoveryAddress discovery{};               ///< its server, unless it has static peers
   std::optional<StaticPeers> static_peers{};  ///< set: no discovery server is used
   std::string interface = "127.0.0.1";        ///< address of the interface it sends and receives on
-  /// Strength of exclusive writers. A planner on stand-by has a lower one. A planner that replaces
-  /// another must have a higher one: a killed writer owns its topic until its lease ends, and until
-  /// then samples of an equal or weaker writer are discarded (measured with a lease of 15 s: 14 s,
-  /// against 0.9 s with a higher strength).
-  std::uint32_t ownership_strength = 0;
   /// Readers of cell topics receive from one multicast group each, if the interface carries
   /// multicast. A participant with static peers that has no multicast cannot send to such readers.
   bool cells_by_multicast = true;

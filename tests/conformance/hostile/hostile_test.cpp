@@ -25,7 +25,7 @@ struct HostilePeers : testing::Test {
 
   template <class M>
   void expect_good_samples_still_pass(const Topic<M>& topic, const ReaderPtr<M>& reader) {
-    auto& friendly = bus->participant(1);
+    auto& friendly = bus->participant();
     const auto writer = friendly.make_writer(topic).value();
     ASSERT_TRUE(bus->eventually([&] { return writer->matched() > 0; }));
     std::vector<M> received;

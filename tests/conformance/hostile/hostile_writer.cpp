@@ -48,7 +48,7 @@ struct HostilePeer::Impl {
       auto* vendor_topic =
           line.participant->create_topic(topic.name, type_name, dds::TOPIC_QOS_DEFAULT);
       auto* publisher = line.participant->create_publisher(dds::PUBLISHER_QOS_DEFAULT);
-      line.writer = publisher->create_datawriter(vendor_topic, fastdds::writer_qos(topic.qos, 0));
+      line.writer = publisher->create_datawriter(vendor_topic, fastdds::writer_qos(topic.qos));
       SWARM_ASSERT(line.writer != nullptr);
     }
     return *line.writer;

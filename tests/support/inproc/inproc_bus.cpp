@@ -32,12 +32,11 @@ struct InprocBus::Impl {
 
 namespace {
 
-// Makes endpoints on the channels of a bus; its writers share one ownership strength and number.
+// Makes endpoints on the channels of a bus; its writers share one number.
 template <class Impl>
 class InprocParticipant final : public Participant {
  public:
-  InprocParticipant(Impl& bus, std::uint32_t strength)
-      : bus_(bus), sender_{strength, ++bus.participants} {}
+  explicit InprocParticipant(Impl& bus) : bus_(bus), sender_(++bus.participants) {}
 
   Result<RawWriterPtr> make_writer(const RawTopic& topic) override {
     return std::make_unique<inproc::InprocWriter>(bus_.channel(topic), topic, sender_);
@@ -51,7 +50,7 @@ class InprocParticipant final : public Participant {
 
  private:
   Impl& bus_;
-  inproc::InprocWriter::Sender sender_;
+  std::uint64_t sender_;
 };
 
 }  // namespace
@@ -59,8 +58,8 @@ class InprocParticipant final : public Participant {
 InprocBus::InprocBus() : impl_(std::make_unique<Impl>()) {}
 InprocBus::~InprocBus() = default;
 
-std::unique_ptr<Participant> InprocBus::make_participant(std::uint32_t ownership_strength) {
-  return std::make_unique<InprocParticipant<Impl>>(*impl_, ownership_strength);
+std::unique_ptr<Participant> InprocBus::make_participant() {
+  return std::make_unique<InprocParticipant<Impl>>(*impl_);
 }
 
 }  // namespace swarm::link

@@ -8,7 +8,7 @@
 #include "swarm_link/port.hpp"
 
 /// The in-process backend: a bus in memory with the semantics of the DDS adapters (keep-last
-/// histories, transient-local, exclusive ownership), deterministic and without threads.
+/// histories, transient-local), deterministic and without threads.
 namespace swarm::link {
 
 /// Owns the channels of all topics. Participants of one bus communicate; two buses are separate.
@@ -21,7 +21,7 @@ class InprocBus {
   InprocBus& operator=(const InprocBus&) = delete;
 
   /// \pre the bus outlives the participant
-  std::unique_ptr<Participant> make_participant(std::uint32_t ownership_strength = 0);
+  std::unique_ptr<Participant> make_participant();
 
  private:
   struct Impl;

@@ -4,15 +4,8 @@
 
 namespace swarm::link::inproc {
 
-// Exclusive ownership as in DDS: per instance, the strongest writer owns it until it is destroyed.
 void InprocReader::deliver(const InprocWriter& from, const Sample& sample) {
-  if (!compatible(from.qos(), qos_)) return;
-  if (qos_.ownership == Ownership::kExclusive) {
-    auto& owner = owners_[sample.instance];
-    if (owner != nullptr && owner != &from && from.strength() <= owner->strength()) return;
-    owner = &from;
-  }
-  history_.push(sample);
+  if (compatible(from.qos(), qos_)) history_.push(sample);
 }
 
 int InprocReader::matched() const {
@@ -21,12 +14,8 @@ int InprocReader::matched() const {
                     [&](const InprocWriter* writer) { return compatible(writer->qos(), qos_); }));
 }
 
-// Strongest writer first, so that with exclusive ownership samples of the others are discarded.
 void InprocReader::catch_up() {
-  auto writers = channel_->writers;
-  std::stable_sort(writers.begin(), writers.end(),
-                   [](const auto* a, const auto* b) { return a->strength() > b->strength(); });
-  for (const auto* writer : writers) {
+  for (const auto* writer : channel_->writers) {
     if (writer->qos().durability != Durability::kTransientLocal) continue;
     for (const Sample& sample : writer->history()) deliver(*writer, sample);
   }
@@ -37,7 +26,7 @@ bool InprocWriter::write(std::span<const std::byte> bytes) {
   if (bytes.size() < cdr::kEncapsulationBytes + (keyed_ ? sizeof(std::uint32_t) : 0)) return false;
   Sample sample{.bytes = std::make_shared<std::vector<std::byte>>(bytes.begin(), bytes.end()),
                 .instance = keyed_ ? instance_of(bytes) : 0,
-                .sender = sender_.number};
+                .sender = sender_};
   for (auto* reader : channel_->readers) reader->deliver(*this, sample);
   if (qos_.durability == Durability::kTransientLocal) history_.push(std::move(sample));
   return true;

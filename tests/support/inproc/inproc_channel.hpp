@@ -17,7 +17,7 @@
 
 namespace swarm::link::inproc {
 
-/// A sample, shared by all histories that store it. Histories and ownership are per instance.
+/// A sample, shared by all histories that store it. Histories are per instance.
 struct Sample {
   std::shared_ptr<const std::vector<std::byte>> bytes;
   std::uint32_t instance = 0;  ///< value of the key; 0 if the topic has none
@@ -78,8 +78,7 @@ struct Channel {
 
 /// The matching rule of DDS: the writer offers at least what the reader requests.
 inline bool compatible(const Qos& offered, const Qos& asked) {
-  return offered.ownership == asked.ownership &&
-         (offered.reliability == Reliability::kReliable ||
+  return (offered.reliability == Reliability::kReliable ||
           asked.reliability == Reliability::kBestEffort) &&
          (offered.durability == Durability::kTransientLocal ||
           asked.durability == Durability::kVolatile);
@@ -90,7 +89,7 @@ inline bool compatible(const Qos& offered, const Qos& asked) {
 class InprocReader final : public RawReader {
  public:
   InprocReader(std::shared_ptr<Channel> channel, const Qos& qos)
-      : channel_(std::move(channel)), qos_(qos), history_(qos.depth) {
+      : channel_(std::move(channel)), qos_(qos), history_(std::max(qos.depth, qos.reader_depth)) {
     channel_->readers.push_back(this);
     if (qos.durability == Durability::kTransientLocal) catch_up();
   }
@@ -103,12 +102,8 @@ class InprocReader final : public RawReader {
 
   const Qos& qos() const { return qos_; }
 
-  /// Stores a sample if QoS and ownership allow it.
+  /// Stores a sample if the QoS allow it.
   void deliver(const InprocWriter& from, const Sample& sample);
-  /// Releases the instances that the writer owned, so that weaker writers are received.
-  void writer_gone(const InprocWriter& writer) {
-    std::erase_if(owners_, [&](const auto& entry) { return entry.second == &writer; });
-  }
 
  private:
   /// Delivers the histories of the transient-local writers that exist already.
@@ -117,18 +112,13 @@ class InprocReader final : public RawReader {
   std::shared_ptr<Channel> channel_;
   Qos qos_;
   History history_;
-  std::map<std::uint32_t, const InprocWriter*> owners_;  ///< of exclusive topics, by instance
 };
 
 /// Delivers to all readers of its topic within write(), in the caller's thread.
 class InprocWriter final : public RawWriter {
  public:
-  /// Of a participant: its strength and its number.
-  struct Sender {
-    std::uint32_t strength = 0;
-    std::uint64_t number = 0;
-  };
-  InprocWriter(std::shared_ptr<Channel> channel, const RawTopic& topic, const Sender& sender)
+  /// `sender`: number of its participant
+  InprocWriter(std::shared_ptr<Channel> channel, const RawTopic& topic, std::uint64_t sender)
       : channel_(std::move(channel)),
         qos_(topic.qos),
         keyed_(topic.keyed),
@@ -136,17 +126,13 @@ class InprocWriter final : public RawWriter {
         history_(topic.qos.depth) {
     channel_->writers.push_back(this);
   }
-  ~InprocWriter() override {
-    std::erase(channel_->writers, this);
-    for (auto* reader : channel_->readers) reader->writer_gone(*this);
-  }
+  ~InprocWriter() override { std::erase(channel_->writers, this); }
 
   /// False only for bytes without encapsulation or key.
   bool write(std::span<const std::byte> bytes) override;
   int matched() const override;
 
   const Qos& qos() const { return qos_; }
-  std::uint32_t strength() const { return sender_.strength; }
   /// What a late transient-local reader receives.
   const std::deque<Sample>& history() const { return history_.samples(); }
 
@@ -154,7 +140,7 @@ class InprocWriter final : public RawWriter {
   std::shared_ptr<Channel> channel_;
   Qos qos_;
   bool keyed_;
-  Sender sender_;
+  std::uint64_t sender_;
   History history_;  ///< of a transient-local writer, for late readers
 };
 

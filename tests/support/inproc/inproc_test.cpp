@@ -53,20 +53,21 @@ TEST(InprocBus, KeepsTopicsOfDifferentTypesApart) {
   EXPECT_EQ(writer->matched(), 0);
 }
 
-TEST(InprocBus, GivesALateJoinerTheStrongestWritersPlan) {
+TEST(InprocBus, GivesALateJoinerThePlansOfAllWriters) {
   InprocBus bus;
-  const auto weak = bus.make_participant(1);
-  const auto strong = bus.make_participant(2);
-  const auto from_weak = weak->make_writer(plan_topic()).value();
-  const auto from_strong = strong->make_writer(plan_topic()).value();
-  from_strong->write({.version = 7});
-  from_weak->write({.version = 8});
+  const auto one = bus.make_participant();
+  const auto other = bus.make_participant();
+  const auto from_one = one->make_writer(plan_topic()).value();
+  const auto from_other = other->make_writer(plan_topic()).value();
+  from_one->write({.version = 7});
+  from_other->write({.version = 8});
 
-  const auto late = weak->make_reader(plan_topic()).value();
+  const auto late = one->make_reader(plan_topic()).value();
 
   std::vector<PlanMessage> plans;
-  ASSERT_EQ(late->take(plans), 1U);
+  ASSERT_EQ(late->take(plans), 2U);
   EXPECT_EQ(plans[0].version, 7U);
+  EXPECT_EQ(plans[1].version, 8U);
 }
 
 }  // namespace

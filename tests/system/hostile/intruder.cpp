@@ -25,8 +25,6 @@ namespace {
 
 using namespace swarm::link;
 
-constexpr std::uint32_t kStrength = 1000;  // more than the planner's
-
 }  // namespace
 
 std::int64_t utc_ns() { return utc_now().time_since_epoch().count(); }
@@ -39,10 +37,9 @@ Result<std::unique_ptr<Participant>> intrude(const FlownRun& flown) {
     return make_fastdds_participant({.name = "hostile",
                                      .domain = run.domain,
                                      .index = 60,
-                                     .discovery = {run.discovery_host, run.discovery_port},
-                                     .ownership_strength = kStrength});
+                                     .discovery = {run.discovery_host, run.discovery_port}});
   }
-  CycloneOptions options{.name = "hostile", .domain = run.domain, .ownership_strength = kStrength};
+  CycloneOptions options{.name = "hostile", .domain = run.domain};
   options.peer_ports = udp_ports_of(flown.launcher().pid());
   for (const Child& child : children_of(flown.launcher().pid())) {
     const auto ports = udp_ports_of(child.pid);

@@ -91,13 +91,12 @@ TEST_F(FlightLoopFailure, ReportsAFallenRobotWhosePositionIsUnknown) {
   EXPECT_TRUE(is_logged("body-unknown"));
 }
 
-TEST_F(FlightLoopFailure, RestartsThePlannerWithAHigherOwnershipStrength) {
+TEST_F(FlightLoopFailure, RestartsThePlanner) {
   ASSERT_TRUE(run_to_phase(MissionPhase::kRunning));
-  EXPECT_EQ(spawner.planner().option("--strength"), "100");
   spawner.end(spawner.planner(), kCrash);
   run_for(seconds(1));
 
-  EXPECT_EQ(spawner.planner().option("--strength"), "101");
+  EXPECT_TRUE(spawner.planner().runs);
   EXPECT_TRUE(is_logged("planner-exit"));
   arrive();
   ASSERT_TRUE(run_to_the_end());

@@ -19,8 +19,7 @@ class FlightLoopSilence : public FlightBench {
   void fly_with_heartbeats(Duration span) {
     for (const SteadyTime until = now.steady + span; now.steady < until;
          run_for(milliseconds(200))) {
-      const auto starts = std::stoull(spawner.planner().option("--strength")) - 99;
-      others.heartbeats->write({.epoch = kEpoch + starts,
+      others.heartbeats->write({.epoch = kEpoch + planners(),
                                 .sequence_number = ++beats,
                                 .stamp_utc_ns = now.utc.time_since_epoch().count()});
     }

@@ -23,10 +23,10 @@ Line agent_line(const FlightChoices& how, std::uint32_t process) {
   return agent_command(how, "/run", ProcessIndex(process), RobotId(10), 5).line;
 }
 
-TEST(ProcessCommands, StartThePlannerWithAStrengthThatGrowsWithItsStarts) {
-  EXPECT_EQ(planner_command(choices(), "/run", 2).line,
-            (Line{"/opt/planner", "--run", "/run", "--strength", "102", "--parent", kParent}));
-  EXPECT_EQ(planner_command(choices(), "/run", 2).log, "/run/logs/planner.log");
+TEST(ProcessCommands, StartThePlanner) {
+  const ProcessCommand command = planner_command(choices(), "/run");
+  EXPECT_EQ(command.line, (Line{"/opt/planner", "--run", "/run", "--parent", kParent}));
+  EXPECT_EQ(command.log, "/run/logs/planner.log");
 }
 
 TEST(ProcessCommands, StartAgentsWithTheirRobots) {
@@ -39,7 +39,7 @@ TEST(ProcessCommands, StartAgentsWithTheirRobots) {
 TEST(ProcessCommands, PassSimulatedFaultsToPlannerAndAgents) {
   FlightChoices how = choices();
   how.fault = "loss=0.2";
-  for (const Line& line : {planner_command(how, "/run", 0).line, agent_line(how, 1)}) {
+  for (const Line& line : {planner_command(how, "/run").line, agent_line(how, 1)}) {
     EXPECT_EQ(Line(line.end() - 4, line.end()), (Line{"--fault", "loss=0.2", "--parent", kParent}));
   }
 }

@@ -64,8 +64,7 @@ TEST(Join, RefusesTheDiscoveryServerToCycloneDds) {
   const auto launcher = join_as_launcher({.launcher = Vendor::kCycloneDds});
   EXPECT_EQ(refusal(launcher), "--dds launcher=" + reason);
   EXPECT_EQ(launcher.error().code, ErrorCode::kBadInput);
-  EXPECT_EQ(refusal(join_as_planner({.planner = Vendor::kCycloneDds}, 1)),
-            "--dds planner=" + reason);
+  EXPECT_EQ(refusal(join_as_planner({.planner = Vendor::kCycloneDds})), "--dds planner=" + reason);
   EXPECT_EQ(refusal(join_as_agent({}, 0, "robot", Vendor::kCycloneDds)), "--dds " + reason);
 }
 
