@@ -49,6 +49,7 @@ FlightLoop::FlightLoop(const FlightOptions& options, const std::filesystem::path
                                   SteadyTime at) { return supervisor_.runs_for(robot, at); }},
               ports_.recorded),
       stamp_tolerance_(from_seconds(options.mission.timing.clock_skew_warn_s)),
+      clock_skew_refuse_(from_seconds(options.mission.timing.clock_skew_refuse_s)),
       confirmations_(options.mission.robots.count, stamp_tolerance_) {}
 
 FlightLoop::~FlightLoop() {
@@ -61,6 +62,7 @@ Result<void> FlightLoop::step(const FlightTime& now) {
   reap(now);
   read_bus(now);
   report_refusals(now);
+  overrule(now);
   if (ports_.hosts != nullptr) {
     for (const LogEvent& event : ports_.hosts->step(supervisor_, now.steady)) {
       ports_.log.log(now.utc, event);
@@ -186,17 +188,21 @@ void FlightLoop::signal(const SignalProcess& action) {
   if (ports_.hosts != nullptr) ports_.hosts->end(action.process, action.signal);
 }
 
-// The UTC stamp serves as the command's id, so ids increase also after a restart of the launcher.
+// The UTC time serves as the command's id, so ids increase also after a restart of the launcher.
 // Two commands of one step have the same time; robots refuse an id that they know, so the second
-// one is stamped a nanosecond later. A repeated stop keeps its id, which the robots confirm.
+// one has the next. A stop passes whatever its id is; a repeated one keeps it, as robots confirm
+// it.
 void FlightLoop::send(CommandKind kind, UtcTime now) {
   SentCommand command{.kind = kind};
   if (kind == CommandKind::kStop && stop_) {
     command = *stop_;
   } else {
-    last_command_ns_ = std::max(last_command_ns_ + 1, now.time_since_epoch().count());
-    command.id = static_cast<std::uint64_t>(last_command_ns_);
-    command.stamp = UtcTime(Duration(last_command_ns_));
+    command.stamp = now;
+    command.id = static_cast<std::uint64_t>(now.time_since_epoch().count());
+    if (kind != CommandKind::kStop) {
+      command.id = std::max(last_command_id_ + 1, command.id);
+      last_command_id_ = command.id;
+    }
     confirmations_.on_sent(command);
   }
   if (kind == CommandKind::kStop) stop_ = command;

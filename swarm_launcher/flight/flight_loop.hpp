@@ -17,6 +17,7 @@
 #include "swarm_launcher/flight/flight_choices.hpp"
 #include "swarm_launcher/flight/flight_ports.hpp"
 #include "swarm_launcher/flight/flight_time.hpp"
+#include "swarm_launcher/flight/foreign_orders.hpp"
 #include "swarm_launcher/flight/late_robots.hpp"
 #include "swarm_launcher/flight/swarm_view.hpp"
 #include "swarm_launcher/supervision/event_throttle.hpp"
@@ -63,6 +64,7 @@ class FlightLoop {
   void read_events(const FlightTime& now);
   void read_stops(SteadyTime now);
   void report_refusals(const FlightTime& now);
+  void overrule(const FlightTime& now);
   void serve_requests(const FlightTime& now);
   Result<void> act(const Action& action, const FlightTime& now);
   void show(SteadyTime now);
@@ -89,8 +91,11 @@ class FlightLoop {
   LateRobots late_;
   FallenRobots fallen_;
   Duration stamp_tolerance_;  ///< of statuses that confirm commands
+  Duration clock_skew_refuse_;
   Confirmations confirmations_;
   std::optional<SentCommand> stop_;  ///< the emergency stop, once it was sent
+  ForeignOrders foreign_;
+  SteadyTime overruled_at_;
   EventThrottle throttle_;
   std::set<std::uint32_t> duplicates_;  ///< robots whose duplicate id was displayed
   std::map<pid_t, ProcessIndex> children_;
@@ -99,7 +104,7 @@ class FlightLoop {
   SteadyTime shown_at_;  ///< last update of the live line
   link::RefusalCounters reported_refusals_;
   SteadyTime refusals_reported_at_;
-  std::int64_t last_command_ns_ = 0;  ///< stamp of the last command
+  std::uint64_t last_command_id_ = 0;  ///< of commands other than a stop
 };
 
 }  // namespace swarm::launcher

@@ -14,6 +14,7 @@ namespace swarm::launcher {
 namespace {
 
 constexpr Duration kReportRefusalsEvery = std::chrono::seconds(1);
+constexpr Duration kOverruleEvery = std::chrono::seconds(1);
 
 }  // namespace
 
@@ -68,6 +69,32 @@ void FlightLoop::report_refusals(const FlightTime& now) {
                    });
 }
 
+// At most once a second, so that a flood of forged commands or scenes makes few of ours. A scene
+// that sets the risk level in force again has a new version and is otherwise the same.
+void FlightLoop::overrule(const FlightTime& now) {
+  const auto command = foreign_.command_after(last_command_id_);
+  const auto scene = foreign_.scene_after(ports_.scene.scene().version);
+  if ((!command && !scene) || now.steady - overruled_at_ < kOverruleEvery) return;
+  overruled_at_ = now.steady;
+  if (command) {
+    last_command_id_ = *command;
+    ports_.log.note(now.utc, link::Severity::kWarning, "command-foreign",
+                    "robots follow a command that this launcher did not send; it sends its own "
+                    "again");
+    const MissionPhase phase = supervisor_.phase();
+    if (phase == MissionPhase::kRunning || phase == MissionPhase::kPaused) {
+      send(CommandKind::kStart, now.utc);
+      send(phase == MissionPhase::kRunning ? CommandKind::kResume : CommandKind::kPause, now.utc);
+    }
+  }
+  if (scene) {
+    ports_.log.note(now.utc, link::Severity::kWarning, "scene-foreign",
+                    "the planner follows a scene that this launcher did not publish; it publishes "
+                    "its own again");
+    ports_.scene.overrule(*scene, options_.mission.planner.risk_alpha, now.utc);
+  }
+}
+
 // A command sends its stop to the robots, too, past a launcher that may have been suspended: what
 // the robots obey holds for the run.
 void FlightLoop::read_stops(SteadyTime now) {
@@ -80,6 +107,8 @@ void FlightLoop::read_stops(SteadyTime now) {
 // Positions are kept for robots that fall, and each robot's report goes to the supervisor.
 void FlightLoop::on_status(const link::StatusMessage& status, const FlightTime& now) {
   const UtcTime stamp(Duration(status.stamp_utc_ns));
+  foreign_.on_status(status, static_cast<std::uint64_t>(
+                                 (now.utc + 2 * clock_skew_refuse_).time_since_epoch().count()));
   for (const link::RobotStatusMessage& robot : status.robots) {
     const RobotId id(robot.robot_id);
     view_.take(robot);

@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "swarm_launcher/flight/scene_keeper.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "swarm_core/base/assert.hpp"
 #include "swarm_core/mission_file/scene_log.hpp"
 #include "swarm_link/to_message.hpp"
 
@@ -36,6 +38,13 @@ Result<std::string> SceneKeeper::change(const SceneChange& change, UtcTime now) 
   writer_->write(link::to_message(scene_));
   return scene_.next_id > next_id ? fmt::format("obstacle {} added", next_id)
                                   : std::string(name_of(change));
+}
+
+// In the log as a change, as audits look for every version that robots have received.
+void SceneKeeper::overrule(std::uint64_t foreign_version, double alpha, UtcTime now) {
+  scene_.version = std::max(scene_.version, foreign_version);
+  const auto published = change(SetRisk{scene_.risk_alpha.value_or(alpha)}, now);
+  SWARM_ASSERT(published.has_value());
 }
 
 // One message for all changes: every published scene causes a new plan.

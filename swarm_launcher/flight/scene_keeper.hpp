@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
@@ -25,6 +26,10 @@ class SceneKeeper {
 
   /// Publishes several changes as one. Returns why some of them were refused.
   std::vector<Error> change_all(std::span<const SceneChange> changes, UtcTime now);
+
+  /// Publishes the scene again, newer than a version that others have published: then what holds is
+  /// in force again. `alpha`: the risk level of the mission file.
+  void overrule(std::uint64_t foreign_version, double alpha, UtcTime now);
 
   const Scene& scene() const { return scene_; }
 

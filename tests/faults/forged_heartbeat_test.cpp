@@ -29,12 +29,6 @@ void forge(const FlownRun& run, std::int64_t after_s) {
   }
 }
 
-void expect_all_arrive(FlownRun& run) {
-  EXPECT_EQ(run.launcher().wait(), 0) << run.outcome();
-  EXPECT_EQ(run.summary()["arrived"], 12);
-  EXPECT_EQ(run.summary()["collisions_robot"], 0);
-}
-
 // Were the newest epoch to lead, the swarm would hold for good, without a plan of that epoch.
 TEST(ForgedHeartbeat, OfALaterEpochDoesNotLockThePlannerOut) {
   FlownRun run({"--channel", "topics"});

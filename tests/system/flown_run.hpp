@@ -88,4 +88,11 @@ class FlownRun {
   std::unique_ptr<Program> launcher_;
 };
 
+/// Waits for the end of a flight of the small mission, in which no robot may be lost.
+inline void expect_all_arrive(FlownRun& run) {
+  EXPECT_EQ(run.launcher().wait(), 0) << run.outcome();
+  EXPECT_EQ(run.summary()["arrived"], 12);
+  EXPECT_EQ(run.summary()["collisions_robot"], 0);
+}
+
 }  // namespace swarm::test

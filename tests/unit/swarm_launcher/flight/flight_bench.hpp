@@ -70,6 +70,7 @@ struct FakeRobot {
   bool silent = false;           ///< its statuses do not get through
   std::uint64_t command_id = 0;  ///< of the newest command that it obeys
   bool ignores_stop = false;
+  std::uint64_t scene_version = 0;  ///< that its plan was made for, if newer than the launcher's
   link::Writer<link::StatusMessage>* statuses = nullptr;  ///< null: the one that all share
 };
 
@@ -207,18 +208,19 @@ class FlightBench : public ::testing::Test {
       if (child.is_planner() || !child.runs || robots[child.first_robot()].silent) continue;
       const std::uint32_t id = child.first_robot();
       auto& writer = robots[id].statuses != nullptr ? *robots[id].statuses : *others.statuses;
-      writer.write({.first_robot_id = id,
-                    .plan_version = 1,
-                    .plan_scene_version = scene->scene().version,
-                    .command_id = robots[id].command_id,
-                    .stamp_utc_ns = now.utc.time_since_epoch().count(),
-                    .robots = {{.robot_id = id,
-                                .mode = robots[id].mode,
-                                .settled = robots[id].settled,
-                                .x_m = 5.0 + id,
-                                .y_m = 5.0,
-                                .neighbours_heard = kRobots - 1,
-                                .ticks = 1}}});
+      writer.write(
+          {.first_robot_id = id,
+           .plan_version = 1,
+           .plan_scene_version = std::max(scene->scene().version, robots[id].scene_version),
+           .command_id = robots[id].command_id,
+           .stamp_utc_ns = now.utc.time_since_epoch().count(),
+           .robots = {{.robot_id = id,
+                       .mode = robots[id].mode,
+                       .settled = robots[id].settled,
+                       .x_m = 5.0 + id,
+                       .y_m = 5.0,
+                       .neighbours_heard = kRobots - 1,
+                       .ticks = 1}}});
     }
   }
 
