@@ -34,10 +34,15 @@ done <"$work/headers.txt"
 xargs -P 2 -I{} sh -c "echo '#include <{}>' | g++ -std=c++20 -fsyntax-only -Wno-ignored-attributes -include $work/eigen.hpp -I. $eigen -x c++ - ||
   { echo '{} does not compile alone' >&2; exit 255; }" <"$work/headers.txt"
 
+# Libraries with a sanitizer need it in the programs that they are linked to.
+sanitizers=$(sed -n 's/^SWARM_SANITIZE:STRING=//p' "$build/CMakeCache.txt")
+flags=${sanitizers:+-fsanitize=$sanitizers}
+
 echo "examples build against the prefix"
 for example in "$examples"/own_*; do
   name=$(basename "$example")
-  cmake -S "$example" -B "$work/$name" -G Ninja -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_BUILD_TYPE=Release >"$work/$name.log" ||
+  cmake -S "$example" -B "$work/$name" -G Ninja -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_BUILD_TYPE=Release \
+    -DCMAKE_CXX_FLAGS="$flags" >"$work/$name.log" ||
     { cat "$work/$name.log"; fail "$name does not configure"; }
   cmake --build "$work/$name" >"$work/$name.log" || { cat "$work/$name.log"; fail "$name does not build"; }
 done
