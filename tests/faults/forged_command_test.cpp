@@ -46,7 +46,7 @@ TEST(ForgedCommand, PauseIsOverruledAndTheUsersCommandsAreObeyed) {
 
 // It would let the robots fly through the obstacles of the mission. The verdict is not "ok", as
 // what some robots flew by for a second is not in the run directory.
-TEST(ForgedCommand, SceneWithoutObstaclesIsOverruledAndTold) {
+TEST(ForgedCommand, SceneWithoutObstaclesIsOverruledAndReported) {
   FlownRun run({"--channel", "topics"});
   ASSERT_TRUE(run.mission_started()) << run.outcome();
 

@@ -15,6 +15,7 @@
 #include <fmt/format.h>
 
 #include "swarm_link/adapters/cyclone/byte_type.hpp"
+#include "swarm_link/adapters/cyclone/steady_waits.hpp"
 
 namespace swarm::link {
 namespace cyclone {
@@ -233,6 +234,7 @@ class CycloneParticipant final : public Participant {
 
 Result<std::unique_ptr<Participant>> make_cyclone_participant(const CycloneOptions& options) {
   using namespace cyclone;
+  wait_by_steady_clock();
   auto domain = domain_of(options);
   if (domain->get() < 0) {
     return fail(ErrorCode::kEnvironment,
