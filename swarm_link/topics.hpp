@@ -94,6 +94,13 @@ inline Topic<CellStatesMessage> cell_topic(Cell cell) {
           {.reliability = Reliability::kBestEffort, .depth = 64, .many_readers = true}};
 }
 
+/// States for all processes of a run, whatever cell they are in: see
+/// StateChannel::publish_everywhere().
+inline Topic<CellStatesMessage> everywhere_topic() {
+  return {"swarm/everywhere",
+          {.reliability = Reliability::kBestEffort, .depth = 64, .many_readers = true}};
+}
+
 /// Reliable with depth 1 per group of robots: the newest status must arrive, older ones need not.
 inline Topic<StatusMessage> status_topic() {
   return {"swarm/status", {.reliability = Reliability::kReliable, .depth = 1, .reader_depth = 8}};

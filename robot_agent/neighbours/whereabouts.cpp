@@ -39,6 +39,7 @@ bool Whereabouts::on_beat(const link::LauncherBeat& beat, SteadyTime now, Steady
     return false;
   }
   sequence_ = beat.sequence;
+  if (last_beat_ && now - *last_beat_ > options_.beat_timeout) back_at_ = now;
   if (!beat.lists_all || !last_beat_ || now - *last_beat_ > options_.beat_timeout) since_ = now;
   last_beat_ = now;
   for (const link::RobotRange& range : beat.silent()) {

@@ -65,6 +65,12 @@ class Whereabouts {
   bool is_launcher_lost(SteadyTime now) const {
     return last_beat_ && now - *last_beat_ > options_.launcher_silence;
   }
+  /// Whether beats have stopped, or came back less than `within` ago: the launcher may not have
+  /// run, and with it the discovery server.
+  bool had_gap(Duration within, SteadyTime now) const {
+    return (last_beat_ && now - *last_beat_ > options_.beat_timeout) ||
+           (back_at_ && now - *back_at_ <= within);
+  }
   /// Of the last beat; empty: none has been received.
   std::optional<SteadyTime> last_beat() const { return last_beat_; }
   std::uint64_t refused() const { return refused_; }
@@ -75,7 +81,8 @@ class Whereabouts {
 
   WhereaboutsOptions options_;
   std::optional<SteadyTime> last_beat_;
-  SteadyTime since_;  // of the first beat after the last gap
+  SteadyTime since_;                     // of the first beat after the last gap
+  std::optional<SteadyTime> back_at_{};  // the same, if there has been a gap
   std::uint64_t sequence_ = 0;
   std::uint64_t refused_ = 0;
   std::vector<SteadyTime> listed_at_;   // by robot: the last beat that lists it

@@ -3,6 +3,7 @@
 #include "robot_agent/program/process_loop.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <utility>
 
 #include <fmt/format.h>
@@ -13,6 +14,10 @@
 
 namespace swarm::agent {
 namespace {
+
+/// After a gap of the launcher, whose discovery server matched no endpoints meanwhile: on a loaded
+/// machine it has been seen to take 14 s for what had waited.
+constexpr Duration kDiscoveryLag = std::chrono::seconds(60);
 
 /// After a silence of the planner, robots wait for as long as a neighbour may be silent, plus two
 /// periods (see MissionWatch).
@@ -165,6 +170,7 @@ void ProcessLoop::tick(const Time& time) {
   // times as long, and no robot moves without a plan. One that was restarted in flight has
   // others around it at once.
   if (inbox_.plan_version() > 0 || local_.any_is_underway) {
+    bus_.states->publish_everywhere(whereabouts_.had_gap(kDiscoveryLag, time.now));
     bus_.states->publish(published_);
     bus_.states->listen_around(positions_m_);
   }

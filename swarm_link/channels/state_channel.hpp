@@ -22,6 +22,10 @@ class StateChannel {
   /// the cell that a robot has left (see LeftCells). Returns the number of states sent.
   virtual std::size_t publish(std::span<const RobotStateMessage> states) = 0;
 
+  /// While set, states go to all processes of the run beside those that receive the cell: new
+  /// endpoints of cells may not be discovered. Nothing where cells need no discovery.
+  virtual void publish_everywhere(bool /*is_on*/) {}
+
   /// Sets the positions of this process's robots, once per tick: joins the cells they need and
   /// leaves those they no longer need (with hysteresis).
   virtual void listen_around(std::span<const Vec2> positions_m) = 0;
@@ -56,7 +60,8 @@ struct CellOptions {
 /// The `topics` channel: one ordinary topic per cell, with endpoints that are created and
 /// discovered as robots move. Writers are created when a robot is within `join_margin_m` of a cell,
 /// so that they are discovered by the time it enters. Writers of cells that were left are kept, up
-/// to a small number, because discovery is costly and keeping them is not. Call
+/// to a small number, because discovery is costly and keeping them is not. The topic for all
+/// processes has its endpoints from the first listen_around() on. Call
 /// participant.receive() before take(). An endpoint that the bus refuses is tried again at the next
 /// call. Works with any participant. \pre participant outlives the channel
 std::unique_ptr<StateChannel> make_topic_channel(Participant& participant,

@@ -28,16 +28,22 @@ class TopicChannel final : public StateChannel {
     std::size_t sent = 0;
     for (const CellStatesMessage& batch : batches_.sort(states, &left_)) {
       auto* writer = writer_of({batch.cell_x, batch.cell_y});
-      if (writer != nullptr && writer->write(batch)) sent += count_inside(batch);
+      bool is_sent = writer != nullptr && writer->write(batch);
+      if (is_everywhere_ && everywhere_writer_ != nullptr) {
+        is_sent = everywhere_writer_->write(batch) || is_sent;
+      }
+      if (is_sent) sent += count_inside(batch);
     }
     retire_writers();
     return sent;
   }
 
+  void publish_everywhere(bool is_on) override { is_everywhere_ = is_on; }
+
   // Readers follow the wanted cells exactly; writers are created ahead and retired lazily.
   void listen_around(std::span<const Vec2> positions_m) override {
     ++now_;
-    receives_all_ = true;
+    receives_all_ = join_everywhere();
     const auto wanted = interest_.update(positions_m);
     for (auto it = readers_.begin(); it != readers_.end();) {
       if (std::binary_search(wanted.begin(), wanted.end(), it->first)) {
@@ -71,11 +77,13 @@ class TopicChannel final : public StateChannel {
   std::size_t take(std::vector<CellStatesMessage>& out) override {
     std::size_t taken = 0;
     for (auto& [cell, reader] : readers_) taken += reader->take(out);
+    if (everywhere_reader_ != nullptr) taken += everywhere_reader_->take(out);
     return taken;
   }
 
   std::uint64_t undecodable() const override {
     std::uint64_t sum = undecodable_of_left_;
+    if (everywhere_reader_ != nullptr) sum += everywhere_reader_->undecodable();
     for (const auto& [cell, reader] : readers_) sum += reader->undecodable();
     return sum;
   }
@@ -85,6 +93,21 @@ class TopicChannel final : public StateChannel {
     WriterPtr<CellStatesMessage> writer;
     std::uint64_t used = 0;  // value of now_
   };
+
+  // The endpoints of the topic for all processes; false if the bus refuses one for now.
+  bool join_everywhere() {
+    if (everywhere_reader_ == nullptr) {
+      if (auto made = participant_.make_reader(everywhere_topic())) {
+        everywhere_reader_ = *std::move(made);
+      }
+    }
+    if (everywhere_writer_ == nullptr) {
+      if (auto made = participant_.make_writer(everywhere_topic())) {
+        everywhere_writer_ = *std::move(made);
+      }
+    }
+    return everywhere_reader_ != nullptr && everywhere_writer_ != nullptr;
+  }
 
   // States of robots in the cell: the copies for cells that robots have left do not count.
   std::size_t count_inside(const CellStatesMessage& batch) const {
@@ -124,6 +147,9 @@ class TopicChannel final : public StateChannel {
   CellBatches batches_;
   LeftCells left_;
   bool receives_all_ = true;
+  bool is_everywhere_ = false;
+  ReaderPtr<CellStatesMessage> everywhere_reader_;
+  WriterPtr<CellStatesMessage> everywhere_writer_;
   std::uint64_t now_ = 0;  // calls of listen_around()
   std::map<Cell, ReaderPtr<CellStatesMessage>> readers_;
   std::map<Cell, CellWriter> writers_;

@@ -112,5 +112,27 @@ TEST_P(TopicChannels, ReceiveARobotFromItsFirstStateInANewCell) {
   EXPECT_EQ(received[0].states[0].sequence_number, 1U);
 }
 
+// As while the discovery server does not run: no endpoint of the other's cell is known here.
+TEST_P(TopicChannels, ReachRobotsOfOtherCellsWhilePublishingEverywhere) {
+  Robot here = robot(1, 10.0, 10.0);
+  Robot there = robot(2, 510.0, 510.0);
+  here.channel->publish_everywhere(true);
+  EXPECT_TRUE(bus->eventually([&] {
+    here.tick();
+    there.tick();
+    return there.received.contains(1);
+  }));
+  EXPECT_FALSE(here.received.contains(2));
+
+  here.channel->publish_everywhere(false);
+  here.state.robot_id = 3;
+  for (int i = 0; i < 20; ++i) {
+    here.tick();
+    bus->converge();
+    there.tick();
+  }
+  EXPECT_FALSE(there.received.contains(3));
+}
+
 }  // namespace
 }  // namespace swarm::link::conformance

@@ -49,6 +49,19 @@ TEST_F(WhereaboutsTest, KnowNothingWithoutTheLauncher) {
   EXPECT_FALSE(sut_.is_launcher_lost(at(1000))) << "it was never received";
 }
 
+TEST_F(WhereaboutsTest, RememberAGapForAWhile) {
+  const auto had_gap = [&](double now_s) { return sut_.had_gap(seconds(60), at(now_s)); };
+  EXPECT_FALSE(had_gap(0)) << "the launcher has not been received yet";
+  beats(0, 10);
+  EXPECT_FALSE(had_gap(10));
+  EXPECT_FALSE(had_gap(11.5));
+  EXPECT_TRUE(had_gap(11.6));
+  beats(25, 85);
+  EXPECT_TRUE(had_gap(85));
+  beats(85.5, 86);
+  EXPECT_FALSE(had_gap(86));
+}
+
 TEST_F(WhereaboutsTest, KnowTheCirclesOfBodies) {
   Scene scene = first_scene(0);
   const auto add = [&](std::optional<RobotId> owner, Obstacle shape) {
