@@ -70,14 +70,15 @@ class OwnDisk {
   bool is_mounted_ = false;
 };
 
-class DiskFault : public testing::Test {
+class DiskFault : public testing::TestWithParam<const char*> {
  protected:
   /// False if this machine does not let us have the disk.
   bool begin(OwnDisk::Kind kind) {
     disk_ = std::make_unique<OwnDisk>(kind);
     if (!disk_->is_mounted()) return false;
     launcher_ = std::make_unique<Program>(
-        "swarm_launcher", std::vector<std::string>{"run", kSmallMission, "--out", dir().string()});
+        "swarm_launcher", std::vector<std::string>{"run", kSmallMission, "--channel", GetParam(),
+                                                   "--out", dir().string()});
     return true;
   }
   std::filesystem::path dir() const { return disk_->path() / "run"; }
@@ -119,7 +120,7 @@ class DiskFault : public testing::Test {
 #define BEGIN_OR_SKIP(kind) \
   if (!begin(OwnDisk::Kind::kind)) GTEST_SKIP() << "needs root and a file system of its own"
 
-TEST_F(DiskFault, FullAllArriveAndWhatIsMissingIsNamed) {
+TEST_P(DiskFault, FullAllArriveAndWhatIsMissingIsNamed) {
   BEGIN_OR_SKIP(kMemory);
   ASSERT_TRUE(mission_started());
   disk_->fill();
@@ -129,7 +130,7 @@ TEST_F(DiskFault, FullAllArriveAndWhatIsMissingIsNamed) {
 }
 
 // The records of the full minute wait in memory.
-TEST_F(DiskFault, FullForAWhileNothingIsMissing) {
+TEST_P(DiskFault, FullForAWhileNothingIsMissing) {
   BEGIN_OR_SKIP(kMemory);
   ASSERT_TRUE(mission_started());
   disk_->fill();
@@ -145,7 +146,7 @@ TEST_F(DiskFault, FullForAWhileNothingIsMissing) {
   EXPECT_TRUE(has_event(dir(), "respawn")) << "written when there was room again";
 }
 
-TEST_F(DiskFault, ReadOnlyAllArriveAndWhatIsMissingIsNamed) {
+TEST_P(DiskFault, ReadOnlyAllArriveAndWhatIsMissingIsNamed) {
   BEGIN_OR_SKIP(kExt4);
   ASSERT_TRUE(mission_started());
   if (!disk_->make_read_only()) GTEST_SKIP() << "the kernel has no such switch";
@@ -154,7 +155,7 @@ TEST_F(DiskFault, ReadOnlyAllArriveAndWhatIsMissingIsNamed) {
   expect_arrival_with_missing_records("Read-only file system");
 }
 
-TEST_F(DiskFault, RemovedAllArriveAndTheRestIsWrittenAgain) {
+TEST_P(DiskFault, RemovedAllArriveAndTheRestIsWrittenAgain) {
   BEGIN_OR_SKIP(kMemory);
   ASSERT_TRUE(mission_started());
   std::filesystem::rename(dir(), disk_->path() / "removed");  // before its files are made again
@@ -187,7 +188,7 @@ Duration longest_gap(const std::filesystem::path& run_dir, std::uint32_t robot) 
   return longest;
 }
 
-TEST_F(DiskFault, FrozenRobotsFlyOnAndNothingIsMissing) {
+TEST_P(DiskFault, FrozenRobotsFlyOnAndNothingIsMissing) {
   BEGIN_OR_SKIP(kExt4);
   ASSERT_TRUE(mission_started());
   constexpr std::chrono::seconds kFrozen{12};
@@ -207,6 +208,9 @@ TEST_F(DiskFault, FrozenRobotsFlyOnAndNothingIsMissing) {
     EXPECT_LT(longest_gap(dir(), robot), kFrozen / 2) << robot;
   }
 }
+
+INSTANTIATE_TEST_SUITE_P(Channels, DiskFault, testing::Values("topics", "groups"),
+                         [](const auto& channel) { return std::string(channel.param); });
 
 }  // namespace
 }  // namespace swarm::test
