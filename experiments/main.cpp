@@ -68,6 +68,21 @@ Act add_soak(CLI::App& program) {
                        "Fail if a larger share of the states is lost, 0 to 1");
   soak_app->add_option("--max-rss-growth-pct", o->criteria.max_rss_growth_pct,
                        "Fail if the agents' memory grows by more");
+  soak_app->add_option("--max-late-pct", o->criteria.max_late_pct,
+                       "Fail if more control periods begin late or are missed");
+  soak_app->add_option("--max-status-ms", o->criteria.max_status_ms,
+                       "Fail if 1 % of the statuses take longer to the launcher");
+  soak_app->add_option("--max-command-ms", o->criteria.max_command_ms,
+                       "Fail if 1 % of the robots report later that they obey a command");
+  soak_app->add_option(
+      "--max-plan-ms", o->criteria.max_plan_ms,
+      "Fail if 1 % of the robots report later that they follow the plan of a scene");
+  soak_app->add_option("--max-beat-ms", o->criteria.max_beat_ms,
+                       "Fail if the planner's heartbeats have a longer gap");
+  soak_app->add_option("--max-clock-error-ms", o->criteria.max_clock_error_ms,
+                       "Fail if statuses show a larger error between clocks");
+  soak_app->add_flag("--flat", o->criteria.is_flat,
+                     "Fail if threads or open files grow by more than 1 %");
   soak_app->add_option("--seed", o->seed, "Seed of placement, plan and robots (default: 1)");
   soak_app->add_option("--out", o->out, "Run directory (default: runs/soak-<time>)");
   add_domain(*soak_app, o->domain);

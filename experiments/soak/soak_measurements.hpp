@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "experiments/soak/soak_paths.hpp"
 #include "swarm_core/metrics/histogram.hpp"
 #include "swarm_link/stream_meter.hpp"
 
@@ -31,6 +32,7 @@ struct SoakMeasurements {
   Histogram latency{};               ///< written → received by a waiting listener
   link::StreamMeter::Worst worst{};  ///< the largest latency and its robot
   Histogram use_latency{};           ///< written → used by a neighbour's controller
+  PathLatencies paths{};             ///< of status, command, scene, plan and heartbeat
   std::uint64_t states_sent = 0;     ///< as the robots count
   std::uint64_t states_used = 0;
   std::uint64_t ticks = 0, late_ticks = 0;  ///< control periods, and those that began late

@@ -47,6 +47,16 @@ Json to_json(const Growth& growth) {
   return {{"start", growth.start}, {"end", growth.end}, {"max", growth.max}};
 }
 
+Json to_json(const PathLatencies& p) {
+  return {{"status_ms", quantiles(p.status)},
+          {"command_ms", quantiles(p.command)},
+          {"scene_to_plan_ms", quantiles(p.plan)},
+          {"heartbeat_gap_ms", quantiles(p.beat)},
+          {"commands", p.commands},
+          {"scenes", p.scenes},
+          {"clock_error_ms", to_ms(p.clock_error_us)}};
+}
+
 /// The same for a terminal.
 std::string quantiles_text(const Histogram& h) {
   if (h.count() == 0) return "not measured";
@@ -66,6 +76,39 @@ std::string chart_of(const std::vector<SoakSample>& samples, double SoakSample::
   return fmt::format("<figure><h2>{}</h2>\n{}<figcaption>{}</figcaption></figure>\n", title,
                      monitor::line_chart(std::array{curve}, 1.0, std::max(1.05 * top, 1e-3), title),
                      caption);
+}
+
+/// A path that carried nothing fails its limit: a soak that did not measure it must not pass.
+void check(const char* what, const Histogram& latency, double value_ms,
+           const std::optional<double>& limit_ms, std::vector<std::string>& found) {
+  if (!limit_ms) return;
+  if (latency.count() == 0) {
+    found.push_back(fmt::format("{}: nothing was measured", what));
+  } else if (value_ms > *limit_ms) {
+    found.push_back(fmt::format("{} {:.1f} ms > {} ms", what, value_ms, *limit_ms));
+  }
+}
+
+void complain_of_paths(const SoakMeasurements& m, const SoakCriteria& criteria,
+                       std::vector<std::string>& found) {
+  const PathLatencies& p = m.paths;
+  check("status p99", p.status, to_ms(p.status.quantile_us(0.99)), criteria.max_status_ms, found);
+  check("command p99", p.command, to_ms(p.command.quantile_us(0.99)), criteria.max_command_ms,
+        found);
+  check("scene to plan p99", p.plan, to_ms(p.plan.quantile_us(0.99)), criteria.max_plan_ms, found);
+  check("longest gap of heartbeats", p.beat, to_ms(p.beat.max_us()), criteria.max_beat_ms, found);
+  check("clock error", p.status, to_ms(p.clock_error_us), criteria.max_clock_error_ms, found);
+  const double late_pct = 100.0 * ratio(m.late_ticks, m.ticks);
+  if (criteria.max_late_pct && late_pct > *criteria.max_late_pct) {
+    found.push_back(fmt::format("{:.3f} % late ticks > {} %", late_pct, *criteria.max_late_pct));
+  }
+  if (!criteria.is_flat) return;
+  constexpr double kFlat_pct = 1.0;
+  for (const auto& [what, sample] : {std::pair{"threads", &SoakSample::threads},
+                                     std::pair{"open files", &SoakSample::open_files}}) {
+    const double grown_pct = growth_of(m.samples, sample).percent();
+    if (grown_pct > kFlat_pct) found.push_back(fmt::format("{} grew by {:.1f} %", what, grown_pct));
+  }
 }
 
 }  // namespace
@@ -103,6 +146,7 @@ std::vector<std::string> complaints(const SoakResult& result, const SoakCriteria
   if (criteria.max_loss && loss_of(m) > *criteria.max_loss) {
     found.push_back(fmt::format("loss {:.6f} > {}", loss_of(m), *criteria.max_loss));
   }
+  complain_of_paths(m, criteria, found);
   const double grown_pct = growth_of(m.samples, &SoakSample::rss_mb).percent();
   if (criteria.max_rss_growth_pct && grown_pct > *criteria.max_rss_growth_pct) {
     found.push_back(
@@ -144,6 +188,7 @@ std::string to_json(const SoakResult& result, const std::vector<std::string>& co
                      {"receive_drops", m.receive_drops},
                      {"loss", loss_of(m)},
                      {"deadline_miss_ratio", ratio(m.late_ticks, m.ticks)},
+                     {"paths", to_json(m.paths)},
                      {"collisions", result.collisions},
                      {"cpu_s", result.cpu_s},
                      {"rss_mb", to_json(rss)},
@@ -178,6 +223,11 @@ std::string to_text(const SoakResult& result, const std::vector<std::string>& co
   }
   text += fmt::format("  at the robots    {} used, {} dropped by the kernel\n", m.states_used,
                       m.receive_drops);
+  text += fmt::format("  statuses         {}\n", quantiles_text(m.paths.status));
+  text +=
+      fmt::format("  {:3} commands     {}\n", m.paths.commands, quantiles_text(m.paths.command));
+  text += fmt::format("  {:3} scenes       {}\n", m.paths.scenes, quantiles_text(m.paths.plan));
+  text += fmt::format("  heartbeats       {}\n", quantiles_text(m.paths.beat));
   text += fmt::format("  late ticks       {:.4f} %\n", 100.0 * ratio(m.late_ticks, m.ticks));
   text += fmt::format("  contacts         {}\n", result.collisions);
   text += fmt::format("  memory           {:.1f} MB to {:.1f} MB: {:+.2f} %\n", rss.start, rss.end,

@@ -51,6 +51,7 @@ void SoakWatch::receive_all() {
 /// soak. A robot whose process was restarted begins anew.
 void SoakWatch::on_status(const link::StatusMessage& status) {
   if (!running_) return;
+  paths_.on_status(status, utc_now());
   for (const link::RobotStatusMessage& now : status.robots) {
     Robot& robot = robots_[now.robot_id];
     if (robot.process_id != status.process_id) {
@@ -59,6 +60,10 @@ void SoakWatch::on_status(const link::StatusMessage& status) {
     robot.last = now;
   }
   if (!status.state_age.empty()) ages_[status.process_id] = status.state_age;
+}
+
+void SoakWatch::on_heartbeat(SteadyTime now) {
+  if (running_) paths_.on_heartbeat(now);
 }
 
 /// Called by the flight at every step: marks begin and end of the measurement, and takes a sample
@@ -123,7 +128,7 @@ std::string SoakWatch::describe() {
 }
 
 SoakMeasurements SoakWatch::measurements() const {
-  SoakMeasurements m{.samples = samples_, .receive_drops = drops_};
+  SoakMeasurements m{.samples = samples_, .paths = paths_.latencies(), .receive_drops = drops_};
   for (const Robot& robot : robots_) {
     const link::RobotStatusMessage &first = robot.first, &last = robot.last;
     m.states_sent += last.states_sent - first.states_sent;

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "experiments/soak/soak_measurements.hpp"
+#include "experiments/soak/soak_paths.hpp"
 #include "swarm_launcher/flight/flight_loop.hpp"
 #include "swarm_link/channels/groups/group_tap.hpp"
 
@@ -30,6 +31,7 @@ class SoakWatch final : public FlightObserver {
   void listen(std::unique_ptr<link::GroupTap> tap);
 
   void on_status(const link::StatusMessage& status) override;
+  void on_heartbeat(SteadyTime now) override;
   void on_step(const FlightLoop& flight, SteadyTime now) override;
   std::string describe() override;
 
@@ -49,6 +51,7 @@ class SoakWatch final : public FlightObserver {
   };
   std::vector<Robot> robots_;
   std::map<std::uint32_t, std::vector<link::HistogramBinMessage>> ages_;  // by process
+  PathMeter paths_;
   std::vector<SoakSample> samples_;
   SteadyTime sampled_at_;
   double cpu_s_ = 0.0;

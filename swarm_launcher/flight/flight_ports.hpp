@@ -64,6 +64,8 @@ class FlightObserver {
   virtual ~FlightObserver() = default;
   /// A status that passed the Gate.
   virtual void on_status(const link::StatusMessage& status) = 0;
+  /// A heartbeat of a planner that passed the Gate.
+  virtual void on_heartbeat(SteadyTime /*now*/) {}
   /// Called in every step of the flight, every 20 ms or so. It must not block.
   virtual void on_step(const FlightLoop& flight, SteadyTime now) = 0;
   /// Text appended to the live line of the terminal.

@@ -29,6 +29,7 @@ void FlightLoop::read_bus(const FlightTime& now) {
   }
   for (const link::HeartbeatMessage& beat : ports_.bus.inbox.heartbeats()) {
     supervisor_.on_heartbeat(beat.epoch);
+    if (ports_.observer != nullptr) ports_.observer->on_heartbeat(now.steady);
   }
   read_events(now);
   read_stops(now.steady);

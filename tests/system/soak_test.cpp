@@ -9,9 +9,9 @@ namespace {
 TEST(Soak, ReceivesEveryRobotWithoutLoss) {
   TemporaryFolder folder;
   const auto dir = folder.path() / "soak";
-  Program soak("swarm_launcher",
-               {"soak", "--processes", "6", "--per-process", "2", "--rate-hz", "20", "--duration-s",
-                "6", "--channel", "groups", "--json", "--out", dir.string()});
+  Program soak("swarm_launcher", {"soak", "--processes", "6", "--per-process", "2", "--rate-hz",
+                                  "20", "--duration-s", "6", "--channel", "groups", "--json",
+                                  "--out", dir.string(), "--flat", "--max-late-pct", "100"});
 
   EXPECT_EQ(soak.wait(), 0) << soak.err() << soak.out();
 
@@ -22,6 +22,13 @@ TEST(Soak, ReceivesEveryRobotWithoutLoss) {
   EXPECT_EQ(result["collisions"], 0);
   EXPECT_GT(result["latency_ms"]["p50"], 0.0);
   EXPECT_GT(result["rss_mb"]["start"], 0.0);
+  const auto& paths = result["paths"];
+  EXPECT_GE(paths["commands"], 2) << "pause and resume";
+  EXPECT_GE(paths["scenes"], 1);
+  EXPECT_GT(paths["command_ms"]["p99"], 0.0);
+  EXPECT_GT(paths["scene_to_plan_ms"]["p99"], 0.0);
+  EXPECT_GT(paths["status_ms"]["p99"], 0.0);
+  EXPECT_GT(paths["heartbeat_gap_ms"]["p50"], 0.0);
   EXPECT_TRUE(std::filesystem::exists(dir / "soak.html"));
 }
 

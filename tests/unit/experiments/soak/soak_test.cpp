@@ -11,6 +11,7 @@
 
 #include "experiments/soak/process_sample.hpp"
 #include "experiments/soak/soak_mission.hpp"
+#include "experiments/soak/soak_paths.hpp"
 #include "experiments/soak/soak_result.hpp"
 #include "swarm_link/stream_meter.hpp"
 
@@ -192,6 +193,71 @@ TEST(ProcessSample, IsThatOfThisProcess) {
 }
 
 TEST(ProcessSample, IsNoneOfNoProcess) { EXPECT_FALSE(sample_process(0x7FFFFFF0)); }
+
+/// A status of the process `id` that was sent at kNow.
+link::StatusMessage status(std::uint32_t id, std::uint64_t command, std::uint64_t scene) {
+  return {.process_id = id,
+          .plan_scene_version = scene,
+          .command_id = command,
+          .stamp_utc_ns = kNow.time_since_epoch().count()};
+}
+std::uint64_t published(Duration before) {
+  return static_cast<std::uint64_t>((kNow - before).time_since_epoch().count());
+}
+
+TEST(PathMeter, MeasuresCommandsAndScenesFromTheirPublication) {
+  PathMeter meter;
+  for (const std::uint32_t id : {1U, 2U}) {  // what was published before the soak does not count
+    meter.on_status(status(id, published(std::chrono::seconds(9)), 1), kNow);
+  }
+  const auto command = published(microseconds(50'000));
+  const auto scene = published(microseconds(200'000));
+  for (int repeated = 0; repeated < 3; ++repeated) {
+    meter.on_status(status(1, command, scene), kNow + microseconds(2'000));
+  }
+  meter.on_status(status(2, command, scene), kNow + microseconds(2'000));
+
+  const PathLatencies& p = meter.latencies();
+  EXPECT_EQ(p.commands, 1U);
+  EXPECT_EQ(p.scenes, 1U);
+  EXPECT_EQ(p.command.count(), 2U);
+  EXPECT_NEAR(static_cast<double>(p.command.max_us()), 50'000, 3'000);
+  EXPECT_NEAR(static_cast<double>(p.plan.max_us()), 200'000, 10'000);
+  EXPECT_EQ(p.status.count(), 6U);
+  EXPECT_EQ(p.clock_error_us, 0);
+}
+
+TEST(PathMeter, ShowsClocksThatAreOff) {
+  PathMeter meter;
+  meter.on_status(status(1, 0, 0), kNow - microseconds(700));
+  EXPECT_EQ(meter.latencies().clock_error_us, 700);
+}
+
+TEST(SoakResult, FailsWhereAPathIsSlowOrCarriedNothing) {
+  SoakResult result{.flown = true};
+  SoakCriteria criteria{.max_late_pct = 1.0,
+                        .max_status_ms = 100.0,
+                        .max_command_ms = 100.0,
+                        .max_beat_ms = 1000.0,
+                        .max_clock_error_ms = 1.0,
+                        .is_flat = true};
+  PathLatencies& p = result.measured.paths;
+  p.status.add(50'000);
+  p.command.add(300'000);
+  p.clock_error_us = 2'000;
+  result.measured.ticks = 100;
+  result.measured.late_ticks = 2;
+  for (int i = 0; i < 20; ++i) result.measured.samples.push_back({.threads = 100.0 + i});
+
+  const auto found = complaints(result, criteria);
+
+  ASSERT_EQ(found.size(), 5U) << ::testing::PrintToString(found);
+  EXPECT_TRUE(found[0].starts_with("command p99 30")) << found[0];
+  EXPECT_EQ(found[1], "longest gap of heartbeats: nothing was measured");
+  EXPECT_EQ(found[2], "clock error 2.0 ms > 1 ms");
+  EXPECT_EQ(found[3], "2.000 % late ticks > 1 %");
+  EXPECT_TRUE(found[4].starts_with("threads grew by")) << found[4];
+}
 
 }  // namespace
 }  // namespace swarm::launcher
