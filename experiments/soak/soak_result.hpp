@@ -18,7 +18,7 @@ struct SoakCriteria {
   std::optional<double> max_loss{};            ///< share, of the listener and of all receivers
   std::optional<double> max_rss_growth_pct{};  ///< of all agents together
   std::optional<double> max_late_pct{};        ///< share of control periods that began late
-  std::optional<double> max_status_ms{};       ///< p99 of a status on its way
+  std::optional<double> max_status_ms{};       ///< p99 of a status, to the launcher
   std::optional<double> max_command_ms{};      ///< p99 from a command to a robot's status
   std::optional<double> max_plan_ms{};         ///< p99 from a scene to the plan that robots follow
   std::optional<double> max_beat_ms{};         ///< longest time between two heartbeats
