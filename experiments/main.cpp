@@ -3,6 +3,7 @@
 // `swarm_launcher table`, `soak` and `chaos` start this program.
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -41,6 +42,34 @@ Act add_table(CLI::App& program) {
   return [o] { return make_table(*o); };
 }
 
+void add_limits(CLI::App& app, SoakCriteria& criteria) {
+  struct Limit {
+    const char* option;
+    std::optional<double> SoakCriteria::*limit;
+    const char* doc;
+  };
+  constexpr Limit kLimits[] = {
+      {"--max-p99-ms", &SoakCriteria::max_p99_ms,
+       "Fail if 1 % of the states take longer to a receiver"},
+      {"--max-loss", &SoakCriteria::max_loss,
+       "Fail if a larger share of the states is lost, 0 to 1"},
+      {"--max-rss-growth-pct", &SoakCriteria::max_rss_growth_pct,
+       "Fail if the agents' memory grows by more"},
+      {"--max-late-pct", &SoakCriteria::max_late_pct,
+       "Fail if more control periods begin late or are missed"},
+      {"--max-status-ms", &SoakCriteria::max_status_ms,
+       "Fail if 1 % of the statuses take longer to the launcher"},
+      {"--max-command-ms", &SoakCriteria::max_command_ms,
+       "Fail if 1 % of the robots report later that they obey a command"},
+      {"--max-plan-ms", &SoakCriteria::max_plan_ms,
+       "Fail if 1 % of the robots report later that they follow the plan of a scene"},
+      {"--max-beat-ms", &SoakCriteria::max_beat_ms,
+       "Fail if the planner's heartbeats have a longer gap"},
+      {"--max-clock-error-ms", &SoakCriteria::max_clock_error_ms,
+       "Fail if statuses show a larger error between clocks"}};
+  for (const Limit& limit : kLimits) app.add_option(limit.option, criteria.*limit.limit, limit.doc);
+}
+
 /// Limits of the result are options as well: a soak is a test with an exit code.
 Act add_soak(CLI::App& program) {
   using namespace cli;
@@ -62,25 +91,7 @@ Act add_soak(CLI::App& program) {
                    "received:\nloss=0.2,delay-ms=150,jitter-ms=50,duplicate=0.1,from=10,to=60,"
                    "robots=3-5,launcher=1")
       ->type_name("FAULT");
-  soak_app->add_option("--max-p99-ms", o->criteria.max_p99_ms,
-                       "Fail if 1 % of the states take longer to a receiver");
-  soak_app->add_option("--max-loss", o->criteria.max_loss,
-                       "Fail if a larger share of the states is lost, 0 to 1");
-  soak_app->add_option("--max-rss-growth-pct", o->criteria.max_rss_growth_pct,
-                       "Fail if the agents' memory grows by more");
-  soak_app->add_option("--max-late-pct", o->criteria.max_late_pct,
-                       "Fail if more control periods begin late or are missed");
-  soak_app->add_option("--max-status-ms", o->criteria.max_status_ms,
-                       "Fail if 1 % of the statuses take longer to the launcher");
-  soak_app->add_option("--max-command-ms", o->criteria.max_command_ms,
-                       "Fail if 1 % of the robots report later that they obey a command");
-  soak_app->add_option(
-      "--max-plan-ms", o->criteria.max_plan_ms,
-      "Fail if 1 % of the robots report later that they follow the plan of a scene");
-  soak_app->add_option("--max-beat-ms", o->criteria.max_beat_ms,
-                       "Fail if the planner's heartbeats have a longer gap");
-  soak_app->add_option("--max-clock-error-ms", o->criteria.max_clock_error_ms,
-                       "Fail if statuses show a larger error between clocks");
+  add_limits(*soak_app, o->criteria);
   soak_app->add_flag("--flat", o->criteria.is_flat,
                      "Fail if threads or open files grow by more than 1 %");
   soak_app->add_option("--seed", o->seed, "Seed of placement, plan and robots (default: 1)");

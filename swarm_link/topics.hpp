@@ -58,7 +58,7 @@ inline Topic<CommandMessage> command_topic() {
 
 /// Depth 1: only the newest plan counts. Which of several planners leads is decided by their
 /// heartbeats (RulingPlanner), and not by exclusive ownership: DDS would drop the planner's plans
-/// uncounted while any stronger writer lives.
+/// uncounted while there is any stronger writer.
 inline Topic<PlanMessage> plan_topic() {
   return {"swarm/plan",
           {.reliability = Reliability::kReliable,

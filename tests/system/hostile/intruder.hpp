@@ -20,7 +20,7 @@ namespace swarm::test {
 /// Now, as messages have it.
 std::int64_t utc_ns();
 
-/// A participant on the bus of a run that is no part of it, and outranks the run's planner. With a
+/// A participant on the bus of a run that is no part of it. With a
 /// discovery server it joins like any other, with Fast DDS; else with Cyclone DDS, which it points
 /// at every UDP port of the processes.
 Result<std::unique_ptr<link::Participant>> intrude(const FlownRun& run);
