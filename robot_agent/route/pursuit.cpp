@@ -3,6 +3,7 @@
 #include "robot_agent/route/pursuit.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "swarm_core/base/lanes.hpp"
@@ -31,20 +32,36 @@ Pursuit::Pursuit(Polyline path, const World& world, Shared<PursuitOptions> optio
       options_(std::move(options)),
       segment_(path_.segment(0.0)),
       here_(segment_.position(0.0)) {
-  const double most_m = options_->radius_m + options_->keep_clearance_m;
-  const double sample_m = scaled(kSample_m);
-  const auto pieces = static_cast<std::size_t>(path_.length_m() / sample_m) + 1;
+  const auto pieces = static_cast<std::size_t>(path_.length_m() / scaled(kSample_m)) + 1;
   clearance_m_.reserve(pieces);
   std::size_t segment = 0;
-  for (std::size_t i = 0; i < pieces; ++i) {
-    // The distance field has slope 1 at most: within half a piece of the sample the clearance is
-    // less by at most that half.
-    const double s = (static_cast<double>(i) + 0.5) * sample_m;
-    const Polyline::Segment on = path_.segment(s, segment);
-    segment = on.index;
-    const double least_m = world.distance_m(on.position(s).point_m) - 0.5 * sample_m;
-    clearance_m_.push_back(static_cast<float>(std::clamp(least_m, 0.0, most_m)));
+  for (std::size_t i = 0; i < pieces; ++i) clearance_m_.push_back(sample_m(i, world, segment));
+}
+
+/// Least clearance of a piece of the path, from its middle: the distance field has slope 1 at most,
+/// so within half a piece the clearance is less by at most that half. `segment`: an index to search
+/// from, set to the one found.
+float Pursuit::sample_m(std::size_t piece, const World& world, std::size_t& segment) const {
+  const double most_m = options_->radius_m + options_->keep_clearance_m;
+  const double sample_m = scaled(kSample_m);
+  const double s = (static_cast<double>(piece) + 0.5) * sample_m;
+  const Polyline::Segment on = path_.segment(s, segment);
+  segment = on.index;
+  const double least_m = world.distance_m(on.position(s).point_m) - 0.5 * sample_m;
+  return static_cast<float>(std::clamp(least_m, 0.0, most_m));
+}
+
+/// Samples the stretch ahead again; returns whether an obstacle has changed a clearance.
+bool Pursuit::measure_ahead(const World& world) {
+  const std::size_t last = piece_of(std::min(carrot_m_, s_m_ + options_->look_ahead_m));
+  std::size_t segment = segment_.index;
+  bool changed = false;
+  for (std::size_t i = piece_of(s_m_); i <= last; ++i) {
+    const float now_m = sample_m(i, world, segment);
+    changed = changed || now_m != clearance_m_[i];
+    clearance_m_[i] = now_m;
   }
+  return changed;
 }
 
 std::size_t Pursuit::piece_of(double s_m) const {
@@ -134,11 +151,17 @@ Pursuit::Aim Pursuit::look(const Vec2& position_m, const World& world) {
     aim_m_ = path_.at(s, segment_.index);
     return aim(position_m);
   };
-  for (double ahead = options_->look_ahead_m; ahead > scaled(kLeastAhead_m); ahead *= 0.5) {
-    const double s = std::min(carrot_m_, s_m_ + ahead);
-    if (visible(s)) return aim_at(s);
-    if (s <= s_m_) break;
-  }
+  const auto visible_ahead = [&]() -> std::optional<double> {
+    for (double ahead = options_->look_ahead_m; ahead > scaled(kLeastAhead_m); ahead *= 0.5) {
+      const double s = std::min(carrot_m_, s_m_ + ahead);
+      if (visible(s)) return s;
+      if (s <= s_m_) break;
+    }
+    return std::nullopt;
+  };
+  std::optional<double> s = visible_ahead();
+  if (!s && measure_ahead(world)) s = visible_ahead();
+  if (s) return aim_at(*s);
   for (double back = 0.0; back <= std::min(scaled(kBackTrack_m), s_m_);
        back += scaled(kBackStep_m)) {
     if (visible(s_m_ - back)) {

@@ -30,7 +30,8 @@ struct PursuitOptions {
 /// A short cut keeps the risk that was planned: its line of sight is as wide as the smallest
 /// clearance of the stretch of path it replaces (up to keep_clearance_m), so a robot never gets
 /// nearer to an obstacle than its own path does there, and short cuts are taken where there is
-/// room.
+/// room. Where no point ahead is in sight, an obstacle may have come nearer to the path: then the
+/// clearance of the stretch ahead is measured anew.
 class Pursuit {
  public:
   Pursuit() = default;
@@ -64,6 +65,8 @@ class Pursuit {
   Aim aim(const Vec2& position_m) const;
   Aim look(const Vec2& position_m, const World& world);
   double planned_clearance_m(double from_s_m, double to_s_m) const;
+  float sample_m(std::size_t piece, const World& world, std::size_t& segment) const;
+  bool measure_ahead(const World& world);
   double scaled(double length_m) const { return options_->scale * length_m; }
 
   Polyline path_;

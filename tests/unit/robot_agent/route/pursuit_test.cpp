@@ -47,6 +47,20 @@ TEST(Pursuit, ReachesTheEndAroundTheCorner) {
   EXPECT_LT(walked, 40.0);  // it may cut the corner, but drives no farther than the path
 }
 
+// The clearance planned there, 2 m, is not to be had any more.
+TEST(Pursuit, PassesAnObstacleThatAppearedBesideThePath) {
+  const World before = *World::make({{-10, -10}, {40, 40}}, {});
+  const World after = *World::make({{-10, -10}, {40, 40}}, {Circle{{10, 1.2}, 0.3}});
+  Pursuit sut(Polyline({{0, 0}, {20, 0}}), before, options());
+  Vec2 robot(0, 0);
+  for (int step = 0; step < 150; ++step) {
+    const Vec2 path = sut.update(robot, step < 40 ? before : after).point_m - robot;
+    robot += path.norm() < 0.15 ? path : Vec2(0.15 * path.normalized());
+  }
+
+  EXPECT_LT((robot - Vec2(20, 0)).norm(), 0.05);
+}
+
 TEST(Pursuit, FallsBackToThePathWhenPushedAroundACorner) {
   const World world = corner_world();
   Pursuit sut(Polyline({{0, 0}, {20, 0}, {20, 20}}), world, options());
