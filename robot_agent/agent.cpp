@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "robot_agent/route/detour.hpp"
 #include "swarm_core/mission/placement.hpp"
 
 namespace swarm::agent {
@@ -47,9 +48,12 @@ Agent::Agent(const World& world, Shared<AgentOptions> options, const AgentIdenti
 
 /// Chooses how the robot enters the plan: at the source that the planner names, if it is still
 /// there; from where it is, once it has moved; otherwise at the plan's beginning.
-void Agent::accept_plan(const FlowPlan& plan, const Vec2& position_m,
+bool Agent::accept_plan(const FlowPlan& plan, const Vec2& position_m,
                         std::optional<PlanEntry> entry, std::optional<double> plan_time_s) {
-  if (has_route_ && plan.digest() == followed_route_.plan_digest) return;
+  if (has_route_ && plan.digest() == followed_route_.plan_digest) {
+    if (arrived_ || !is_path_blocked()) return false;
+    entry.reset();  // it is for where the robot was when the plan was made
+  }
   const RouteOptions& o = options_->route;
   Route route =
       entry && is_near_source(plan, entry->source, position_m, options_->scale)
@@ -60,12 +64,18 @@ void Agent::accept_plan(const FlowPlan& plan, const Vec2& position_m,
   keep_slot(route, position_m);
   method_.begin(plan, route, *world_);
   followed_route_.goal = route.goal;
-  followed_route_.end_m = route.path.vertices_m().back();
+  followed_route_.path = std::move(route.path);
   followed_route_.end_s = route.schedule.end_s();
   has_route_ = true;
   followed_route_.plan_digest = plan.digest();
-  followed_route_.begin_m = route.path.at(0.0);
   arrived_ = false;
+  return true;
+}
+
+bool Agent::is_path_blocked() const {
+  const Polyline& path = followed_route_.path;
+  return is_blocked_by_body(path, path.length_m() - method_.remaining_m(), *world_,
+                            detour_options(options_->route));
 }
 
 /// A robot that is in its goal already keeps its slot there: a new slot with each plan would
@@ -75,14 +85,15 @@ void Agent::keep_slot(Route& route, const Vec2& position_m) const {
   const bool same_goal =
       has_route_ && (route.goal.mean_m() - followed_route_.goal.mean_m()).norm() < kSame_m;
   if (!same_goal || !route.goal.contains_99(position_m)) return;
-  if (!route.goal.contains_99(followed_route_.end_m)) return;  // bodies had moved it out
-  if (!world_->segment_is_free(position_m, followed_route_.end_m, options_->route.radius_m)) return;
+  const Vec2& end_m = followed_route_.path.vertices_m().back();
+  if (!route.goal.contains_99(end_m)) return;  // bodies had moved it out
+  if (!world_->segment_is_free(position_m, end_m, options_->route.radius_m)) return;
   // In no more time than it had left; otherwise each new plan would put its arrival off.
   const auto before = method_.tracking();
   const double left_s =
       before ? std::max(1.0, followed_route_.end_s - before->plan_time_s) : followed_route_.end_s;
   const double end_s = std::min(route.schedule.end_s(), left_s);
-  route.path = Polyline({position_m, followed_route_.end_m});
+  route.path = Polyline({position_m, end_m});
   route.schedule = arrived_ ? Schedule({{0.0, route.path.length_m()}})
                             : Schedule({{0.0, 0.0}, {end_s, route.path.length_m()}});
 }

@@ -80,9 +80,11 @@ class Agent {
   Agent(const World& world, Shared<AgentOptions> options, const AgentIdentity& self);
 
   /// Takes a plan. One with the digest of the present one changes nothing, so a restarted planner
-  /// that publishes the same flow does not make robots start over. Without an entry a robot finds
-  /// its own path into it, in space and, with the plan's time, in time.
-  void accept_plan(const FlowPlan& plan, const Vec2& position_m,
+  /// that publishes the same flow does not make robots start over, unless the body of a dead robot
+  /// has come to lie on the rest of the path: then the robot finds another path in the same plan.
+  /// Without an entry a robot finds its own path into it, in space and, with the plan's time, in
+  /// time. Returns whether it follows another path now.
+  bool accept_plan(const FlowPlan& plan, const Vec2& position_m,
                    std::optional<PlanEntry> entry = std::nullopt,
                    std::optional<double> plan_time_s = std::nullopt);
 
@@ -104,7 +106,7 @@ class Agent {
   /// Index of the goal (sink of the plan) this robot is at or goes to. \pre has_route()
   std::uint32_t goal(const Vec2& position_m) const { return method_.goal(position_m); }
   /// Where the present path begins. \pre has_route()
-  const Vec2& route_begin_m() const { return followed_route_.begin_m; }
+  const Vec2& route_begin_m() const { return followed_route_.path.vertices_m().front(); }
   /// Plan time by which it is behind its reference position; negative if ahead; 0 once arrived.
   double lag_s() const { return has_route_ && !arrived_ ? method_.lag_s() : 0.0; }
   /// Why the control method is not called any more; empty while it works. A robot without one
@@ -114,6 +116,7 @@ class Agent {
   std::uint32_t escapes() const { return method_.escapes(); }
 
  private:
+  bool is_path_blocked() const;
   void keep_slot(Route& route, const Vec2& position_m) const;
   RobotMode decide_mode(const AgentInput& input) const;
   Vec2 filtered_velocity(const ControlView& view, const AgentOutput& out, Rng& rng);
@@ -133,8 +136,7 @@ class Agent {
   struct FollowedRoute {
     double share;
     std::uint64_t plan_digest = 0;
-    Vec2 begin_m = Vec2::Zero();
-    Vec2 end_m = Vec2::Zero();
+    Polyline path{};
     double end_s = 0.0;  // of the schedule
     Gaussian goal{};
   };

@@ -24,6 +24,8 @@ constexpr SteadyTime kBegin{std::chrono::seconds(1000)};
 constexpr std::size_t kSlots = 10;
 // With fewer robots, waking another thread twice a period costs more than it saves.
 constexpr std::uint32_t kRobotsPerThread = 400;
+// The planner of a simulation does not die.
+constexpr std::uint64_t kPlannerEpoch = 1;
 
 /// A body's own communication radius, or the mission's.
 double communication_radius_m(const Mission& mission, RobotId robot) {
@@ -133,6 +135,13 @@ std::size_t Simulation::slot_of(std::uint32_t robot) const {
 void Simulation::publish() {
   plan_ms_ += keeper_.newest().planned.stats.total_ms;
   observer_.on_plan(keeper_.version(), keeper_.newest().planned);
+  repeat_plan_at_.reset();
+}
+
+/// No plan could be made for a new scene: see agent::kReplanTimeout.
+void Simulation::repeat_plan() {
+  for (Robot& robot : robots_) robot.repeats_plan = true;
+  repeat_plan_at_.reset();
 }
 
 /// One step of the planner: reports its notices, publishes a new plan, and advances the plan's
@@ -143,8 +152,10 @@ void Simulation::keep_planned() {
     observer_.on_event(utc(now_), "planner", notice.warning, notice.code, notice.text);
   }
   if (step.publish) publish();
+  if (repeat_plan_at_ && now_ >= *repeat_plan_at_) repeat_plan();
   clock_ = keeper_.clock(utc(now_));
   if (step.clock) observer_.on_clock(*step.clock);
+  supervisor_.on_heartbeat(kPlannerEpoch);
   if (density_.is_asked_for() && clock_.plan_version > 0) {
     density_.update(keeper_.newest().planned.plan, clock_.plan_time_s);
   }
@@ -169,6 +180,7 @@ void Simulation::change_scene(std::span<const SceneChange> changes) {
     if (std::holds_alternative<GoTo>(change)) supervisor_.on_new_goal(scene_.version);
   }
   keeper_.take_scene(scene_);
+  repeat_plan_at_ = now_ + agent::kReplanTimeout;
   world_moves_ = true;
 }
 

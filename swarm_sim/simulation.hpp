@@ -105,6 +105,7 @@ class Simulation {
     double communication_radius_m = 0.0;  // its own, or the mission's
     SteadyTime received_until;
     std::uint32_t plan_version = 0;  // that it follows
+    bool repeats_plan = false;       // it is offered that version again at its next tick
   };
   /// The bus interface that RobotLoop::step() takes, on the simulated network.
   struct RobotBus;
@@ -129,6 +130,7 @@ class Simulation {
   /// Makes the robots at these positions, and assigns them to slots.
   void place(const std::vector<Vec2>& positions_m);
   void keep_planned();
+  void repeat_plan();
   void publish();
   /// Has the supervisor decide, and carries out its actions.
   void supervise();
@@ -191,7 +193,9 @@ class Simulation {
   std::size_t next_kill_ = 0;
   // Begin of the present control period.
   SteadyTime now_;
-  PlanClock clock_;                 // at now_
+  PlanClock clock_;  // at now_
+  // When robots are offered the newest plan again, unless a new one is published before.
+  std::optional<SteadyTime> repeat_plan_at_;
   agent::DensityForecast density_;  // then
   // Measured cost: control periods run, time of planning, wall time per agent and step.
   std::uint64_t periods_ = 0;

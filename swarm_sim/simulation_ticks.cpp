@@ -55,11 +55,12 @@ agent::RobotTick Simulation::tick_at(SteadyTime now) const {
           .planned_density = density_.density()};
 }
 
-/// The newest plan for a robot that does not follow it yet.
+/// The newest plan for a robot that does not follow it yet, or is to look at its path again.
 std::optional<agent::OfferedPlan> Simulation::offered_plan(const Robot& robot) const {
-  if (robot.plan_version == keeper_.version()) return std::nullopt;
+  const bool follows = robot.plan_version == keeper_.version();
+  if (follows && !robot.repeats_plan) return std::nullopt;
   const planner::Replan& newest = keeper_.newest();
-  agent::OfferedPlan offered{.flow = newest.planned.plan};
+  agent::OfferedPlan offered{.flow = newest.planned.plan, .again = follows};
   const std::uint32_t id = robot.loop.id().value();
   if (id < newest.entries.size() && newest.entries[id].source != planner::PlanEntry::kAnywhere) {
     offered.entry = {newest.entries[id].source, newest.entries[id].share / 65536.0};
@@ -84,6 +85,7 @@ std::optional<agent::OfferedPlan> Simulation::offered_plan(const Robot& robot) c
     with_plan.new_plan = &*offered;
     robot.loop.step(with_plan, parts, bus);
     robot.plan_version = keeper_.version();
+    robot.repeats_plan = false;
   } else {
     robot.loop.step(tick, parts, bus);
   }

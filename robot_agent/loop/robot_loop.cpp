@@ -48,11 +48,14 @@ std::int32_t to_us(Duration d) {
   if (tick.new_plan != nullptr) {
     std::optional<double> plan_time_s;
     if (tick.plan_time) plan_time_s = tick.plan_time->plan_time_s;
-    agent_.accept_plan(tick.new_plan->flow, position_m_, tick.new_plan->entry, plan_time_s);
-    parts.log.append(
-        robot_log::Note{.stamp = tick.utc_now,
-                        .code = "plan",
-                        .text = "took plan version " + std::to_string(tick.plan_version)});
+    const OfferedPlan& plan = *tick.new_plan;
+    const bool changed = agent_.accept_plan(plan.flow, position_m_, plan.entry, plan_time_s);
+    if (changed || !plan.again) {
+      const std::string what =
+          plan.again ? "found a path around a body in plan version " : "took plan version ";
+      parts.log.append(robot_log::Note{
+          .stamp = tick.utc_now, .code = "plan", .text = what + std::to_string(tick.plan_version)});
+    }
   }
   return body;
 }

@@ -16,10 +16,15 @@
 
 namespace swarm::agent {
 
+/// From a new scene until robots are offered the newest plan again, unless a newer one is published
+/// before. Planning takes far less.
+inline constexpr Duration kReplanTimeout = std::chrono::seconds(5);
+
 /// A plan that a robot is to follow from this tick on.
 struct OfferedPlan {
   const FlowPlan& flow;
   std::optional<PlanEntry> entry{};  ///< where the planner has this robot enter; empty: anywhere
+  bool again = false;                ///< it was offered before, see Agent::accept_plan()
 };
 
 /// The time of a tick and what the mission is at it.

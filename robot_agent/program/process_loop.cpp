@@ -147,11 +147,11 @@ bool ProcessLoop::leads(SteadyTime now) const {
 /// another, as in separate processes.
 void ProcessLoop::tick(const Time& time) {
   receive(time);
-  follow_scene(time.utc_now);
+  follow_scene(time);
   find_silent(time.now);
   const std::optional<PlanTime> plan_time = inbox_.plan_time(time.now);
   plans_.receive(inbox_.take_plan(), time.now);
-  const std::optional<NewPlan> new_plan = plans_.take(time.now, plan_time.has_value());
+  const std::optional<TakenPlan> new_plan = plans_.take(time.now, plan_time.has_value());
 
   step_robots({.now = time.now,
                .utc_now = time.utc_now,
@@ -163,7 +163,7 @@ void ProcessLoop::tick(const Time& time) {
                .stop_sent = UtcTime(Duration(inbox_.stop_stamp_utc_ns())),
                .plan_version = inbox_.plan_version(),
                .plan_time = plan_time,
-               .planned_density = planned_density(new_plan, plan_time),
+               .planned_density = planned_density(plan_time),
                .silent = &silent_},
               new_plan);
   // Cell topics are joined only after the plan: discovery of all endpoints at once takes several
@@ -181,12 +181,15 @@ void ProcessLoop::tick(const Time& time) {
 }
 
 /// Robots share the received data, but each has its own driver, random numbers and log.
-void ProcessLoop::step_robots(RobotTick tick, const std::optional<NewPlan>& new_plan) {
+void ProcessLoop::step_robots(RobotTick tick, const std::optional<TakenPlan>& new_plan) {
   published_.clear();
   positions_m_.clear();
   for (LocalRobot& robot : local_.robots) {
     std::optional<OfferedPlan> offered;
-    if (new_plan) offered.emplace(OfferedPlan{new_plan->flow, new_plan->entry_of(robot.loop.id())});
+    if (new_plan) {
+      const NewPlan& plan = new_plan->plan;
+      offered.emplace(OfferedPlan{plan.flow, plan.entry_of(robot.loop.id()), new_plan->again});
+    }
     tick.new_plan = offered ? &*offered : nullptr;
     RobotBus bus{inbox_.received(), robot.loop.id(), robot.echo, published_};
     robot.loop.step(
@@ -209,13 +212,14 @@ void ProcessLoop::confirm_stop() {
 }
 
 /// Rebuilds the map when the scene has changed, and at every tick while an obstacle moves.
-void ProcessLoop::follow_scene(UtcTime utc_now) {
+void ProcessLoop::follow_scene(const Time& time) {
   if (auto received = inbox_.take_scene()) {
     scene_ = std::move(*received);
     whereabouts_.on_scene(scene_);
+    plans_.on_scene(time.now);
     world_moves_ = true;
     local_.robots.front().log.append(
-        robot_log::Note{.stamp = utc_now,
+        robot_log::Note{.stamp = time.utc_now,
                         .caused = UtcTime(Duration(static_cast<std::int64_t>(scene_.version))),
                         .code = "scene",
                         .text = fmt::format("took scene version {}", scene_.version)});
@@ -225,17 +229,14 @@ void ProcessLoop::follow_scene(UtcTime utc_now) {
   // and clears that body.
   const auto count = static_cast<std::uint32_t>(local_.robots.size());
   const Scene without_own = without_bodies_of(scene_, local_.robots.front().loop.id(), count);
-  *world_ = world_at(mission_.world, without_own, utc_now);
-  world_moves_ = scene_.moves(utc_now);
+  *world_ = world_at(mission_.world, without_own, time.utc_now);
+  world_moves_ = scene_.moves(time.utc_now);
 }
 
 /// The planned density at the plan's time, if the control method reads it; otherwise null.
-const PlannedDensity* ProcessLoop::planned_density(const std::optional<NewPlan>& new_plan,
-                                                   const std::optional<PlanTime>& plan_time) {
-  if (!density_.is_asked_for()) return nullptr;
-  if (new_plan) flow_ = new_plan->flow;
-  if (flow_.empty() || !plan_time) return nullptr;
-  density_.update(flow_, plan_time->plan_time_s);
+const PlannedDensity* ProcessLoop::planned_density(const std::optional<PlanTime>& plan_time) {
+  if (!density_.is_asked_for() || plans_.newest().empty() || !plan_time) return nullptr;
+  density_.update(plans_.newest(), plan_time->plan_time_s);
   return density_.density();
 }
 

@@ -68,10 +68,9 @@ class ProcessLoop {
   bool is_obstacle() const;
   bool leads(SteadyTime now) const;
   void confirm_stop();
-  void follow_scene(UtcTime utc_now);
-  void step_robots(RobotTick tick, const std::optional<NewPlan>& new_plan);
-  const PlannedDensity* planned_density(const std::optional<NewPlan>& new_plan,
-                                        const std::optional<PlanTime>& plan_time);
+  void follow_scene(const Time& time);
+  void step_robots(RobotTick tick, const std::optional<TakenPlan>& new_plan);
+  const PlannedDensity* planned_density(const std::optional<PlanTime>& plan_time);
   StatusReport::Source source(const Time& time) {
     return {local_.robots, inbox_, state_age_, time.now, time.utc_now};
   }
@@ -91,7 +90,6 @@ class ProcessLoop {
   Scene scene_;
   bool world_moves_ = false;
   Histogram state_age_;  // of the states that all robots used
-  FlowPlan flow_;        // in force; kept only if its density is read
   DensityForecast density_;
   std::vector<link::RobotStateMessage> published_;
   std::vector<Vec2> positions_m_;

@@ -14,6 +14,7 @@ constexpr double kBetween_m = 0.3;  // width beyond its own of a gap that a robo
 constexpr double kSkim_m = 0.1;     // clearance from bodies on the lines of a bend
 constexpr double kWall_m = 0.05;    // clearance from obstacles that are no bodies
 constexpr double kLeast_m = 1e-6;
+constexpr double kRounding = 0.99;  // a path bent at exactly kSkim_m is not blocked
 
 /// The computation for one pair of world and options: collects the bodies once.
 class Detour {
@@ -44,6 +45,14 @@ class Detour {
     }
   }
 
+  // Whether a body is on the line, or at one of its ends.
+  bool blocks(const Vec2& from_m, const Vec2& to_m) const {
+    const double clearance_m = options_.radius_m + kRounding * options_.scale * kSkim_m;
+    return std::any_of(bodies_.begin(), bodies_.end(), [&](const Circle& body) {
+      return distance_m(body.center_m, from_m, to_m) < body.radius_m + clearance_m;
+    });
+  }
+
   // Pushes a point out of all bodies in turn, in several passes since one push may lead into
   // another body. The result counts only if it is free; otherwise the point stays.
   Vec2 free_position(const Vec2& point_m) const {
@@ -63,6 +72,13 @@ class Detour {
   }
 
  private:
+  static double distance_m(const Vec2& p, const Vec2& from_m, const Vec2& to_m) {
+    const Vec2 line = to_m - from_m;
+    const double along =
+        std::clamp((p - from_m).dot(line) / std::max(line.squaredNorm(), kLeast_m), 0.0, 1.0);
+    return (p - from_m - along * line).norm();
+  }
+
   /// The first body that the line comes too near to.
   std::optional<std::size_t> first_on(const Vec2& from_m, const Vec2& to_m, double touch_m) const {
     const Vec2 line = to_m - from_m;
@@ -182,6 +198,13 @@ class Detour {
 
 }  // namespace
 
+DetourOptions detour_options(const RouteOptions& route) {
+  return {.radius_m = route.radius_m,
+          .touch_m = route.leg_clearance_m,
+          .keep_m = route.scale * DetourOptions{}.keep_m,
+          .scale = route.scale};
+}
+
 std::vector<Vec2> around_bodies(const Vec2& from_m, const Vec2& to_m, const World& world,
                                 const DetourOptions& options) {
   std::vector<Vec2> points;
@@ -192,6 +215,20 @@ std::vector<Vec2> around_bodies(const Vec2& from_m, const Vec2& to_m, const Worl
 
 Vec2 beside_bodies(const Vec2& point_m, const World& world, const DetourOptions& options) {
   return world.bodies().empty() ? point_m : Detour(world, options).free_position(point_m);
+}
+
+bool is_blocked_by_body(const Polyline& path, double from_s_m, const World& world,
+                        const DetourOptions& options) {
+  if (path.empty() || world.bodies().empty()) return false;
+  const Detour detour(world, options);
+  const std::vector<Vec2>& vertices_m = path.vertices_m();
+  const double begin_s_m = std::clamp(from_s_m, 0.0, path.length_m());
+  Vec2 at_m = path.at(begin_s_m);
+  for (std::size_t i = path.segment(begin_s_m).index + 1; i < vertices_m.size(); ++i) {
+    if (detour.blocks(at_m, vertices_m[i])) return true;
+    at_m = vertices_m[i];
+  }
+  return detour.blocks(at_m, at_m);
 }
 
 }  // namespace swarm::agent

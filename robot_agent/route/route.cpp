@@ -112,10 +112,7 @@ Route finish(const FlowPlan& plan, std::uint32_t node, double share, std::vector
   // Bodies of dead robots are small against a plan: they bend single paths, but do not shrink
   // offsets.
   const std::vector<Vec2> own_m = free_vertices(stations, world.without_bodies(), options);
-  const DetourOptions detour{.radius_m = options.radius_m,
-                             .touch_m = options.leg_clearance_m,
-                             .keep_m = options.scale * DetourOptions{}.keep_m,
-                             .scale = options.scale};
+  const DetourOptions detour = detour_options(options);
   std::vector<Vec2> vertices;
   double at_m = 0.0;
   const auto go_to = [&](const Vec2& next_m) {

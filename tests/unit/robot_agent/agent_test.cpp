@@ -307,6 +307,34 @@ TEST(Agent, KeepsItsProgressWhenTheSamePlanIsPublishedAgain) {
   EXPECT_LE(sut.outputs[0].remaining_m, before);
 }
 
+TEST(Agent, FindsAnotherPathInTheSamePlanWhenABodyLiesOnItsOwn) {
+  Swarm sut(1);
+  const FlowPlan plan = plan_over_the_block();
+  EXPECT_TRUE(sut.agents[0].accept_plan(plan, sut.positions[0]));
+  for (int i = 0; i < 60; ++i) sut.tick(MissionPhase::kRunning, true);
+  const auto put_body_m = [&](const Vec2& center_m) {
+    std::vector<Obstacle> obstacles = mission(1).world.obstacles();
+    obstacles.emplace_back(Circle{center_m, 0.3});
+    sut.spec.world = *World::make(sut.spec.world.bounds_m(), obstacles, {}, 1);
+  };
+  const Vec2 ahead = sut.velocities[0].normalized();
+  put_body_m(sut.positions[0] - 2.0 * ahead);
+  EXPECT_FALSE(sut.agents[0].accept_plan(plan, sut.positions[0])) << "it is behind the robot";
+
+  const Vec2 body_m = sut.positions[0] + 4.0 * ahead;
+  put_body_m(body_m);
+  EXPECT_TRUE(sut.agents[0].accept_plan(plan, sut.positions[0], PlanEntry{0, 0.5}));
+  EXPECT_FALSE(sut.agents[0].accept_plan(plan, sut.positions[0])) << "that path is free";
+
+  double gap_m = 1e9;
+  for (int i = 0; i < 900 && sut.outputs[0].mode != RobotMode::kArrived; ++i) {
+    sut.tick(MissionPhase::kRunning, true);
+    gap_m = std::min(gap_m, (sut.positions[0] - body_m).norm() - 0.5);
+  }
+  EXPECT_EQ(sut.outputs[0].mode, RobotMode::kArrived);
+  EXPECT_GT(gap_m, 0.2);
+}
+
 TEST(Agent, DoesTheSameForTheSameInputs) {
   Swarm a(8);
   Swarm b(8);

@@ -130,6 +130,26 @@ TEST(SimulationDeaths, LeaveABodyOnTheNextOnesPath) {
   EXPECT_GT(gap_to_dead_m(flight), 0.0);
 }
 
+// With an obstacle on a goal no plan can be made, and the paths of the last one know no bodies.
+TEST(SimulationDeaths, AreDrivenAroundThoughNoPlanCanBeMade) {
+  Mission mission = small_mission();
+  mission.robots.count = 60;
+  mission.launcher.time_limit_s = 100.0;
+  mission.script = {{.at_s = 3.0, .action = SceneChange(AddObstacle{Circle{{33, 9}, 0.9}})}};
+  for (const std::uint64_t seed : {1U, 2U, 3U, 4U}) {
+    const Flight flight = fly(mission, {.seed = seed,
+                                        .kills = {{.at_s = 6.0, .count = 3},
+                                                  {.at_s = 9.0, .count = 3},
+                                                  {.at_s = 12.0, .count = 3}}});
+
+    EXPECT_TRUE(flight.reported.event("replan-failed")) << seed;
+    EXPECT_FALSE(flight.reported.event("silent-killed")) << seed;
+    EXPECT_EQ(flight.outcome, Outcome::kCompleted) << seed;
+    EXPECT_EQ(flight.arrived(), 51U) << seed;
+    EXPECT_GT(gap_to_dead_m(flight), 0.0) << seed;
+  }
+}
+
 TEST(SimulationDeaths, StopABodyWhenItsLastCommandRunsOut) {
   const Flight flight = fly(small_mission(), {.kills = {{.at_s = 8.0, .robots = {RobotId(5)}}}});
 

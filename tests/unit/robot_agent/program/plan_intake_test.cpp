@@ -46,8 +46,26 @@ TEST(PlanIntake, ReplacesAPlanThatWaits) {
   sut.receive(new_plan(8), now);
   sut.receive(new_plan(9), now + milliseconds(500));
 
-  EXPECT_EQ(sut.take(now + milliseconds(500), true).value().flow.digest(),
+  EXPECT_EQ(sut.take(now + milliseconds(500), true).value().plan.flow.digest(),
             new_plan(9).flow.digest());
+}
+
+TEST(PlanIntake, RepeatsThePlanOnceAfterASceneThatNoNewPlanFollows) {
+  PlanIntake sut(false);
+  const SteadyTime now{seconds(5)};
+  sut.on_scene(now);
+  EXPECT_FALSE(sut.take(now + kReplanTimeout, true).has_value()) << "there is none yet";
+  sut.receive(new_plan(8), now);
+  EXPECT_FALSE(sut.take(now, true).value().again);
+  EXPECT_FALSE(sut.take(now + kReplanTimeout, true).has_value()) << "it came after the scene";
+
+  sut.on_scene(now + seconds(10));
+  EXPECT_FALSE(sut.take(now + seconds(10) + kReplanTimeout - milliseconds(1), true).has_value());
+  const auto repeated = sut.take(now + seconds(10) + kReplanTimeout, true);
+  ASSERT_TRUE(repeated.has_value());
+  EXPECT_TRUE(repeated->again);
+  EXPECT_EQ(repeated->plan.flow.digest(), new_plan(8).flow.digest());
+  EXPECT_FALSE(sut.take(now + seconds(99), true).has_value());
 }
 
 }  // namespace

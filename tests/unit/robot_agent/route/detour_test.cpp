@@ -82,6 +82,28 @@ TEST(Detour, StaysStraightWhereNoSideIsFree) {
   EXPECT_TRUE(around_bodies({5, 20}, {55, 20}, world, {}).empty());
 }
 
+TEST(Detour, FindsTheBodiesThatBlockTheRestOfAPath) {
+  const Polyline path({{5, 20}, {30, 20}, {30, 35}});
+  const auto blocks = [&](const Vec2& body_m, double from_s_m) {
+    return is_blocked_by_body(path, from_s_m, world_with({{body_m, 0.2}}), {});
+  };
+  EXPECT_TRUE(blocks({20, 20.4}, 0.0));
+  EXPECT_TRUE(blocks({20, 20.4}, 14.0));
+  EXPECT_FALSE(blocks({20, 20.4}, 16.0)) << "behind";
+  EXPECT_FALSE(blocks({20, 20.6}, 0.0)) << "beside";
+  EXPECT_TRUE(blocks({30.4, 30}, 16.0));
+  EXPECT_TRUE(blocks({30, 35.3}, 16.0)) << "at the end";
+  EXPECT_TRUE(blocks({30, 35.3}, 99.0));
+  EXPECT_FALSE(blocks({30, 30}, 99.0));
+  EXPECT_FALSE(is_blocked_by_body(path, 0.0, world_with({}), {}));
+}
+
+TEST(Detour, LeavesNoBodyThatBlocksTheBentPath) {
+  const World world = world_with({{{30, 19}, 0.2}, {{30, 19.8}, 0.2}, {{30, 20.6}, 0.2}});
+  EXPECT_TRUE(is_blocked_by_body(Polyline({{5, 20}, {55, 20}}), 0.0, world, {}));
+  EXPECT_FALSE(is_blocked_by_body(Polyline(path_of({5, 20}, {55, 20}, world)), 0.0, world, {}));
+}
+
 TEST(Detour, GetsThroughAFieldOfBodies) {
   Rng rng(3);
   int bent = 0;
