@@ -20,6 +20,8 @@ namespace {
 constexpr std::size_t kRecordHead = 9;
 /// Beyond this a chunk is not unpacked: a few damaged bytes must not exhaust memory.
 constexpr std::uint64_t kMaxChunkBytes = 1ULL << 30U;
+// A block of zstd has 4 bytes at least and unpacks to 128 KiB at most.
+constexpr std::uint64_t kMostUnpacked = (128U << 10U) / 4U;
 
 using View = std::span<const unsigned char>;
 
@@ -123,6 +125,11 @@ ChunkFields chunk_fields(View content) {
   chunk.beyond = get.rest();
   chunk.good = get.good() && chunk.size <= kMaxChunkBytes;
   return chunk;
+}
+
+/// Checked before there is memory for it: a damaged size may be a gigabyte.
+bool could_unpack_to(View packed, std::uint64_t size) {
+  return size / kMostUnpacked <= packed.size();
 }
 
 /// One pass over the records of a file. After a damaged record it searches for the next chunk with
@@ -285,6 +292,7 @@ class FileReader {
   std::optional<View> unpack(const ChunkFields& chunk) {
     View records = chunk.records;
     if (chunk.compression == "zstd") {
+      if (!could_unpack_to(records, chunk.size)) return std::nullopt;
       unpacked_.resize(chunk.size);
       if (::ZSTD_decompress(unpacked_.data(), chunk.size, records.data(), records.size()) !=
           chunk.size) {

@@ -90,7 +90,11 @@ std::vector<Bytes> missions() {
   std::vector<Bytes> out = {bytes_of(kYard)};
   for (const auto& entry :
        std::filesystem::directory_iterator(SWARM_SOURCE_DIR "/deploy/missions")) {
-    if (entry.path().extension() == ".yaml") out.push_back(bytes_of(content(entry.path())));
+    // To fit Gaussians to a polygon, as these do, is no decoding, and takes seconds with sanitizers.
+    const bool fits = entry.path().stem().string().starts_with("diffusion_");
+    if (entry.path().extension() == ".yaml" && !fits) {
+      out.push_back(bytes_of(content(entry.path())));
+    }
   }
   return out;
 }

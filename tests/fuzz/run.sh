@@ -18,7 +18,7 @@ failed=0
 for decoder in ${*:-$all}; do
   echo "== $decoder"
   mkdir -p "build/fuzz/found/$decoder"
-  SWARM_FUZZ=$decoder build/fuzz/bin/fuzz -runs="$runs" -seed=1 -max_len=8192 -timeout=10 -rss_limit_mb=1024 \
+  SWARM_FUZZ=$decoder build/fuzz/bin/fuzz -runs="$runs" -seed=1 -max_len=8192 -timeout=30 -rss_limit_mb=2048 \
     -print_final_stats=1 -verbosity=0 -close_fd_mask=0 -artifact_prefix="$findings/$decoder-" \
     "build/fuzz/found/$decoder" "$corpus/$decoder" 2>"build/fuzz/$decoder.log" || failed=1
   grep -E "stat::number_of_executed_units|ERROR|SUMMARY|runtime error" "build/fuzz/$decoder.log" || true
