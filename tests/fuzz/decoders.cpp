@@ -90,7 +90,7 @@ std::vector<Bytes> missions() {
   std::vector<Bytes> out = {bytes_of(kYard)};
   for (const auto& entry :
        std::filesystem::directory_iterator(SWARM_SOURCE_DIR "/deploy/missions")) {
-    // To fit Gaussians to a polygon, as these do, is no decoding, and takes seconds with sanitizers.
+    // These fit Gaussians to a polygon, which takes seconds with sanitizers.
     const bool fits = entry.path().stem().string().starts_with("diffusion_");
     if (entry.path().extension() == ".yaml" && !fits) {
       out.push_back(bytes_of(content(entry.path())));
