@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -69,6 +70,11 @@ template <class T>
 constexpr bool kIsSequence = false;
 template <class T>
 constexpr bool kIsSequence<std::vector<T>> = true;
+/// Whether T is an array of the IDL, whose length is part of its type.
+template <class T>
+constexpr bool kIsArray = false;
+template <class T, std::size_t N>
+constexpr bool kIsArray<std::array<T, N>> = true;
 /// Whether T is a string of the IDL.
 template <class T>
 constexpr bool kIsText = std::is_same_v<T, std::string>;
@@ -84,6 +90,23 @@ template <Message M, class Visit>
 constexpr void for_each_field(Visit visit) {
   [&]<auto... Entries>(FieldList<Entries...>) { (visit(Field<Entries>()), ...); }
   (M::kFields);
+}
+
+/// Whether a T contains a sequence, at any depth: then its size depends on its values, texts apart,
+/// which are as long as their bound at most.
+template <class T>
+constexpr bool contains_sequence() {
+  if constexpr (kIsSequence<T>) {
+    return true;
+  } else if constexpr (Message<T>) {
+    bool contains = false;
+    for_each_field<T>([&](auto field) {
+      contains = contains || contains_sequence<typename decltype(field)::Type>();
+    });
+    return contains;
+  } else {
+    return false;
+  }
 }
 
 /// Whether the first field is the key of the topic: then each value of it is an instance of its

@@ -10,17 +10,24 @@
 namespace swarm::link {
 
 /// Whether every sequence of the message respects its bound; a writer refuses the message
-/// otherwise. Texts are truncated instead: a shortened event is better than none. Elements of
-/// sequences contain no sequences, so they need no check.
+/// otherwise. Texts are truncated instead: a shortened event is better than none.
 template <Message M>
 bool fits_wire(const M& message) {
   return all_fields<M>([&](auto field) {
     using F = decltype(field);
-    if constexpr (kIsSequence<typename F::Type>) {
-      return (message.*F::kMember).size() <= F::kBound;
-    } else {
-      return true;
+    using T = typename F::Type;
+    const auto& value = message.*F::kMember;
+    if constexpr (kIsSequence<T>) {
+      if (value.size() > F::kBound) return false;
+      if constexpr (contains_sequence<typename T::value_type>()) {
+        for (const auto& element : value) {
+          if (!fits_wire(element)) return false;
+        }
+      }
+    } else if constexpr (contains_sequence<T>()) {
+      return fits_wire(value);
     }
+    return true;
   });
 }
 

@@ -38,6 +38,8 @@ class Decoder {
       });
     } else if constexpr (kIsSequence<T>) {
       return get_sequence(value);
+    } else if constexpr (kIsArray<T>) {
+      return std::all_of(value.begin(), value.end(), [this](auto& e) { return get(e); });
     } else if constexpr (kIsText<T>) {
       return get_text(value, Bound);
     } else if constexpr (std::is_same_v<T, bool>) {

@@ -28,12 +28,19 @@ std::size_t room_for(const M& message) {
   for_each_field<M>([&](auto field) {
     using F = decltype(field);
     using T = typename F::Type;
-    room += most_bytes < T, kIsText<T> ? F::kBound : 0 > ();
+    if constexpr (!Message<T> || !contains_sequence<T>()) {
+      room += most_bytes < T, kIsText<T> ? F::kBound : 0 > ();  // of a sequence: its length
+    } else {
+      room += room_for(message.*F::kMember);
+    }
     if constexpr (kIsSequence<T>) {
-      // Elements that are sequences or texts would need a sum over all elements; no message has
-      // such.
-      static_assert(!kIsSequence<typename T::value_type> && !kIsText<typename T::value_type>);
-      room += (message.*F::kMember).size() * most_bytes<typename T::value_type>();
+      using E = typename T::value_type;
+      static_assert(!kIsSequence<E> && !kIsText<E>);
+      if constexpr (contains_sequence<E>()) {
+        for (const E& element : message.*F::kMember) room += room_for(element);
+      } else {
+        room += (message.*F::kMember).size() * most_bytes<E>();
+      }
     }
   });
   return room;
@@ -62,6 +69,8 @@ class Encoder {
       });
     } else if constexpr (kIsSequence<T>) {
       put(static_cast<std::uint32_t>(value.size()));
+      for (const auto& element : value) put(element);
+    } else if constexpr (kIsArray<T>) {
       for (const auto& element : value) put(element);
     } else if constexpr (kIsText<T>) {
       put_text(travelling(value, Bound));

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <tuple>
 
 #include "swarm_link/fields.hpp"
 
@@ -32,6 +33,8 @@ constexpr std::size_t least_bytes() {
     return sum;
   } else if constexpr (kIsSequence<T> || kIsText<T>) {
     return kLengthBytes;
+  } else if constexpr (kIsArray<T>) {
+    return std::tuple_size_v<T> * least_bytes<typename T::value_type>();
   } else {
     return sizeof(T);
   }
@@ -65,6 +68,8 @@ constexpr std::size_t most_end(std::size_t at) {
     return aligned(at, kLengthBytes) + kLengthBytes + Bound * most_bytes<typename T::value_type>();
   } else if constexpr (kIsText<T>) {
     return aligned(at, kLengthBytes) + kLengthBytes + Bound + 1;
+  } else if constexpr (kIsArray<T>) {
+    return at + std::tuple_size_v<T> * most_bytes<typename T::value_type>();
   } else {
     return aligned(at, sizeof(T)) + sizeof(T);
   }
