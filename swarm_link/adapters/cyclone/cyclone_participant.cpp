@@ -35,13 +35,22 @@ std::string config_of(const CycloneOptions& options) {
       discovery += fmt::format("<Peer address=\"{}:{}\"/>", options.peer_host, port);
     }
     discovery += "</Peers>";
+  } else if (!options.open_peers.empty()) {
+    discovery += "<Peers>";
+    for (const std::string& peer : options.open_peers) {
+      discovery += fmt::format("<Peer address=\"{}\"/>", peer);
+    }
+    discovery += "</Peers>";
   }
+  const std::string interface = options.interface.empty()
+                                    ? std::string("autodetermine=\"true\"")
+                                    : fmt::format("address=\"{}\"", options.interface);
   return fmt::format(
-      "<CycloneDDS><Domain><General><Interfaces><NetworkInterface address=\"{}\" "
+      "<CycloneDDS><Domain><General><Interfaces><NetworkInterface {} "
       "multicast=\"true\"/></Interfaces><AllowMulticast>{}</AllowMulticast></"
       "General><Discovery>{}</Discovery>"
       "</Domain></CycloneDDS>",
-      options.interface, options.peer_ports.empty(), discovery);
+      interface, options.peer_ports.empty(), discovery);
 }
 
 // Longest time a reliable write may block when its history is full.
@@ -243,6 +252,9 @@ Result<std::unique_ptr<Participant>> make_cyclone_participant(const CycloneOptio
   }
   const QosPtr qos(dds_create_qos());
   dds_qset_entity_name(qos.get(), options.name.c_str());
+  if (!options.user_data.empty()) {
+    dds_qset_userdata(qos.get(), options.user_data.data(), options.user_data.size());
+  }
   Entity participant(dds_create_participant(options.domain, qos.get(), nullptr));
   if (participant.get() < 0) {
     return fail(ErrorCode::kEnvironment,

@@ -26,7 +26,12 @@ struct CycloneOptions {
   /// Decides at which port the participant receives announcements: announcement_port(). Empty: the
   /// kernel chooses a free port.
   std::optional<std::uint32_t> index{};
-  std::string interface = "127.0.0.1";  ///< address of the interface it sends and receives on
+  /// Address of the interface it sends and receives on; empty: the one that Cyclone chooses.
+  std::string interface = "127.0.0.1";
+  /// Addresses to which it announces itself beside multicast, where programs of others use the
+  /// domain.
+  std::vector<std::string> open_peers{};
+  std::string user_data{};  ///< announced with the participant
 };
 
 /// Joins a domain. All participants of a process in one domain must have the same index, peers and

@@ -14,9 +14,24 @@ namespace swarm::link::fastdds {
 
 namespace dds = eprosima::fastdds::dds;
 
-// Creates the sockets, then the participant over them, then publisher and subscriber. Discovery
-// servers other than on loopback are refused, since such a server is bound to it.
-Result<std::unique_ptr<Entities>> Entities::make(const FastDdsOptions& options) {
+namespace {
+
+/// A participant and the sockets that it receives from; in an open domain the vendor has its own.
+struct Created {
+  dds::DomainParticipant* participant = nullptr;
+  Ports ports{};
+  std::shared_ptr<ReceiveSockets> sockets{};
+};
+
+dds::DomainParticipant* create(const FastDdsOptions& options,
+                               const dds::DomainParticipantQos& qos) {
+  return dds::DomainParticipantFactory::get_instance()->create_participant(
+      options.domain, qos, nullptr, dds::StatusMask::none());
+}
+
+/// Creates the sockets, then the participant over them. Discovery servers other than on loopback
+/// are refused, since such a server is bound to it.
+Result<Created> create_in_run(const FastDdsOptions& options) {
   const auto ports = first_ports(options.domain, options.index);
   if (!ports) return tl::unexpected(ports.error());
   if (!options.static_peers &&
@@ -25,25 +40,35 @@ Result<std::unique_ptr<Entities>> Entities::make(const FastDdsOptions& options) 
                 fmt::format("discovery server '{}:{}' is not a port on 127.0.0.1",
                             options.discovery.host, options.discovery.port));
   }
+  auto sockets = std::make_shared<ReceiveSockets>(ports->data, options.receive_at_tick,
+                                                  options.receive_buffer_bytes, options.interface,
+                                                  options.faults);
+  // The vendor announces a participant before it delivers what its sockets receive. A peer that
+  // answers at once would not be received and does not repeat its answer; so announcements are
+  // discarded until the participant is complete.
+  sockets->set_silent(options.static_peers.has_value());
+  auto* participant = create(options, client_qos(options, *ports, sockets));
+  sockets->set_silent(false);
+  return Created{participant, *ports, std::move(sockets)};
+}
+
+}  // namespace
+
+// Then publisher and subscriber.
+Result<std::unique_ptr<Entities>> Entities::make(const FastDdsOptions& options) {
   try {
     set_up_library();
-    auto sockets = std::make_shared<ReceiveSockets>(ports->data, options.receive_at_tick,
-                                                    options.receive_buffer_bytes, options.interface,
-                                                    options.faults);
-    // The vendor announces a participant before it delivers what its sockets receive. A peer that
-    // answers at once would not be received and does not repeat its answer; so announcements are
-    // discarded until the participant is complete.
-    sockets->set_silent(options.static_peers.has_value());
-    auto* participant = dds::DomainParticipantFactory::get_instance()->create_participant(
-        options.domain, client_qos(options, *ports, sockets), nullptr, dds::StatusMask::none());
-    if (participant == nullptr) {
+    auto created = options.open ? Result<Created>(Created{create(options, open_qos(options))})
+                                : create_in_run(options);
+    if (!created) return tl::unexpected(created.error());
+    if (created->participant == nullptr) {
       return fail(
           ErrorCode::kEnvironment,
           fmt::format("DDS refused participant '{}' in domain {}: see its message on stderr",
                       options.name, options.domain));
     }
-    sockets->set_silent(false);
-    auto made = std::make_unique<Entities>(options, *ports, std::move(sockets), participant);
+    auto made = std::make_unique<Entities>(options, created->ports, std::move(created->sockets),
+                                           created->participant);
     if (made->publisher_ == nullptr || made->subscriber_ == nullptr) {
       return fail(
           ErrorCode::kEnvironment,
@@ -100,13 +125,14 @@ Result<dds::DataReader*> Entities::make_reader(
 
 // Otherwise the vendor's threads receive.
 void Entities::receive() {
-  if (options_.receive_at_tick) sockets_->drain();
+  if (sockets_ != nullptr && options_.receive_at_tick) sockets_->drain();
 }
 
 // The vendor reports none of these failures: a participant without a free port simply receives
 // nothing. Checked here: a data and a discovery port, the known port of a relay participant, and
 // the size of the receive buffers that the kernel grants.
 Result<void> Entities::self_check() const {
+  if (sockets_ == nullptr) return {};  // of an open domain: the vendor chooses its ports
   if (!sockets_->can_receive_data() || !sockets_->can_receive_metatraffic()) {
     return fail(ErrorCode::kEnvironment,
                 fmt::format("participant '{}' cannot receive: none of {} UDP ports from {}:{} on "

@@ -61,7 +61,8 @@ class Entities {
  private:
   FastDdsOptions options_;
   Ports ports_;                              ///< the first ones tried, for messages
-  std::shared_ptr<ReceiveSockets> sockets_;  ///< shared with the transport
+  /// Shared with the transport; null in an open domain.
+  std::shared_ptr<ReceiveSockets> sockets_;
   eprosima::fastdds::dds::DomainParticipant* participant_;
   eprosima::fastdds::dds::Publisher* publisher_;
   eprosima::fastdds::dds::Subscriber* subscriber_;

@@ -80,7 +80,7 @@ class FastDdsParticipant final : public Participant {
 
   std::unique_ptr<Entities> entities_;
   std::set<std::string> types_;  // registered so far
-  bool multicast_ = entities_->options().receive_at_tick &&
+  bool multicast_ = !entities_->options().open && entities_->options().receive_at_tick &&
                     entities_->options().cells_by_multicast &&
                     carries_multicast(entities_->options().interface);  // else by unicast
 };

@@ -30,6 +30,14 @@ struct StaticPeers {
   std::string host = "127.0.0.1";      ///< address of those peers
 };
 
+/// A domain that programs of others use, too, as those of ROS 2: participants discover each other
+/// by multicast, or through a server, and the vendor's own transport and threads receive.
+struct OpenDomain {
+  std::optional<DiscoveryAddress> server{};  ///< instead of multicast
+  std::vector<std::string> peers{};          ///< addresses to announce itself to beside multicast
+  std::string user_data{};                   ///< announced with the participant
+};
+
 /// Settings of one Fast DDS participant.
 struct FastDdsOptions {
   std::string name;                           ///< participant name, seen in DDS tools
@@ -37,6 +45,7 @@ struct FastDdsOptions {
   std::uint32_t index = 0;                    ///< unique per domain; decides the first ports tried
   DiscoveryAddress discovery{};               ///< its server, unless it has static peers
   std::optional<StaticPeers> static_peers{};  ///< set: no discovery server is used
+  std::optional<OpenDomain> open{};  ///< set: index, ports, buffers and faults have no effect
   std::string interface = "127.0.0.1";        ///< address of the interface it sends and receives on
   /// Readers of cell topics receive from one multicast group each, if the interface carries
   /// multicast. A participant with static peers that has no multicast cannot send to such readers.

@@ -3,10 +3,12 @@
 #include "swarm_link/adapters/fastdds/participant_qos.hpp"
 
 #include <mutex>
+#include <random>
 #include <utility>
 
 #include <fastdds/dds/log/Log.hpp>
 #include <fastdds/dds/log/StdoutErrConsumer.hpp>
+#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 #include <fastrtps/xmlparser/XMLProfileManager.h>
 #include <fmt/format.h>
 
@@ -20,6 +22,10 @@ namespace dds = eprosima::fastdds::dds;
 namespace rtps = eprosima::fastrtps::rtps;
 
 namespace {
+
+// GUID prefix of the first server of `fast-discovery-server -i 0`, as ROS_DISCOVERY_SERVER means
+// it.
+constexpr const char* kFirstRosServer = "44.53.00.5f.45.50.52.4f.53.49.4d.41";
 
 rtps::Locator_t locator(const std::string& address, std::uint16_t port) {
   sockaddr_in at{};
@@ -70,6 +76,17 @@ void announce_to(const StaticPeers& static_peers, std::uint32_t domain,
   }
 }
 
+/// The vendor makes the prefix of the process and a small number, so that the second participant of
+/// a process could have that of the first, which peers may take for known.
+rtps::GuidPrefix_t random_prefix() {
+  std::random_device random;
+  rtps::GuidPrefix_t prefix;
+  for (rtps::octet& byte : prefix.value) byte = static_cast<rtps::octet>(random());
+  prefix.value[0] = rtps::c_VendorId_eProsima[0];
+  prefix.value[1] = rtps::c_VendorId_eProsima[1];
+  return prefix;
+}
+
 }  // namespace
 
 // Ports beyond 65535 do not exist; the limit leaves room for taken ports that are skipped.
@@ -116,6 +133,35 @@ dds::DomainParticipantQos client_qos(const FastDdsOptions& options, Ports ports,
     server.metatrafficUnicastLocatorList.push_back(loopback(options.discovery.port));
     wire.builtin.discovery_config.m_DiscoveryServers.push_back(server);
   }
+  return qos;
+}
+
+// UDP alone: shared memory between versions of the vendor is not to be relied on.
+dds::DomainParticipantQos open_qos(const FastDdsOptions& options) {
+  const OpenDomain& open = *options.open;
+  dds::DomainParticipantQos qos;
+  qos.name(options.name.c_str());
+  qos.transport().use_builtin_transports = false;
+  auto udp = std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>();
+  if (!options.interface.empty()) udp->interfaceWhiteList.push_back(options.interface);
+  qos.transport().user_transports.push_back(udp);
+  auto& builtin = qos.wire_protocol().builtin;
+  builtin.use_WriterLivelinessProtocol = true;
+  qos.wire_protocol().prefix = random_prefix();
+  if (open.server) {
+    builtin.discovery_config.discoveryProtocol = rtps::DiscoveryProtocol_t::CLIENT;
+    eprosima::fastdds::rtps::RemoteServerAttributes server;
+    server.ReadguidPrefix(kFirstRosServer);
+    server.metatrafficUnicastLocatorList.push_back(locator(open.server->host, open.server->port));
+    builtin.discovery_config.m_DiscoveryServers.push_back(server);
+  }
+  constexpr std::uint32_t kIndicesTried = 20;  // of each address
+  for (const std::string& peer : open.peers) {
+    for (std::uint32_t index = 0; index < kIndicesTried; ++index) {
+      builtin.initialPeersList.push_back(locator(peer, announcement_port(options.domain, index)));
+    }
+  }
+  qos.user_data().setValue({open.user_data.begin(), open.user_data.end()});
   return qos;
 }
 

@@ -30,6 +30,9 @@ eprosima::fastrtps::rtps::GuidPrefix_t server_prefix(std::uint32_t domain, std::
 eprosima::fastdds::dds::DomainParticipantQos client_qos(const FastDdsOptions& options, Ports ports,
                                                         std::shared_ptr<ReceiveSockets> sockets);
 
+/// Settings of a participant in a domain that programs of others use. \pre options.open
+eprosima::fastdds::dds::DomainParticipantQos open_qos(const FastDdsOptions& options);
+
 /// Settings of the discovery server, which listens at `port`. It exchanges no user data, but the
 /// vendor needs a data port all the same.
 eprosima::fastdds::dds::DomainParticipantQos server_qos(std::uint32_t domain, std::uint16_t port,
