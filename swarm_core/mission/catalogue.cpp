@@ -14,10 +14,11 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::array<std::pair<OptionSpec::Kind, std::string_view>, 3> kKinds{
+constexpr std::array<std::pair<OptionSpec::Kind, std::string_view>, 4> kKinds{
     {{OptionSpec::Kind::kNumber, "number"},
      {OptionSpec::Kind::kCount, "count"},
-     {OptionSpec::Kind::kChoice, "choice"}}};
+     {OptionSpec::Kind::kChoice, "choice"},
+     {OptionSpec::Kind::kText, "text"}}};
 
 // A choice has no range and a number no values, so only the keys that apply are written.
 Json option_json(const OptionSpec& option) {
@@ -30,7 +31,7 @@ Json option_json(const OptionSpec& option) {
   if (!option.at_most.empty()) json["at_most"] = option.at_most;
   if (option.kind == OptionSpec::Kind::kChoice) {
     json["choices"] = option.choices;
-  } else {
+  } else if (option.kind != OptionSpec::Kind::kText) {
     json["low"] = option.range.low;
     json["high"] = option.range.high;
     json["low_open"] = option.range.low_open;
@@ -70,7 +71,7 @@ OptionSpec option_from(const Json& json) {
   if (kind != kKinds.end()) option.kind = kind->first;
   if (option.kind == OptionSpec::Kind::kChoice) {
     option.choices = json.at("choices").get<std::vector<std::string>>();
-  } else {
+  } else if (option.kind != OptionSpec::Kind::kText) {
     option.range = {.low = json.at("low").get<double>(),
                     .high = json.at("high").get<double>(),
                     .low_open = json.at("low_open").get<bool>()};

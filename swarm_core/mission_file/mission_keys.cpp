@@ -100,6 +100,10 @@ class Page {
   static Row row_of(const OptionSpec& option) {
     Row row{option.key, "number", range_text(option.range), option.fallback, option.doc};
     if (option.kind == OptionSpec::Kind::kCount) row.kind = "count";
+    if (option.kind == OptionSpec::Kind::kText) {
+      row.kind = "text";
+      row.range = fmt::format("at most {} characters", kMaxOptionText);
+    }
     if (option.kind == OptionSpec::Kind::kChoice) {
       row.kind = "choice";
       row.range = fmt::format("{}", fmt::join(option.choices, ", "));

@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: The Swarmflow authors
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cctype>
 #include <iterator>
 #include <utility>
 
@@ -94,9 +96,26 @@ std::string or_automatic(const std::optional<double>& value) {
   return value ? fmt::format("{}", *value) : std::string(reader_bounds::kAutomatic);
 }
 
+/// A value of an option: numbers and plain names as they are, other texts in quotes.
+std::string option_text(const std::string& text) {
+  const auto is_alphanumeric = [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0;
+  };
+  const auto is_plain = [&](char c) {
+    return is_alphanumeric(c) || c == '_' || c == '.' || c == '+' || c == '-';
+  };
+  // YAML takes `null`, in three spellings, for no value.
+  const bool is_null = text.size() == 4 && (text.ends_with("ull") || text == "NULL");
+  const bool is_name =
+      std::ranges::all_of(text, is_plain) && std::ranges::any_of(text, is_alphanumeric) && !is_null;
+  return is_name ? text : fmt::format("\"{}\"", text);
+}
+
 /// The values of a component's own options, as checked when they were read.
 void write_options(Out out, const OptionValues& options) {
-  for (const auto& [key, text] : options.all()) fmt::format_to(out, "  {}: {}\n", key, text);
+  for (const auto& [key, text] : options.all()) {
+    fmt::format_to(out, "  {}: {}\n", key, option_text(text));
+  }
 }
 
 /// None of its keys need be set, but a section must not be empty: then it is left out.
@@ -125,7 +144,7 @@ void write_robots(Out out, const RobotsSpec& robots) {
           static_cast<const BodySpec&>(group).*std::get<double BodySpec::*>(field.member));
     }
     for (const auto& [key, text] : group.options.all()) {
-      fmt::format_to(out, ", {}: {}", key, text);
+      fmt::format_to(out, ", {}: {}", key, option_text(text));
     }
     fmt::format_to(out, "}}\n");
   }

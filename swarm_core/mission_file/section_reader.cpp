@@ -181,6 +181,10 @@ void SectionReader::read_option(const Node& node, const MapReader& keys, const O
     const auto chosen = yaml::read_choice(node, path, choices, violations_);
     good = chosen.has_value();
     if (good) values.set(option.key, *chosen);
+  } else if (option.kind == OptionSpec::Kind::kText) {
+    const auto text = yaml::read_printable(node, path, kMaxOptionText, violations_);
+    good = text.has_value();
+    if (good) values.set(option.key, *text);
   } else if (option.kind == OptionSpec::Kind::kCount) {
     const auto count = yaml::read_count(node, path, option.range, violations_);
     good = count.has_value();

@@ -187,6 +187,19 @@ std::optional<std::string> read_choice(const Node& node, const std::string& path
   return std::nullopt;
 }
 
+std::optional<std::string> read_printable(const Node& node, const std::string& path,
+                                          std::size_t most, Violations& violations) {
+  auto text = read_text(node, path, violations);
+  const auto is_printable = [](char c) { return c >= 0x20 && c < 0x7F && c != '"' && c != '\\'; };
+  if (!text || (text->size() <= most && std::all_of(text->begin(), text->end(), is_printable))) {
+    return text;
+  }
+  violations.add(
+      node.at, fmt::format("{} must have at most {} characters of ASCII, no quotes or backslashes",
+                           path, most));
+  return std::nullopt;
+}
+
 /// Every wrong number of the list is reported, with its index in the path.
 std::optional<std::vector<double>> read_numbers(const Node& node, const std::string& path,
                                                 std::size_t size, const Range& range,

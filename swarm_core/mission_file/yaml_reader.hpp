@@ -70,6 +70,9 @@ std::optional<std::uint32_t> read_count(const Node& node, const std::string& pat
                                         const Range& range, Violations& violations);
 std::optional<std::string> read_text(const Node& node, const std::string& path,
                                      Violations& violations);
+/// A text of at most `most` printable characters of ASCII, without quotes and backslashes.
+std::optional<std::string> read_printable(const Node& node, const std::string& path,
+                                          std::size_t most, Violations& violations);
 /// One of the known values.
 std::optional<std::string> read_choice(const Node& node, const std::string& path,
                                        std::span<const std::string_view> known,

@@ -31,7 +31,7 @@ class OptionTable {
   /// Adds an option of kind kNumber: its key, member, accepted numbers and documentation.
   OptionTable& number(std::string key, double T::*member, Range range, std::string doc) {
     add(std::move(key), OptionSpec::Kind::kNumber, range, std::move(doc));
-    specs_.back().fallback = text(T{}.*member);
+    specs_.back().fallback = written(T{}.*member);
     readers_.push_back([member](T& out, const OptionValues& values, const std::string& k) {
       if (const auto value = values.number(k)) out.*member = *value;
     });
@@ -54,6 +54,16 @@ class OptionTable {
     add(std::move(key), OptionSpec::Kind::kChoice, {}, std::move(doc));
     specs_.back().fallback = T{}.*member;
     specs_.back().choices = std::move(choices);
+    readers_.push_back([member](T& out, const OptionValues& values, const std::string& k) {
+      if (const std::string* value = values.find(k)) out.*member = *value;
+    });
+    return *this;
+  }
+
+  /// Adds an option of kind kText: its key, member and documentation.
+  OptionTable& text(std::string key, std::string T::*member, std::string doc) {
+    add(std::move(key), OptionSpec::Kind::kText, {}, std::move(doc));
+    specs_.back().fallback = T{}.*member;
     readers_.push_back([member](T& out, const OptionValues& values, const std::string& k) {
       if (const std::string* value = values.find(k)) out.*member = *value;
     });
@@ -91,10 +101,10 @@ class OptionTable {
   }
 
  private:
-  static std::string text(double value) {
-    OptionValues written;
-    written.set("x", value);
-    return *written.find("x");
+  static std::string written(double value) {
+    OptionValues values;
+    values.set("x", value);
+    return *values.find("x");
   }
 
   void add(std::string key, OptionSpec::Kind kind, const Range& range, std::string doc) {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -30,6 +31,9 @@ constexpr Range between(double low, double high) { return {.low = low, .high = h
 /// The range as part of an error message: `must be > 0 and <= 10`.
 std::string to_string(const Range& range);
 
+/// Longest value of an option of kind kText.
+inline constexpr std::size_t kMaxOptionText = 200;
+
 /// One key that a component (a driver, a control method, a planning method) reads from its section
 /// of the mission file.
 struct OptionSpec {
@@ -37,7 +41,8 @@ struct OptionSpec {
   enum class Kind : std::uint8_t {
     kNumber,  ///< finite number within `range`
     kCount,   ///< whole number within `range`, which must lie in [0, 2³²)
-    kChoice   ///< one of `choices`
+    kChoice,  ///< one of `choices`
+    kText     ///< printable ASCII of at most kMaxOptionText characters, as an address or a name
   };
   std::string key;                     ///< key in the mission file, with its unit: "gain_hz"
   Kind kind = Kind::kNumber;           ///< type of its values

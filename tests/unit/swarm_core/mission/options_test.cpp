@@ -101,6 +101,50 @@ TEST(OpenCatalogue, KeepsNamesAndKeysThatItDoesNotKnow) {
   EXPECT_EQ(again->robots.options, mission->robots.options);
 }
 
+struct Cart {
+  std::string port = "/dev/ttyUSB0";
+};
+
+Catalogue carts() {
+  Catalogue catalogue = open_catalogue();
+  const auto table = OptionTable<Cart>().text("port", &Cart::port, "where it is connected");
+  catalogue.drivers.push_back({"cart", "Rolls", table.specs()});
+  return catalogue;
+}
+
+Result<Mission> cart_at(const std::string& port) {
+  std::string text = kMission;
+  const std::string kRobots = "model: my_robot, port: 7";
+  text.replace(text.find(kRobots), kRobots.size(), "model: cart, port: " + port);
+  return parse_mission(text, "m.yaml", {}, carts());
+}
+
+TEST(TextOption, IsTheSameInTheResolvedMission) {
+  for (const std::string port :
+       {"/dev/ttyUSB0", "r{id}", "udp://10.0.0.1:14550", "null", "-", "a b: #c", "7", "", "'x'"}) {
+    const auto mission = cart_at("\"" + port + "\"");
+    ASSERT_TRUE(mission) << mission.error().message;
+    ASSERT_NE(mission->robots.options.find("port"), nullptr) << port;
+    EXPECT_EQ(*mission->robots.options.find("port"), port);
+    for (const Catalogue& catalogue : {carts(), open_catalogue()}) {
+      const auto again = parse_mission(to_yaml(*mission), "m.yaml", {}, catalogue);
+      ASSERT_TRUE(again) << again.error().message;
+      EXPECT_EQ(again->robots.options, mission->robots.options) << port;
+    }
+  }
+}
+
+TEST(TextOption, RefusesWhatIsLongOrNotPrintable) {
+  for (const std::string& port : {std::string(kMaxOptionText + 1, 'a'), std::string("caf\xC3\xA9"),
+                                  std::string("a\\tb"), std::string("a\\\"b")}) {
+    const auto mission = cart_at("\"" + port + "\"");
+    ASSERT_FALSE(mission) << port;
+    EXPECT_NE(mission.error().message.find("m.yaml:2:39: robots.port must have at most 200"),
+              std::string::npos)
+        << mission.error().message;
+  }
+}
+
 TEST(Mission, HasTheLagOfItsDriversForProgramsWithoutThem) {
   Catalogue drivers = open_catalogue();
   drivers.drivers.push_back({"my_robot", "Rolls", {}, {.fixed_s = 0.25, .accelerates = true}});
