@@ -6,13 +6,13 @@
 #include <cmath>
 #include <numbers>
 
+#include "swarmflow/robot/unicycle_law.hpp"
+
 namespace swarm::agent {
 namespace {
 
 // Longest step of integration.
 constexpr double kStep_s = 0.005;
-// e₀: with a larger heading error it turns on the spot.
-constexpr double kDrivesWithin_rad = 0.5;
 
 Vec2 direction(double heading_rad) { return {std::cos(heading_rad), std::sin(heading_rad)}; }
 
@@ -32,16 +32,8 @@ void Unicycle::advance(double time_s, const Vec2& wanted_mps) {
 
 /// One step: turns towards the commanded direction and changes speed, both within the limits.
 void Unicycle::step(double time_s, const Vec2& wanted_mps) {
-  const double wanted_speed_mps = wanted_mps.norm();
-  double turn_rad = 0.0;
-  double target_mps = 0.0;
-  // A zero velocity has no direction: it keeps its heading.
-  if (wanted_speed_mps > 1e-9) {
-    const double off_rad = wrapped(std::atan2(wanted_mps.y(), wanted_mps.x()) - heading_rad_);
-    const double most_rad = limits_.turn_rate_max_radps * time_s;
-    turn_rad = std::clamp(off_rad, -most_rad, most_rad);
-    target_mps = wanted_speed_mps * std::max(0.0, 1.0 - std::abs(off_rad) / kDrivesWithin_rad);
-  }
+  const auto [target_mps, turn_rad] =
+      follow_by_unicycle(heading_rad_, wanted_mps, limits_.turn_rate_max_radps, time_s);
   const double most_mps = limits_.acceleration_max_mps2 * time_s;
   const double before_mps = speed_mps_;
   speed_mps_ += std::clamp(target_mps - speed_mps_, -most_mps, most_mps);

@@ -18,15 +18,7 @@ struct UnicycleLimits {
 ///   ẋ = v (cos θ, sin θ),  θ̇ = ω,  0 ≤ v ≤ speed_max, |v̇| ≤ acceleration_max, |ω| ≤
 ///   turn_rate_max
 ///
-/// It follows a velocity u by turning to its direction as fast as it can, and meanwhile drives the
-/// slower the more it is off:
-///
-///   v → ‖u‖ max(0, 1 − |e|/e₀),  e = ∠u − θ,  e₀ = 0.5 rad
-///
-/// so it never drives backwards and turns on the spot when u points elsewhere. A turn from rest
-/// into u leads off its line by ‖u‖ e₀²/(6 ω_max) at most, 2 cm at 1.45 m/s and 3 rad/s; driving at
-/// ‖u‖ cos e while it turns led into walls. Commanded to stop, it keeps its heading. Integrated in
-/// steps of 5 ms at most.
+/// It follows a velocity by follow_by_unicycle(). Integrated in steps of 5 ms at most.
 class Unicycle final : public MotionModel {
  public:
   Unicycle(const Vec2& position_m, double heading_rad, const UnicycleLimits& limits)
