@@ -101,6 +101,7 @@ Result<Shared<AgentOptions>> agent_options(const Mission& mission, RobotId robot
                .near_m = l.send_near_m,
                .period = period,
                .scale = scale},
+      .pose = PoseLimits::of(body),
       .scale = scale,
   });
 }

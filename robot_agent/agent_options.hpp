@@ -4,6 +4,7 @@
 
 #include <map>
 
+#include "robot_agent/loop/pose_check.hpp"
 #include "robot_agent/neighbours/neighbour_table.hpp"
 #include "robot_agent/safety/safety_filter.hpp"
 #include "robot_agent/send_policy.hpp"
@@ -23,6 +24,7 @@ struct AgentOptions {
   SafetyOptions safety;
   NeighbourOptions neighbours;
   SendOptions send;
+  PoseLimits pose;
   double scale = 1.0;  ///< of the constants of the agent (body_scale.hpp)
 };
 

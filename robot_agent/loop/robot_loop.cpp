@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <utility>
 
 #include "robot_agent/safety/fault_text.hpp"
 #include "swarm_core/metrics/late_ticks.hpp"
@@ -18,7 +19,6 @@ constexpr std::uint32_t kTicksPerEstimate = 10;
 
 // Ticks between two queries of the driver's health.
 constexpr std::uint32_t kTicksPerHealth = 10;
-constexpr const char* kNoPosition = "the driver has no position; the robot holds";
 
 std::int32_t to_us(Duration d) {
   return static_cast<std::int32_t>(
@@ -34,11 +34,14 @@ std::int32_t to_us(Duration d) {
       std::min(agent_.goal(position_m_), robot_log::Step::kNoGoal - 1U));
 }
 
-/// Measures the body's position, and accepts a new plan from there.
+/// Measures and checks the body's position, and accepts a new plan from there.
 [[gnu::hot]] Measurement RobotLoop::measure(const RobotTick& tick, const RobotParts& parts) {
   const Measurement body = parts.driver.measure(tick.now);
-  has_position_ = has_position_ || body.is_valid;
-  if (body.is_valid || !has_position_) position_m_ = body.position_m;
+  pose_ = pose_check_.check(body, tick.now);
+  has_position_ = has_position_ || pose_.is_valid;
+  if (pose_.is_valid || (!has_position_ && body.position_m.allFinite())) {
+    position_m_ = pose_.position_m;
+  }
   if (body.command_expired) {  // the body stopped between two ticks: the log gets a step there
     parts.log.append(robot_log::Step{.stamp = tick.utc_now - (tick.now - body.expired_at),
                                      .position_m = body.expired_position_m,
@@ -66,28 +69,30 @@ std::int32_t to_us(Duration d) {
                                     const Measurement& body) {
   const RobotMode mode_before = output_.mode;
   const bool was_settled = output_.settled;
-  output_ = body.is_valid ? agent_.tick({.now = tick.now,
-                                         .position_m = position_m_,
-                                         .phase = tick.phase,
-                                         .planner_alive = tick.planner_alive,
-                                         .may_move = tick.may_move,
-                                         .velocity_mps = body.velocity_mps,
-                                         .plan_time = tick.plan_time,
-                                         .planned_density = tick.planned_density,
-                                         .silent = tick.silent},
-                                        parts.rng)
-                          : without_position(tick.phase);
+  output_ = pose_.is_valid ? agent_.tick({.now = tick.now,
+                                          .position_m = position_m_,
+                                          .phase = tick.phase,
+                                          .planner_alive = tick.planner_alive,
+                                          .may_move = tick.may_move,
+                                          .velocity_mps = pose_.velocity_mps,
+                                          .plan_time = tick.plan_time,
+                                          .planned_density = tick.planned_density,
+                                          .silent = tick.silent},
+                                         parts.rng)
+                           : without_position(tick.phase);
   // Before the command: the last step of a process that is killed in between has its new velocity.
   late_ticks_ += late_ticks(tick.lateness, tick.period);
-  log_step(tick, parts.log, body.true_position_m.value_or(body.position_m));
+  if (has_position_ || body.true_position_m) {  // otherwise the robot is not known to be anywhere
+    log_step(tick, parts.log, body.true_position_m.value_or(position_m_));
+  }
   if (output_.mode == RobotMode::kStopped) {
     parts.driver.stop(tick.now, StopKind::kHold);
   } else {
     // Longer than a period, as a tick may be late; limited, as a dead process must not drive on.
     parts.driver.command(tick.now, output_.velocity_mps, robot_log::command_lifetime(tick.period));
   }
-  const bool is_well = body.is_valid && fault_.empty() && agent_.control_fault().empty();
-  if (!is_well || ticks_ % kTicksPerHealth == 0) update_fault(body.is_valid, parts.driver);
+  const bool is_well = pose_.is_valid && fault_.empty() && agent_.control_fault().empty();
+  if (!is_well || ticks_ % kTicksPerHealth == 0) update_fault(parts.driver);
   const bool mode_changed = output_.mode != mode_before;
   has_updates_ = mode_changed || (output_.settled && !was_settled);
 
@@ -116,13 +121,17 @@ AgentOutput RobotLoop::without_position(MissionPhase phase) const {
 
 /// A fault of the control method is final; that of a missing position ends with the position; the
 /// driver's health is read every tenth tick.
-void RobotLoop::update_fault(bool has_position, const Driver& driver) {
+void RobotLoop::update_fault(const Driver& driver) {
   if (!agent_.control_fault().empty()) {
     if (fault_.empty()) fault_ = agent_.control_fault();
-  } else if (!has_position) {
-    if (fault_ != kNoPosition) fault_ = kNoPosition;
-  } else if (fault_ == kNoPosition) {
+  } else if (!pose_.is_valid) {
+    if (!std::exchange(is_lost_, true)) {
+      const std::string text = fault_text(driver.health().text);
+      fault_ = pose_.why + (text.empty() ? "" : ": " + text) + "; the robot holds";
+    }
+  } else if (is_lost_) {
     fault_.clear();
+    is_lost_ = false;
   } else if (ticks_ % kTicksPerHealth == 0) {
     const DriverHealth health = driver.health();
     fault_ = health.level == DriverHealth::Level::kGood ? std::string() : fault_text(health.text);

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "robot_agent/agent.hpp"
+#include "robot_agent/loop/pose_check.hpp"
 #include "robot_agent/loop/robot_log.hpp"
 #include "swarm_core/base/prefetch.hpp"
 #include "swarm_core/metrics/histogram.hpp"
@@ -59,8 +60,8 @@ struct RobotParts {
 class RobotLoop {
  public:
   /// \pre the world outlives the loop
-  RobotLoop(const World& world, Shared<AgentOptions> options, const AgentIdentity& self)
-      : agent_(world, std::move(options), self), id_(self.robot) {}
+  RobotLoop(const World& world, const Shared<AgentOptions>& options, const AgentIdentity& self)
+      : agent_(world, options, self), id_(self.robot), pose_check_(options->pose) {}
 
   /// One tick. The bus is any class with
   ///
@@ -115,7 +116,7 @@ class RobotLoop {
   Measurement measure(const RobotTick& tick, const RobotParts& parts);
   void decide(const RobotTick& tick, const RobotParts& parts, const Measurement& body);
   AgentOutput without_position(MissionPhase phase) const;
-  void update_fault(bool has_position, const Driver& driver);
+  void update_fault(const Driver& driver);
   void log_step(const RobotTick& tick, RobotLog& log, const Vec2& true_position_m) const;
   std::uint8_t goal() const;
   link::RobotStateMessage next_state(UtcTime utc_now);
@@ -127,7 +128,10 @@ class RobotLoop {
   std::uint32_t states_sent_ = 0;  // the sequence number of the last
   std::uint32_t states_received_ = 0;
   bool has_updates_ = false;
-  bool has_position_ = false;  // the driver has had one
+  PoseCheck pose_check_;
+  CheckedPose pose_;           // of this tick
+  bool has_position_ = false;  // there has been one
+  bool is_lost_ = false;       // the fault is that there is none
   Vec2 position_m_ = Vec2::Zero();
   AgentOutput output_;
   std::string fault_;

@@ -25,6 +25,8 @@ struct BodySpec {
       0.0;                        ///< its communication radius; 0: link.communication_radius_m
   double motion_noise_m = 0.0;    ///< σ of w(k) per control step [ROVER, eq. 9]
   double position_noise_m = 0.0;  ///< σ of its measured position [m]
+  double pose_timeout_s = 0.5;    ///< an older measured position counts as none [s]
+  double pose_sigma_max_m = 0.5;  ///< a less precise one counts as none: σ along its worst axis [m]
   /// Longest time that it takes to reach a commanded velocity [s]. Unset, `auto` in the file: the
   /// reader sets it as the driver declares it, see body_lag_s().
   std::optional<double> lag_s{};
@@ -45,6 +47,10 @@ inline constexpr auto kBodyKeys = std::to_array<SectionKey<BodySpec>>({
      "standard deviation of the noise that each control step adds to the motion, per axis"},
     {"position_noise_m", &BodySpec::position_noise_m, between(0, 100),
      "standard deviation of the measured position, per axis"},
+    {"pose_timeout_s", &BodySpec::pose_timeout_s, positive(60),
+     "a robot whose position is older holds"},
+    {"pose_sigma_max_m", &BodySpec::pose_sigma_max_m, positive(100),
+     "a robot whose position has a larger standard deviation along some axis holds"},
 });
 
 /// A number of robots that differ from the others.
