@@ -24,6 +24,7 @@ int main(int argc, char** argv) {
         add_join(app),
         add_plan(app),
         add_keys(app),
+        add_check_driver(app),
         add_command(app),
         add_sibling(app, "simulate",
                     "Simulate a mission in one process, as fast as the machine allows",

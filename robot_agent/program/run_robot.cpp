@@ -8,6 +8,7 @@
 #include <CLI/CLI.hpp>
 
 #include "robot_agent/program/agent_process.hpp"
+#include "robot_agent/program/driver_check_program.hpp"
 #include "swarm_core/app/program.hpp"
 #include "swarm_core/app/stop_signal.hpp"
 #include "swarm_core/app/vendor_option.hpp"
@@ -21,7 +22,23 @@ struct CommandLine {
   std::uint32_t first = 0;
   std::string fault;
   bool describe = false;
+  DriverCheckRequest check;
 };
+
+/// Of --check-driver, which `swarm_launcher check-driver` calls.
+void add_check_options(CLI::App& app, DriverCheckRequest& check) {
+  app.add_option("--check-driver", check.mission,
+                 "Check the driver of robot --ids of this mission against its contract, and exit");
+  app.add_option("--room-m", check.room_m, "Its room: half a side of a square (default: 2)")
+      ->check(CLI::Range(0.1, 100.0));
+  app.add_option("--speed-mps", check.speed_mps, "Its speed (default: 0.3)")
+      ->check(CLI::Range(0.01, 100.0));
+  app.add_flag("--may-kill", check.may_kill, "Cut its motors at the end");
+  app.add_option("--cut-pose", check.cut_pose,
+                 "Command that takes its localisation away (called with `cut`) and gives it back "
+                 "(`restore`)");
+  app.add_flag("--json", check.json, "Print the result as JSON");
+}
 
 void add_options(CLI::App& app, CommandLine& line) {
   app.add_option("--run", line.options.run_dir, "Run directory made by the launcher");
@@ -44,6 +61,7 @@ void add_options(CLI::App& app, CommandLine& line) {
       "loss=0.2,delay-ms=150,jitter-ms=50,duplicate=0.1,from=10,to=60,robots=3-5,launcher=1");
   app.add_flag("--describe", line.describe,
                "Print its control methods and drivers with their options as JSON, and exit");
+  add_check_options(app, line.check);
   shell::add_common_options(app);
 }
 
@@ -63,6 +81,10 @@ Result<ExitCode> run(int argc, char** argv, const RobotRegistry& registry) {
   if (line.describe) {
     std::puts(to_json(catalogue_of(registry)).c_str());
     return ExitCode::kOk;
+  }
+  if (app.count("--check-driver") > 0) {
+    line.check.robot = line.first;
+    return run_driver_check(line.check, registry);
   }
   // Not required() of the parser, as --describe needs neither.
   if (app.count("--run") == 0 || app.count("--ids") == 0) {

@@ -25,6 +25,7 @@ Command add_join(CLI::App& program);
 Command add_gateway(CLI::App& program);
 Command add_command(CLI::App& program);
 Command add_plan(CLI::App& program);
+Command add_check_driver(CLI::App& program);
 /// `simulate`, `table`, `soak` or `chaos`: replaces this process by the program beside it that
 /// implements the subcommand, with all its arguments.
 Command add_sibling(CLI::App& program, const std::string& name, const std::string& description,
