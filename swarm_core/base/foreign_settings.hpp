@@ -49,12 +49,27 @@ inline std::vector<std::string> foreign_settings() {
   return found;
 }
 
+/// Under this prefix ignore_foreign_settings() keeps what it hides from the DDS libraries: the
+/// drivers of ROS robots follow it.
+inline constexpr const char* kKeptPrefix = "SWARMFLOW_KEPT_";
+
+/// A setting as the user made it, hidden or not; empty if there is none.
+inline std::string foreign_setting(const std::string& name) {
+  for (const std::string& key : {name, kKeptPrefix + name}) {
+    if (const char* value = std::getenv(key.c_str()); value != nullptr) return value;
+  }
+  return {};
+}
+
 /// Makes the DDS libraries of this process, and of its children, ignore foreign settings: a run
 /// has its own discovery, transports and domain. To be called before the first call of a DDS
 /// library, and while no other thread reads the environment.
 inline void ignore_foreign_settings() {
   for (const ForeignSetting& setting : kForeignSettings) {
-    if (setting.read_by_dds && std::getenv(setting.name) != nullptr) ::unsetenv(setting.name);
+    const char* const value = std::getenv(setting.name);
+    if (!setting.read_by_dds || value == nullptr) continue;
+    ::setenv((kKeptPrefix + std::string(setting.name)).c_str(), value, 1);
+    ::unsetenv(setting.name);
   }
   // The name differs between versions of the library.
   for (const char* skip : {"SKIP_DEFAULT_XML", "SKIP_DEFAULT_XML_FILE"}) ::setenv(skip, "1", 1);

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <charconv>
 #include <cstddef>
 #include <optional>
+#include <string>
 #include <utility>
 
 #include <fmt/format.h>
@@ -14,6 +16,7 @@
 #include <sys/un.h>
 #include <unistd.h>
 
+#include "swarm_core/base/foreign_settings.hpp"
 #include "swarm_link/announcement_port.hpp"
 #include "swarm_link/udp_socket.hpp"
 
@@ -77,6 +80,16 @@ std::optional<std::uint16_t> missing_port(std::uint32_t domain, const DomainNeed
   return std::nullopt;
 }
 
+/// The domain of the user's ROS programs, if one is set: a run must not be in it, as its drivers
+/// may be.
+std::optional<std::uint32_t> ros_domain_id() {
+  const std::string text = foreign_setting("ROS_DOMAIN_ID");
+  std::uint32_t id = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), id);
+  const bool is_number = !text.empty() && error == std::errc() && end == text.data() + text.size();
+  return is_number ? std::optional(id) : std::nullopt;
+}
+
 }  // namespace
 
 DomainLock::DomainLock(DomainLock&& other) noexcept
@@ -111,7 +124,9 @@ Result<DomainLock> DomainLock::take(int wanted, const DomainNeeds& needs, Domain
         fmt::format("--domain {}: {} participants need the domains {} to {}, the last is {}", first,
                     needs.participants, first, first + block - 1, kDomains - 1));
   }
+  const std::optional<std::uint32_t> taken = ros_domain_id();
   for (std::uint32_t domain = first; domain <= last; ++domain) {
+    if (!chosen && taken && domain <= *taken && *taken < domain + block) continue;
     DomainLock lock;
     lock.domain_ = domain;
     if (!lock.reserve(block, host.name)) continue;
