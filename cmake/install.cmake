@@ -28,7 +28,8 @@ swarm_export(swarm_link bus)
 # What those are made of; their names are not for users.
 foreach(target IN ITEMS swarm_options swarm_math swarm_mission swarm_mission_file swarm_files swarm_robot_log
         swarm_shell swarm_gate swarm_agent
-        swarm_agent_inbox swarm_driver_check swarm_ros swarm_planner swarm_planner_inbox swarm_monitor_core swarm_recording)
+        swarm_agent_inbox swarm_driver_check swarm_driver_specs swarm_drivers swarm_ros swarm_planner swarm_planner_inbox
+        swarm_monitor_core swarm_recording)
   swarm_export(${target})
 endforeach()
 if(SWARM_WITH_CYCLONEDDS)

@@ -23,6 +23,7 @@
 #include "swarm_launcher/supervision/summary.hpp"
 #include "swarm_sim/simulation.hpp"
 #include "swarmflow/mission/mission_file.hpp"
+#include "swarmflow/robot/driver_registry.hpp"
 
 namespace swarm::launcher {
 namespace {
@@ -134,12 +135,28 @@ Result<void> check_kills(const SimulateOptions& options, const Mission& mission)
   return {};
 }
 
+/// A simulation moves the built-in bodies alone.
+Result<void> check_bodies(const RobotsSpec& robots) {
+  agent::DriverRegistry bodies;
+  agent::register_builtin_drivers(bodies);
+  for (std::uint32_t i = 0; i < robots.count; ++i) {
+    const std::string& model = body_of(robots, RobotId(i)).model;
+    if (bodies.find(model) != nullptr) continue;
+    return fail(ErrorCode::kBadInput,
+                fmt::format("robots.model is \"{}\", a driver of real robots; a simulation moves "
+                            "single_integrator, double_integrator and unicycle",
+                            model));
+  }
+  return {};
+}
+
 }  // namespace
 
 Result<ExitCode> simulate_mission(const SimulateOptions& options) {
   auto mission = load_mission(options.mission_file, builtin_catalogue(), options.robots);
   if (!mission) return tl::unexpected(mission.error());
   if (auto known = check_kills(options, *mission); !known) return tl::unexpected(known.error());
+  if (auto known = check_bodies(mission->robots); !known) return tl::unexpected(known.error());
 
   std::filesystem::path dir;
   std::unique_ptr<SimulationObserver> observer = std::make_unique<SimulationObserver>();

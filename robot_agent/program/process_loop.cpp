@@ -245,6 +245,7 @@ void ProcessLoop::end(const Time& time) {
   events_.record_link_stats(time.utc_now, inbox_, state_age_);
   status_.publish_all(source(time));
   for (LocalRobot& robot : local_.robots) {
+    robot.driver->stop(time.now, StopKind::kHold);
     robot.driver->shutdown();
     robot.log.append(
         robot_log::Note{.stamp = time.utc_now, .code = "exit", .text = "graceful end"});

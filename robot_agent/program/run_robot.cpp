@@ -9,6 +9,7 @@
 
 #include "robot_agent/program/agent_process.hpp"
 #include "robot_agent/program/driver_check_program.hpp"
+#include "robot_drivers/ros/ros_driver.hpp"
 #include "swarm_core/app/program.hpp"
 #include "swarm_core/app/stop_signal.hpp"
 #include "swarm_core/app/vendor_option.hpp"
@@ -110,6 +111,7 @@ RobotRegistry builtin_robots() {
   RobotRegistry registry;
   register_builtin_control(registry.control);
   register_builtin_drivers(registry.drivers);
+  drivers::register_ros_driver(registry.drivers);
   return registry;
 }
 

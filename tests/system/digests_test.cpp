@@ -31,7 +31,9 @@ std::vector<std::string> missions() {
   std::vector<std::string> names;
   for (const auto& entry : fs::directory_iterator(SWARM_SOURCE_DIR "/deploy/missions")) {
     const std::string name = entry.path().stem().string();
-    if (entry.path().extension() == ".yaml" && name != kTooLong) names.push_back(name);
+    if (entry.path().extension() != ".yaml" || name == kTooLong) continue;
+    // A simulation does not move real robots.
+    if (read_text(entry.path()).find("model: ros2") == std::string::npos) names.push_back(name);
   }
   std::sort(names.begin(), names.end());
   return names;
