@@ -18,8 +18,9 @@ int main(int argc, char** argv) {
     app.require_subcommand(1);
     shell::add_common_options(app);
     using namespace monitor::cli;
-    const Command commands[] = {add_audit(app),  add_report(app), add_record(app), add_merge(app),
-                                add_replay(app), add_view(app),   add_top(app),    add_cat(app)};
+    const Command commands[] = {add_audit(app), add_report(app), add_record(app),
+                                add_merge(app), add_replay(app), add_view(app),
+                                add_top(app),   add_cat(app),    add_ros(app)};
     const auto done = shell::parse(app, argc, argv);
     if (!done) return tl::unexpected(done.error());
     if (*done) return **done;

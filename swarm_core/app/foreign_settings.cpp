@@ -27,9 +27,8 @@ void drop_foreign_settings() {
 std::optional<std::string> dropped_settings_notice() {
   if (dropped().empty()) return std::nullopt;
   return fmt::format(
-      "without effect here, as settings of other DDS and ROS programs: {}; mission file and "
-      "options "
-      "configure a run",
+      "settings of other DDS and ROS programs have no effect on the bus of a run: {}; the driver "
+      "ros2 and `swarm_monitor ros` follow those of ROS",
       fmt::join(dropped(), ", "));
 }
 

@@ -32,5 +32,6 @@ Command add_cat(CLI::App& program);
 Command add_replay(CLI::App& program);
 Command add_view(CLI::App& program);
 Command add_top(CLI::App& program);
+Command add_ros(CLI::App& program);
 
 }  // namespace swarm::monitor::cli

@@ -57,8 +57,9 @@ TEST_F(ForeignSettings, ThatALibraryReadsAreRemovedAndNamed) {
   EXPECT_EQ(std::getenv("ROS_DISCOVERY_SERVER"), nullptr);
   EXPECT_EQ(std::getenv("CYCLONEDDS_URI"), nullptr);
   EXPECT_EQ(dropped_settings_notice(),
-            "without effect here, as settings of other DDS and ROS programs: "
-            "ROS_DISCOVERY_SERVER, CYCLONEDDS_URI; mission file and options configure a run");
+            "settings of other DDS and ROS programs have no effect on the bus of a run: "
+            "ROS_DISCOVERY_SERVER, CYCLONEDDS_URI; the driver ros2 and `swarm_monitor ros` follow "
+            "those of ROS");
 }
 
 TEST_F(ForeignSettings, OfRosStayForADriverThatUsesIt) {
