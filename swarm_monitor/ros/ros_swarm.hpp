@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "swarm_ros/messages.hpp"
+#include "swarm_ros/view_messages.hpp"
 #include "swarmflow/core/flow_plan.hpp"
 #include "swarmflow/core/world.hpp"
 #include "swarmflow/observe/observer.hpp"

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "swarm_link/cdr/codec.hpp"
-#include "swarm_ros/messages.hpp"
+#include "swarm_ros/view_messages.hpp"
 #include "tests/support/filled_message.hpp"
 
 namespace {

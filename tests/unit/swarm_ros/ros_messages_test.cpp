@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "swarm_link/cdr/codec.hpp"
-#include "swarm_ros/messages.hpp"
 #include "swarm_ros/ros_names.hpp"
+#include "swarm_ros/view_messages.hpp"
 #include "tests/support/filled_message.hpp"
 
 namespace swarm::ros {
